@@ -18,7 +18,7 @@ from catalogue import catalogue
 from report import Column, Section, run_alone
 from workhold.batch.run import ANY_PART
 from workhold.batch.store import make_part_record
-from workhold.batch.tasks import Answering, Task
+from workhold.batch.tasks import QueryTask, Task
 from workhold.batch.workers import LocalWorkers
 from workhold.files.toolkit_file import load_toolkit
 from workhold.model.query import Query
@@ -40,13 +40,13 @@ class Nobody:
     """Looks away."""
 
     def note_begun(self, worker: str, title: str) -> None:
-        """See ``batch.tasks.Watcher``."""
+        """See ``batch.tasks.TaskObserver``."""
 
     def note_ended(self, worker: str) -> None:
-        """See ``batch.tasks.Watcher``."""
+        """See ``batch.tasks.TaskObserver``."""
 
     def notify(self, sentence: str) -> None:
-        """See ``batch.tasks.Watcher``."""
+        """See ``batch.tasks.TaskObserver``."""
 
 
 def run(quick: bool) -> Section:
@@ -70,7 +70,7 @@ def searching(length: int) -> Iterator[Task]:
     """Searches of a catalogue in some toolkits."""
     queries = [Query(ANY_PART, load_toolkit(name).toolkit) for name in PRESETS]
     for number, (part, query) in enumerate(product(catalogue(length), queries)):
-        yield Answering(f"search-{number}", part.name, make_part_record(part, ()), query, 10)
+        yield QueryTask(f"search-{number}", part.name, make_part_record(part, ()), query, 10)
 
 
 def seconds_of(queue: Callable[[], Any], tasks: list[Task], workers: int) -> float:

@@ -66,7 +66,7 @@ def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, floa
     from workhold.batch.durations import compute_measures, predict_answering_seconds
     from workhold.batch.run import ANY_PART
     from workhold.batch.store import make_part_record
-    from workhold.batch.tasks import Answering, run_task
+    from workhold.batch.tasks import QueryTask, run_task
     from workhold.files.toolkit_file import load_toolkit
     from workhold.model.query import Query
 
@@ -78,7 +78,7 @@ def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, floa
             if number % EVERY.get(name, 1):
                 continue
             vise = load_toolkit(name)
-            task = Answering("", "", record, Query(ANY_PART, vise.toolkit, tolerance=vise.tolerance), 10)
+            task = QueryTask("", "", record, Query(ANY_PART, vise.toolkit, tolerance=vise.tolerance), 10)
             if not runs:
                 run_task(task)
             start = process_time()

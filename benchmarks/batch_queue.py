@@ -18,7 +18,7 @@ from attrs import frozen
 
 from batch import Nobody
 from report import Column, Section, run_alone
-from workhold.batch.durations import Measured
+from workhold.batch.durations import TaskDurations
 from workhold.batch.store import FolderStore, make_refusal_record
 from workhold.batch.tasks import Task
 from workhold.batch.workers import LocalWorkers
@@ -78,7 +78,7 @@ def queues() -> dict[str, partial[Any]]:
 def seconds_of(name: str, count: int) -> float:
     """Seconds of the processor for so many tasks."""
     with TemporaryDirectory() as folder, queues()[name]() as ready:
-        store, measured = FolderStore(Path(folder)), Measured(Path(folder) / "measured.csv")
+        store, measured = FolderStore(Path(folder)), TaskDurations(Path(folder) / "measured.csv")
         for _ in ready.run(iter(tasks("warm", 4 * WORKERS)), Event()):
             pass
         start = process_time()

@@ -16,7 +16,7 @@ from typing import Any
 
 from benchmark_parts import BenchmarkPart, benchmark_parts
 from benchmark_sets import AskedSet, asked_sets
-from workhold.benchmark.catalogue import compute_checksums, set_text
+from workhold.benchmark.catalogue import compute_checksums, make_set_text
 from workhold.fixels.kinds import make_toolkit
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
@@ -108,7 +108,7 @@ def entry_of(asked: AskedSet, workpiece: Workpiece) -> dict[str, Any]:
     listing = asked.options.get("listing")
     result = answer(Query(workpiece, toolkit, listing=listing), threads=1)
     undecided = -1 if result.proof is None else len(result.proof.undecided)
-    head, lines = set_text(asked.name, result)
+    head, lines = make_set_text(asked.name, result)
     return {
         "name": asked.name,
         "workpiece": asked.part,

@@ -81,7 +81,7 @@ def seated(result: workhold.Result) -> dict[str, Any]:
         "caught": float(caught[0]),
         "attainable": attainable,
         "reading": first.figures["reading"],
-        "wrong": len(first.wrong_within()),
+        "wrong": len(first.list_wrong_seats()),
         "met": bool(caught[0] >= SMALL_CAPTURE) or attainable < SMALL_CAPTURE,
     }
 

@@ -45,8 +45,8 @@ def make_random_contacts(part: str, peg_radius: float, count: int) -> tuple[Arra
     random = np.random.default_rng(1996)
     chosen = random.integers(0, len(features), 4 * count)
     places = random.uniform(-1.0, 1.0, 4 * count) * np.array([features[k].half_extent for k in chosen])
-    points = np.array([features[k].at(place) for k, place in zip(chosen, places, strict=True)])
-    normals = np.array([features[k].normal(place) for k, place in zip(chosen, places, strict=True)])
+    points = np.array([features[k].compute_point(place) for k, place in zip(chosen, places, strict=True)])
+    normals = np.array([features[k].compute_normal(place) for k, place in zip(chosen, places, strict=True)])
     x0, y0, x1, y1 = workpiece.bounds
     return (points - workpiece.center).reshape(-1, 4, 2), normals.reshape(-1, 4, 2), max(x1 - x0, y1 - y0) / 2
 
@@ -56,14 +56,14 @@ def floor_seconds(part: str, peg_radius: float, tests: int) -> dict[str, Any]:
     from numba import njit
 
     from workhold.kernels.base.compiling import OPTIONS
-    from workhold.kernels.contact.rules import minors
+    from workhold.kernels.contact.rules import write_minors
 
     @njit(**OPTIONS)
     def closing(points: Array, normals: Array, length: float, tests: int, out: Array) -> int:
         """How many of so many contacts close, taken in turn from those stored; ``out`` (4,) is room for minors."""
         count, k = 0, 0
         for _ in range(tests):
-            minors(points[k], normals[k], length, out)
+            write_minors(points[k], normals[k], length, out)
             positive = out[0] > 0.0 and out[1] > 0.0 and out[2] > 0.0 and out[3] > 0.0
             negative = out[0] < 0.0 and out[1] < 0.0 and out[2] < 0.0 and out[3] < 0.0
             if positive or negative:

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import workhold
 from shop_parts import PARTS, ShopPart
-from workhold.drawing.bench import Bench, draw_bench, make_bench
+from workhold.drawing.bench import BenchDrawing, draw_bench, make_bench
 from workhold.drawing.render import convert_svg_to_png
 from workhold.drawing.scene import Box, Scene, View
 from workhold.fixels.toolkit import Toolkit
@@ -60,7 +60,7 @@ def ways(part: ShopPart) -> Iterator[tuple[str, Toolkit]]:
         )
 
 
-def first_choices(part: ShopPart) -> dict[str, Bench]:
+def first_choices(part: ShopPart) -> dict[str, BenchDrawing]:
     """The first choice in each way that holds the part; of a fence with one clamp and with two the better one."""
     made, found, best = part.make(), {}, {}
     for name, toolkit in ways(part):
@@ -72,19 +72,19 @@ def first_choices(part: ShopPart) -> dict[str, Bench]:
     return found
 
 
-def card(bench: Bench, title: str) -> str:
+def card(bench: BenchDrawing, title: str) -> str:
     """A small picture as SVG text."""
     scene = Scene.make_page(CARD, title)
     draw_on(scene, bench, Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE))
     return scene.to_svg()
 
 
-def draw_on(scene: Scene, bench: Bench, room: Box) -> None:
+def draw_on(scene: Scene, bench: BenchDrawing, room: Box) -> None:
     """Draw a fixture into a room, as large as it fits."""
     draw_bench(scene, bench, View.fit_box(bench.extent, room), weight=0.6, longest=34.0, axes=False)
 
 
-def side_by_side(benches: dict[str, Bench]) -> str:
+def side_by_side(benches: dict[str, BenchDrawing]) -> str:
     """The picture at the head of the README."""
     width, height = ROOM
     scene = Scene.make_page((width * len(benches), height + CAPTION), "One part, held in three ways")
@@ -95,7 +95,7 @@ def side_by_side(benches: dict[str, Bench]) -> str:
     return scene.to_svg()
 
 
-def write_images(benches: dict[str, Bench]) -> None:
+def write_images(benches: dict[str, BenchDrawing]) -> None:
     """The pictures of the bracket in README and manual: in three ways, the sheet's first page, and with two clamps."""
     (IMAGES / "held-in-three-ways.png").write_bytes(convert_svg_to_png(side_by_side(benches), WIDTH))
     bracket = PARTS[0].make()
@@ -114,7 +114,7 @@ def write_images(benches: dict[str, Bench]) -> None:
     (IMAGES / "sheet.png").write_bytes(convert_svg_to_png(first_page, 1200))
 
 
-def told(part: ShopPart, benches: dict[str, Bench]) -> str:
+def told(part: ShopPart, benches: dict[str, BenchDrawing]) -> str:
     """What the page shows of a part."""
     cells = [f"[{part.name}](first-choice.md#{part.name}): {part.words}"]
     for name in ("vise", "plate", "fence"):

@@ -30,8 +30,8 @@ import numpy as np
 from line_plot import CALLED, Curve, line_plot
 from workhold.benchmark.catalogue import SetEntry, load_sets, make_set_query
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.geometry.segment import segment_rows
-from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.geometry.segment import make_segment_rows
+from workhold.model.fixture_table import FixtureTable, compute_peg_places
 from workhold.model.query import Query
 from workhold.search.design import answer
 
@@ -163,12 +163,12 @@ def face_gaps(
     query: Query, table: FixtureTable, pegs: list[int], place: Array, angle: Array, further: Array
 ) -> Array:
     """How far (N, P) the surfaces of pegs are from their faces in other poses, in mm; faces are taken without ends."""
-    x, y = peg_places(table, query.toolkit, query.workpiece)
+    x, y = compute_peg_places(table, query.toolkit, query.workpiece)
     centres = np.stack([x[:, pegs], y[:, pegs]], -1) + further
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     away = centres - place[:, None]
     q = np.stack([c * away[..., 0] + s * away[..., 1], c * away[..., 1] - s * away[..., 0]], -1)
-    rows = segment_rows([face.segment for face in query.workpiece.numbered.faces])
+    rows = make_segment_rows([face.segment for face in query.workpiece.numbered.faces])
     number = {face.number: k for k, face in enumerate(query.workpiece.numbered.faces)}
     row = rows[np.vectorize(number.__getitem__)(table.face[:, pegs])]
     return (

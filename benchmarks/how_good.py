@@ -25,15 +25,15 @@ from typing import Any
 import numpy as np
 
 from line_plot import CALLED, Bar, bar_plot
-from workhold.benchmark.catalogue import SetEntry, load_manifest, load_sets, make_set_query, set_named
+from workhold.benchmark.catalogue import SetEntry, find_set, load_manifest, load_sets, make_set_query
 from workhold.geometry.segment import Line
-from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.fixture_table import FixtureTable, compute_peg_places
 from workhold.model.quality import CLAMP_AMPLIFICATION, LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.search.design import answer
 from workhold.seating.solver import seatings
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 
 ROOT = Path(__file__).resolve().parent.parent
 FIGURES = ROOT / "docs" / "figures"
@@ -165,7 +165,7 @@ def rule_of_arrangement(
         return (), rows
     part = table.take(rows)
     lengths, normals = faces_of(query)
-    x, y = peg_places(part, query.toolkit, query.workpiece)
+    x, y = compute_peg_places(part, query.toolkit, query.workpiece)
     wall = [k for k, one in enumerate(carriers) if not one.contact.is_placed]
     stops = [k for k, one in enumerate(carriers) if one.contact.is_placed and one.travel is None]
     moving = [k for k, one in enumerate(carriers) if one.travel is not None]
@@ -226,17 +226,19 @@ def faces_of(query: Query) -> tuple[Array, Array]:
     lengths, normals = np.zeros(len(every.segments)), np.zeros((len(every.segments), 2))
     for face in every.faces:
         if isinstance(face.segment, Line):
-            lengths[face.number], normals[face.number] = face.segment.length, face.segment.normal()
+            lengths[face.number], normals[face.number] = face.segment.length, face.segment.compute_normal()
     return lengths, normals
 
 
 def find_contact_normals(query: Query, part: FixtureTable, peg: int) -> Array:
     """Outward unit normals (N, 2) at the contact of a peg, in the part's frame."""
-    known = Touched.of(query.workpiece, query.toolkit)
+    known = TouchableFeatures.from_workpiece(query.workpiece, query.toolkit)
     pose = np.column_stack([part.theta, part.position])
-    x, y = peg_places(part, query.toolkit, query.workpiece)
+    x, y = compute_peg_places(part, query.toolkit, query.workpiece)
     carriers = query.toolkit.find_peg_carriers(part.arrangement)
-    found = known.contact_matrices(np.stack([x, y], axis=2), pose, carriers, part.face.astype(np.int64))
+    found = known.compute_contact_matrices(
+        np.stack([x, y], axis=2), pose, carriers, part.face.astype(np.int64)
+    )
     return found.normals[:, peg]
 
 
@@ -244,7 +246,7 @@ def seated_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """From how wide open a vise catches the part, for measured sets: by the rule, and the most precise of the list."""
     out = []
     for row in rows:
-        query = make_set_query(set_named(row["set"]))
+        query = make_set_query(find_set(row["set"]))
         if query.toolkit.carriers[0].peg_radius == 0:
             continue
         result = answer(query, threads=1)

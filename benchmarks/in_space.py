@@ -21,7 +21,7 @@ from typing import Any, ClassVar
 from report import Column, Section
 from workhold.files.glb import make_bodies_glb
 from workhold.geometry.segment import Arc, Box
-from workhold.model.bodies import BodyKind, FixtureBody, Slab, rectangle
+from workhold.model.bodies import BodyKind, FixtureBody, Slab, make_rectangle
 
 BODIES, LEAST_FRAMES, NUMBER = 60, 30.0, 12
 SIZES = ((1000, 500), (390, 480))
@@ -68,9 +68,9 @@ def many_bodies() -> list[FixtureBody]:
     holes = tuple(
         (Arc((20.0 * column, 20.0 * row), 3.0, 0.0, pi, -1.0),) for column in range(16) for row in range(12)
     )
-    plate = Slab(rectangle(Box(-10, -10, 310, 230)), holes, -10.0, 0.0)
+    plate = Slab(make_rectangle(Box(-10, -10, 310, 230)), holes, -10.0, 0.0)
     bores = tuple((Arc((80.0 + 35 * k, 110.0), 12.0, 0.0, pi, -1.0),) for k in range(5))
-    part = Slab(rectangle(Box(53, 53, 247, 167)), bores, 0.0, 25.0)
+    part = Slab(make_rectangle(Box(53, 53, 247, 167)), bores, 0.0, 25.0)
     bodies = [FixtureBody("plate", BodyKind.PLATE, (plate,)), FixtureBody("part", BodyKind.PART, (part,))]
     for number in range(BODIES - len(bodies)):
         kind = (BodyKind.PEG, BodyKind.SUPPORT, BodyKind.CLAMP)[number % 3]

@@ -28,7 +28,7 @@ from fixture_sets import Judge, Listed, listed, missing, vise_of  # noqa: E402
 from strategies import random_outline  # noqa: E402
 from workhold import Query, Result, Vise, Workpiece  # noqa: E402
 from workhold.algebra import find_fixtures_by_algebra  # noqa: E402
-from workhold.algebra.table_two import table_two  # noqa: E402
+from workhold.algebra.table_two import tabulate_root_counts  # noqa: E402
 from workhold.files.part.finding import list_builtin_parts  # noqa: E402
 from workhold.model.notes import MoreSystems, UndecidedSystem  # noqa: E402
 
@@ -120,7 +120,7 @@ def compare(case: Case) -> Outcome:
 
 def print_table_two() -> bool:
     """Print Table 2; whether no resultant has a spurious root and every real root is a pose."""
-    rows = table_two(count=100)
+    rows = tabulate_root_counts(count=100)
     sys.stdout.write(
         "The paper's Table 2: degrees of the resultants in t, and roots of 100 random systems a row\n"
     )

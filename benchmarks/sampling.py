@@ -194,7 +194,7 @@ def main() -> None:
         start = perf_counter()
         vise = Vise(pitch=pitch, columns=columns, peg_radius=3)
         result = workhold.design(workhold.load(name), vise, types=["I"])
-        problem, wanted = Problem.of(result.query), expected(result)
+        problem, wanted = Problem.from_query(result.query), expected(result)
         chords = Chords.of(problem)
         say(f"{name:13} {pitch:5} {columns:2} | {len(result):6} {len(wanted):9} |")
         for count in SAMPLES:

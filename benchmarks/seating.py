@@ -62,21 +62,21 @@ def seconds(name: str, pitch: float, columns: int, peg_radius: float, many: int)
     """Task: the best fixtures' seatings, kernels compiled and loaded: the processor's seconds of one thread, seconds of two,
     those of cage and placing of one fixture, the number of patterns and of seats on average."""
     import workhold
-    from workhold.seating.solver import Solver
+    from workhold.seating.solver import SeatingSolver
 
     part = workhold.Workpiece.from_loops(name, NOTCH) if name == "notch" else workhold.load(source(name))
     vise = workhold.Vise(pitch=pitch, columns=columns, peg_radius=peg_radius)
     fixtures = list(workhold.design(part, vise, best=many))
-    Solver(part, vise).of(fixtures[0])
+    SeatingSolver(part, vise).solve(fixtures[0])
     out: dict[str, Any] = {}
     for key, threads, clock in (("alone", 1, process_time), ("together", 2, perf_counter)) * RUNS:
-        solver = Solver(part, vise)
+        solver = SeatingSolver(part, vise)
         start = clock()
-        told = solver.of_all(fixtures, False, threads)
+        told = solver.solve_all(fixtures, False, threads)
         out[key] = min(clock() - start, out.get(key, inf))
     start = perf_counter()
     for fixture in fixtures[:FEW]:
-        solver.of(fixture)
+        solver.solve(fixture)
     cage = (perf_counter() - start) / len(fixtures[:FEW])
     return {
         **out,

@@ -140,9 +140,9 @@ def contacts(*task: Any) -> int:
 
         return int(workhold.answer(query, threads=1).statistics["contacts_examined"])
     from workhold.contact.problem import Problem
-    from workhold.search.toolkit_search import contacts_of
+    from workhold.search.toolkit_search import count_problem_contacts
 
-    return contacts_of(Problem.of(query), 1)
+    return count_problem_contacts(Problem.from_query(query), 1)
 
 
 def design_seconds(*task: Any) -> dict[str, Any]:

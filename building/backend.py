@@ -34,8 +34,8 @@ from workhold.kernels.base.libraries import (  # noqa: E402
     KERNELS,
     ROOMS,
     build_libraries,
+    compute_source_hash,
     find_in,
-    source_hash,
 )
 
 __all__ = [
@@ -70,7 +70,7 @@ def are_libraries_built() -> bool:
 def compile_kernels() -> None:
     """Compile what is missing into the package, and remove the libraries of other sources."""
     for path in KERNELS.glob("kernels-*"):
-        if source_hash() not in path.name:
+        if compute_source_hash() not in path.name:
             path.unlink()
     try:
         build_libraries(ROOMS, KERNELS)

@@ -23,7 +23,7 @@ from OCP.IntCurvesFace import IntCurvesFace_ShapeIntersector
 from OCP.TopAbs import TopAbs_State
 
 from workhold.files.step.heights import HeightOutline
-from workhold.geometry.loop import list_loop_faces, loop_segments
+from workhold.geometry.loop import list_loop_faces, make_loop_segments
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.solid import Band
 
@@ -54,7 +54,7 @@ def mirrored(shape: Any) -> Any:
 
 def segments_of(outline: HeightOutline) -> list[tuple[Segment, Band | None]]:
     """All segments of an outline with their bands."""
-    every = [segment for loop in outline.vertices for segment in loop_segments(loop)]
+    every = [segment for loop in outline.vertices for segment in make_loop_segments(loop)]
     return list(zip(every, outline.bands, strict=True))
 
 
@@ -63,7 +63,7 @@ def listed(outline: HeightOutline) -> list[tuple[float, ...]]:
     found, bands = list[tuple[float, ...]](), iter(outline.bands)
     for loop in outline.vertices:
         own = list(islice(bands, len(loop)))
-        for face in list_loop_faces(loop_segments(loop), 0, own):
+        for face in list_loop_faces(make_loop_segments(loop), 0, own):
             band = own[face.segments[0]] or (-1.0, -1.0)
             # Half a circle is one face or two, by rounding.
             sweep = face.segment.half_extent if isinstance(face.segment, Arc) else 0.0
@@ -122,7 +122,7 @@ def band_faults(
             continue
         for share in np.linspace(-1.0, 1.0, count):
             place = float(share * reach)
-            (x, y), (nx, ny) = segment.at(place), segment.normal(place)
+            (x, y), (nx, ny) = segment.compute_point(place), segment.compute_normal(place)
             where = f"({x:.4f}, {y:.4f}), of a segment {segment.length:.4f} long with the band {band}"
             inner = runs_beside(shape, (x - BESIDE * nx, y - BESIDE * ny), low, high)
             outer = runs_beside(shape, (x + BESIDE * nx, y + BESIDE * ny), low, high)

@@ -13,7 +13,7 @@ from workhold import InputError, Workpiece
 from workhold.bending.elastic import ElasticBody, PointForces
 from workhold.bending.library import load_elements
 from workhold.bending.materials import ElasticMaterial
-from workhold.bending.meshing import PartMesh, curve, make_mesh
+from workhold.bending.meshing import PartMesh, curve_mesh, make_mesh
 from workhold.bending.shape import PrismShape
 
 Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ def refine_mesh(mesh: PartMesh) -> PartMesh:
     """A mesh with each element cut into eight."""
     fine = mesh.made.ngmesh.Copy()
     fine.Refine()
-    return curve(fine)
+    return curve_mesh(fine)
 
 
 def even(low: float, high: float, count: int = 24) -> Array:
@@ -82,5 +82,5 @@ def moved(body: ElasticBody, loads: list[PointForces], reads: list[PointForces])
     """What is read of the movement under some loads together."""
     together = sum(load.wrench for load in loads)
     assert np.abs(together).max() < 1e-6
-    surface = body.respond([sum(body.spread(load) for load in loads)])[0]
-    return [float((body.spread(read) * surface).sum()) for read in reads]
+    surface = body.respond([sum(body.compute_work(load) for load in loads)])[0]
+    return [float((body.compute_work(read) * surface).sum()) for read in reads]

@@ -54,7 +54,7 @@ def slides(part: Workpiece, face: int, center: tuple[float, float], radius: floa
     """Whether a peg can slide so far to both sides, on its face and clear of all others."""
     segments = {one.number: one.segment for one in part.faces}
     segment = segments[face]
-    place, unit = segment.parameter(center), 1.0
+    place, unit = segment.find_parameter(center), 1.0
     if isinstance(segment, Arc):
         unit = segment.radius + segment.sign * radius
     whole = isinstance(segment, Arc) and segment.is_full
@@ -62,7 +62,7 @@ def slides(part: Workpiece, face: int, center: tuple[float, float], radius: floa
         return False
     points = []
     for step in (place + np.linspace(-reach, reach, 2 * STEPS + 1) / unit).tolist():
-        (x, y), (nx, ny) = segment.at(step), segment.normal(step)
+        (x, y), (nx, ny) = segment.compute_point(step), segment.compute_normal(step)
         points.append((x + radius * nx, y + radius * ny))
     others = [
         distances(np.array(points), other).min() for number, other in segments.items() if number != face

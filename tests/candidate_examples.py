@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.listing.canonical_form import Candidates
+from workhold.listing.canonical_form import CandidateFixtures
 
 
-def candidates(count: int) -> Candidates:
+def candidates(count: int) -> CandidateFixtures:
     """The same Type I fixture some times over."""
 
     def repeated(values: object, kind: type = float) -> NDArray[np.generic]:
         return np.repeat(np.array([values], dtype=kind), count, axis=0)
 
-    return Candidates(
+    return CandidateFixtures(
         standing=repeated(2, int),
         feature=repeated([0, 1, 2, 3], int),
         column=repeated([0, 1, 0, 0], int),

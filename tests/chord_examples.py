@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from strategies import random_row
 from workhold.kernels.base.tables import CURVE_REALS, FROM, TANGENT_FROM, TANGENT_TO, TO
-from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.chord.evaluation import chord, write_curve
+from workhold.kernels.chord.coincidences import NONE, find_coincidence
+from workhold.kernels.chord.evaluation import compute_chord, write_curve
 from workhold.kernels.chord.intervals import ALIVE, MOST_EVENTS, MOST_RANGES, write_chord_intervals
 from workhold.kernels.curves.sliding_pairs import MOST_SLIDES, write_sliding_pairs
 
@@ -189,7 +189,7 @@ SPECIAL = (
 
 def is_rounded_coincidence(a: Array, b: Array, d: float) -> bool:
     """Whether a chord is at a coincidence up to rounding only: its exact motion there is not that of the search's part."""
-    if coincidence(a, b, d)[0] == NONE:
+    if find_coincidence(a, b, d)[0] == NONE:
         return False
     p, q, size = [Fraction(float(v)) for v in a], [Fraction(float(v)) for v in b], Fraction(float(d))
     dx, dy = q[1] - p[1], q[2] - p[2]
@@ -247,7 +247,7 @@ def curve_row(
 
 def turn_at(a: Array, b: Array, d: float, alpha: float, branch: float) -> float:
     """X, the cross product of the two contact directions."""
-    c = chord(a, b, d, alpha, branch)
+    c = compute_chord(a, b, d, alpha, branch)
     return c[2] * c[5] - c[3] * c[4]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.algebra.conditions import wrench_minors
+from workhold.algebra.conditions import compute_wrench_minors
 from workhold.conventions import LEAST_SPAN
 
 Array = NDArray[np.float64]
@@ -13,8 +13,8 @@ Array = NDArray[np.float64]
 
 def null_vectors(points: Array, normals: Array, length: float) -> Array:
     """Null vectors scaled to sum 1, (N, 4); all -1 where the wrenches do not span the space. Parameters as for
-    ``wrench_minors``."""
-    out = wrench_minors(points, normals, length)
+    ``compute_wrench_minors``."""
+    out = compute_wrench_minors(points, normals, length)
     total = out.sum(axis=1, keepdims=True)
     spans = np.abs(total) > LEAST_SPAN
     return np.asarray(np.where(spans, out / np.where(spans, total, 1.0), -1.0))

@@ -23,10 +23,10 @@ os.environ.pop("PYTHONUNBUFFERED", None)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 from workhold.errors import InputError
-from workhold.kernels.base.libraries import ROOMS, build_libraries, is_built, library_folder
+from workhold.kernels.base.libraries import ROOMS, build_libraries, find_library_folder, is_built
 
 # Numba keeps the inner kernels that tests call; its own folders would keep those of sources long replaced.
-os.environ["NUMBA_CACHE_DIR"] = str(library_folder() / "inner")
+os.environ["NUMBA_CACHE_DIR"] = str(find_library_folder() / "inner")
 
 import pytest
 from hypothesis import HealthCheck, settings

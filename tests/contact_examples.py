@@ -10,8 +10,8 @@ import numpy as np
 from attrs import define
 
 from workhold.kernels.base.tables import Lattice, Limits, Setting
-from workhold.kernels.contact.record import WORK_LENGTH, touch
-from workhold.kernels.contact.rules import minors, outward_normal
+from workhold.kernels.contact.record import WORK_LENGTH, write_contact_equations
+from workhold.kernels.contact.rules import compute_outward_normal, write_minors
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -67,20 +67,22 @@ class Held:
 
     def normals(self, points: Array) -> Array:
         """Outward unit normals (4, 2) where the pegs' centres are, on their features or beside them."""
-        found = np.array([outward_normal(row, *point) for row, point in zip(self.rows, points, strict=True)])
+        found = np.array(
+            [compute_outward_normal(row, *point) for row, point in zip(self.rows, points, strict=True)]
+        )
         return np.asarray(found / np.hypot(found[:, 0], found[:, 1])[:, None])
 
     def work(self) -> tuple[Array, Array]:
         """The kernels' work space and centres, with the contacts in place."""
         work, points = np.zeros((WORK_LENGTH, 4)), np.zeros((4, 2))
         work[:4] = self.unknowns, self.slides, [o[0] for o in self.offsets], [o[1] for o in self.offsets]
-        touch(RECORD, self.rows, self.length, work, points)
+        write_contact_equations(RECORD, self.rows, self.length, work, points)
         return work, points
 
     def forces(self, points: Array, psi: float) -> tuple[Array, float, float, float]:
         """Signed minors, the sum of their sizes, the push of the standing pegs and the gap of pegs about there."""
         normals, null = self.normals(points), np.zeros(4)
-        size = minors(points, normals, self.length, null)
+        size = write_minors(points, normals, self.length, null)
         null *= 1.0 if null.sum() > 0 else -1.0
         x = np.array([cos(psi), sin(psi)])
         along = points @ x

@@ -12,11 +12,17 @@ from numpy.typing import NDArray
 
 from chord_examples import KINDS, random_chord
 from strategies import random_row
-from workhold.contact.curves import CurveTable, LatticeSteps, curve_table
+from workhold.contact.curves import CurveTable, LatticeSteps, make_curve_table
 from workhold.kernels.base.tables import COLUMN_STEP, EDGE_LENGTH, LENGTH, PIECE_LENGTH, ROW_STEP
 from workhold.kernels.chord.evaluation import HEIGHT, POSITION
 from workhold.kernels.curves.pieces import write_pieces
-from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH, crossings, value_turned
+from workhold.kernels.curves.roots import (
+    MOST_ROOTS,
+    STACK_DEPTH,
+    STACK_LENGTH,
+    evaluate_at_angle,
+    write_crossings,
+)
 
 Array = NDArray[np.float64]
 
@@ -40,7 +46,7 @@ def random_table(random: Random, count: int = 4, first: str = "") -> tuple[Array
     if first:
         rows[0] = random_row(random, first)
     features = np.array(rows)
-    return features, curve_table(features, lattice(random.uniform(8, 14), 2, 2))
+    return features, make_curve_table(features, lattice(random.uniform(8, 14), 2, 2))
 
 
 def special_table(
@@ -49,7 +55,7 @@ def special_table(
     """Two features in a special position (see ``chord_examples.SPECIAL``) and their chords on a lattice of that pitch."""
     a, b, d = make(random)
     features = np.array([a, b])
-    return features, curve_table(features, lattice(d / random.choice([1, 1, 2]), 2, 2))
+    return features, make_curve_table(features, lattice(d / random.choice([1, 1, 2]), 2, 2))
 
 
 def steps_of(table: CurveTable) -> LatticeSteps:
@@ -83,7 +89,7 @@ def pieces_of(features: Array, table: CurveTable, low: float, high: float, mode:
     return pieces[:count].copy()
 
 
-def cross(first, second, features, table, mode, offset, period, flat=0.0, kernel=crossings) -> Array:
+def cross(first, second, features, table, mode, offset, period, flat=0.0, kernel=write_crossings) -> Array:
     """Roots (N, 3) of two pieces, found by a form of the kernel: orientation, radius and multiple of the period."""
     stack, roots = np.empty((STACK_DEPTH, STACK_LENGTH)), np.empty((MOST_ROOTS, 3))
     number = kernel(first, second, features, table.curves, mode, offset, period, flat, stack, roots)
@@ -97,7 +103,7 @@ def sampled(psis, curve, features, curves, mode):
     out = np.empty((psis.shape[0], 4))
     for k in range(psis.shape[0]):
         psi = psis[k]
-        point = value_turned(psi, cos(psi), sin(psi), curve, features, curves, mode)
+        point = evaluate_at_angle(psi, cos(psi), sin(psi), curve, features, curves, mode)
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = point
     return out
 

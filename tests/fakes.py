@@ -18,7 +18,7 @@ from workhold.model.quality import (
     PENALTY,
     WARNINGS,
 )
-from workhold.model.search_report import Proof, Undecided
+from workhold.model.search_report import ProofReport, UndecidedCandidate
 
 PLATE = [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, -0.2]], [[20, 20, -1], [30, 20, -1]]]
 
@@ -67,10 +67,12 @@ def fake_quality(null_vector: NDArray[np.float64], random: np.random.Generator) 
     return quality
 
 
-def fake_proof(undecided: int, **changes: int) -> Proof:
+def fake_proof(undecided: int, **changes: int) -> ProofReport:
     """An account that adds up, with so many undecided candidates on faces of the plate."""
     lost = tuple(
-        Undecided("II" if k % 2 else "I", (0, 1, 2, 4), (0, 1, 0, -k), (0, -3, 1, k), 7.25 * k, f"reason {k}")
+        UndecidedCandidate(
+            "II" if k % 2 else "I", (0, 1, 2, 4), (0, 1, 0, -k), (0, -3, 1, k), 7.25 * k, f"reason {k}"
+        )
         for k in range(undecided)
     )
     counts = {
@@ -80,4 +82,4 @@ def fake_proof(undecided: int, **changes: int) -> Proof:
         "escalated": 32 + undecided,
     } | changes
     candidates = counts["discarded_by_bound"] + counts["verified"] + undecided
-    return Proof(candidates=candidates, undecided=lost, **counts)
+    return ProofReport(candidates=candidates, undecided=lost, **counts)

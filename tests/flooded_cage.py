@@ -78,7 +78,7 @@ class Flood:
             half, count = (
                 (face.half_extent, 1) if isinstance(face, Line) else (face.half_sweep, self.chords(face))
             )
-            points = np.array([face.at(t) for t in np.linspace(-half, half, count + 1)])
+            points = np.array([face.compute_point(t) for t in np.linspace(-half, half, count + 1)])
             starts.append(points[:-1] - self.obstacle.center)
             ends.append(points[1:] - self.obstacle.center)
         return np.vstack(starts), np.vstack(ends)

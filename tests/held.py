@@ -93,7 +93,7 @@ def contacts(fixture: Fixture, workpiece: Workpiece, radius: float) -> tuple[Arr
         x, y = peg.x - fixture.pose.x, peg.y - fixture.pose.y
         center = (cos(angle) * x + sin(angle) * y, cos(angle) * y - sin(angle) * x)
         segment = segments[peg.face]
-        normal = np.array(segment.normal(segment.parameter(center)))
+        normal = np.array(segment.compute_normal(segment.find_parameter(center)))
         normals.append(normal)
         points.append(np.array(center) - radius * normal)
     return np.array(points), np.array(normals)

@@ -8,7 +8,7 @@ from flint import arb
 
 from workhold import Fixture, Query
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.search_report import Undecided
+from workhold.model.search_report import UndecidedCandidate
 from workhold.verification.contacts import BallPose
 from workhold.verification.judging import Rank, rank
 from workhold.verification.repeats import KnownFixtures
@@ -36,6 +36,6 @@ def place_in_order(fixture: Fixture, toolkit: Toolkit) -> Rank:
     return rank(fixture, rules_in(toolkit))
 
 
-def faults_of(entries: Sequence[Undecided], query: Query) -> list[str]:
+def faults_of(entries: Sequence[UndecidedCandidate], query: Query) -> list[str]:
     """What is wrong with undecided cases."""
     return list(find_undecided_faults(entries, query))

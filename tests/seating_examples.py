@@ -18,9 +18,9 @@ from workhold.geometry.segment import Line
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import CONFIG, PAIR, PEG, PIECE
 from workhold.model.seating import Seating
-from workhold.seating.closing import Closing
-from workhold.seating.equilibria import Equilibria, equilibria
-from workhold.seating.solver import Solver
+from workhold.seating.closing import ClosingMotion
+from workhold.seating.equilibria import Equilibria, find_equilibria
+from workhold.seating.solver import SeatingSolver
 from workhold.seating.two_contact_curves import TwoContactCurves
 
 Array = NDArray[np.float64]
@@ -49,11 +49,11 @@ def case_fixture(case: dict[str, Any]) -> tuple[Workpiece, Vise, Fixture]:
 
 
 @cache
-def solved(number: int) -> tuple[Solver, Fixture, Seating]:
+def solved(number: int) -> tuple[SeatingSolver, Fixture, Seating]:
     """A sampled case, solved once for all tests."""
     part, vise, fixture = case_fixture(SAMPLED[number])
-    solver = Solver(part, vise)
-    return solver, fixture, solver.of(fixture)
+    solver = SeatingSolver(part, vise)
+    return solver, fixture, solver.solve(fixture)
 
 
 def moved(fixture: Fixture, order: list[int], half_turn: bool, shift: tuple[float, float]) -> Fixture:
@@ -73,14 +73,14 @@ def moved(fixture: Fixture, order: list[int], half_turn: bool, shift: tuple[floa
     return Fixture("I", tuple(pegs), pose, fixture.travel, {})
 
 
-def equilibria_of(closing: Closing) -> Equilibria:
+def equilibria_of(closing: ClosingMotion) -> Equilibria:
     """Where the pegs of a closing hold the part."""
-    return equilibria(closing.boundary, closing.pattern, closing.size)
+    return find_equilibria(closing.boundary, closing.pattern, closing.size)
 
 
-def two_contacts_of(closing: Closing) -> TwoContactCurves:
+def two_contacts_of(closing: ClosingMotion) -> TwoContactCurves:
     """Where two contacts of a closing hold the part, each about a single angle."""
-    return TwoContactCurves.of(closing.boundary, closing.pattern)
+    return TwoContactCurves.from_pattern(closing.boundary, closing.pattern)
 
 
 class Obstacle:
@@ -142,7 +142,7 @@ class Obstacle:
                 else touched(face, face.center + np.array([cos(lowest), sin(lowest)]))
             )
             # A whole circle, a hole, has no corner and never is the lowest.
-            for x, y in [np.array(face.at(-face.half_extent)), *low] - self.center:
+            for x, y in [np.array(face.compute_point(-face.half_extent)), *low] - self.center:
                 up = sin(config[0]) * x + cos(config[0]) * y
                 out.append(
                     (config[2] + up, np.array([cos(config[0]) * x - sin(config[0]) * y, 0.0, 1.0, 0.0]))
@@ -157,13 +157,13 @@ class Obstacle:
 def touched(face: Any, point: Array) -> list[Array]:
     """The nearest point of a face, inside its ends or at one."""
     if isinstance(face, Line):
-        t = min(max(face.parameter(tuple(point)), -face.half_extent), face.half_extent)
-        return [np.array(face.at(t))]
+        t = min(max(face.find_parameter(tuple(point)), -face.half_extent), face.half_extent)
+        return [np.array(face.compute_point(t))]
     angle = atan2(point[1] - face.center[1], point[0] - face.center[0]) - face.mid_angle
     angle = (angle + pi) % (2 * pi) - pi
     if abs(angle) <= face.half_sweep:
-        return [np.array(face.at(angle))]
-    return [np.array(face.at(face.half_sweep if angle > 0 else -face.half_sweep))]
+        return [np.array(face.compute_point(angle))]
+    return [np.array(face.compute_point(face.half_sweep if angle > 0 else -face.half_sweep))]
 
 
 def closed(obstacle: Obstacle, config: Array, size: float, stop: float) -> Array:

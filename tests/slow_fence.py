@@ -75,10 +75,12 @@ def jumps(part: Workpiece, low: float, high: float) -> Iterator[tuple[float, Poi
 
 def distances(points: Array, face: Segment) -> Array:
     """Distances (N,) of points (N, 2) from a face."""
-    ends = [np.hypot(*(points - np.array(face.at(way * face.half_extent))).T) for way in (-1.0, 1.0)]
+    ends = [
+        np.hypot(*(points - np.array(face.compute_point(way * face.half_extent))).T) for way in (-1.0, 1.0)
+    ]
     if isinstance(face, Line):
         from_middle, along = points - np.array(face.middle), np.array(face.tangent)
-        s, across = from_middle @ along, np.abs(from_middle @ np.array(face.normal()))
+        s, across = from_middle @ along, np.abs(from_middle @ np.array(face.compute_normal()))
     else:
         from_middle = points - np.array(face.center)
         s = (np.arctan2(from_middle[:, 1], from_middle[:, 0]) - face.mid_angle + pi) % tau - pi
@@ -110,10 +112,10 @@ def touches(
         center = (float(start[0] + s * along[0]), float(start[1] + s * along[1]))
         near = sorted((float(distances(np.array([center]), face)[0]), k) for k, face in enumerate(faces))
         segment, number = faces[near[0][1]], part.faces[near[0][1]].number
-        place = segment.parameter(center)
+        place = segment.find_parameter(center)
         slack = (segment.half_extent - abs(place)) * (segment.radius if isinstance(segment, Arc) else 1.0)
-        normal = segment.normal(place)
-        foot = segment.at(place)
+        normal = segment.compute_normal(place)
+        foot = segment.compute_point(place)
         outward = (center[0] - foot[0]) * normal[0] + (center[1] - foot[1]) * normal[1]
         if slack > 1e-7 and near[1][0] > radius + 1e-7 and outward > 0:
             found.append(Touch(center, normal, number))

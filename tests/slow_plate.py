@@ -46,7 +46,7 @@ class Carrier:
         """The carrier of a peg of some radius."""
         segment = face.segment
         if isinstance(segment, Line):
-            normal = np.array(segment.normal())
+            normal = np.array(segment.compute_normal())
             return cls(face, True, normal, float(normal @ np.array(segment.middle)) + radius, 1.0)
         return cls(
             face, False, np.array(segment.center), segment.radius + segment.sign * radius, segment.sign
@@ -180,7 +180,7 @@ class Searched:
             carrier.face.segment,
             carrier.normal(point),
         )
-        if abs(segment.parameter(place)) > segment.half_extent + 1e-9:
+        if abs(segment.find_parameter(place)) > segment.half_extent + 1e-9:
             return False
         for face in (part or self.part).faces:
             apart = distances(point[None], face.segment)[0]
@@ -188,7 +188,7 @@ class Searched:
                 return False
             if apart < radius + MARGINAL:
                 most = face.segment.half_extent
-                there = face.segment.normal(min(max(face.segment.parameter(place), -most), most))
+                there = face.segment.compute_normal(min(max(face.segment.find_parameter(place), -most), most))
                 if float(normal @ np.array(there)) < 1.0 - 1e-9:
                     return False
         return True

@@ -49,7 +49,7 @@ def program_of(rows: list[Row], clearance: float = 1.0, rapid: str = "straight")
         clearance=clearance,
         rapid=rapid,  # type: ignore[arg-type]
         tools=TOOLS,
-        moves=Moves.of_rows(moves),
+        moves=Moves.from_rows(moves),
     )
 
 
@@ -202,7 +202,7 @@ def slow_clearance(fixture: Fixture, toolkit: Toolkit, low: list[tuple[Array, fl
                 continue
             from_x, from_y = peg.x, peg.y
             if carrier.on is not None and carrier.travel is not None and carrier.travel.most is not None:
-                from_x, from_y = carrier.place(peg.column, peg.row)
+                from_x, from_y = carrier.compute_hole_center(peg.column, peg.row)
             dx, dy = from_x - peg.x, from_y - peg.y
             long = dx * dx + dy * dy
             share = ((u - peg.x) * dx + (v - peg.y) * dy) / long if long else np.zeros(len(u))

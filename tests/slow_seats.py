@@ -89,7 +89,7 @@ def rings(part: Workpiece):
         for one in loop:
             many = 400 if isinstance(one, Arc) else 1
             way = one.sign if isinstance(one, Arc) else 1.0
-            points += [one.at(way * one.half_extent * (2 * k / many - 1)) for k in range(many)]
+            points += [one.compute_point(way * one.half_extent * (2 * k / many - 1)) for k in range(many)]
         loops.append(points)
     return loops[0], loops[1:]
 

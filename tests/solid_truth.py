@@ -27,9 +27,9 @@ from step_shapes import cylinder
 
 from workhold import Fixture, Workpiece
 from workhold.files.step.library import list_sub_shapes
-from workhold.geometry.loop import loop_segments
-from workhold.geometry.segment import Segment, segment_rows
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.geometry.loop import make_loop_segments
+from workhold.geometry.segment import Segment, make_segment_rows
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 
 __all__ = ["NEAR", "border_faults", "fixture_faults", "off_region", "section_faults", "section_points"]
 
@@ -42,12 +42,12 @@ SHRUNK, LEFT = 2e-6, 5e-7
 
 def segments_of(loops: Sequence[Array]) -> list[Segment]:
     """All segments of some loops of vertices."""
-    return [segment for loop in loops for segment in loop_segments(loop)]
+    return [segment for loop in loops for segment in make_loop_segments(loop)]
 
 
 def off_region(points: Array, rows: Array) -> Array:
     """How far points (N, 2) lie outside a region in mm, 0 inside."""
-    away = np.asarray(outline_distances(np.ascontiguousarray(points), rows))
+    away = np.asarray(measure_outline_distances(np.ascontiguousarray(points), rows))
     inside = np.array([bool(is_inside(x, y, rows)) for x, y in points.tolist()])
     return np.where(inside, 0.0, away)
 
@@ -74,7 +74,7 @@ def section_faults(shape: Any, loops: Sequence[Array], top: float, heights: int)
     loops : of U(0, top), vertices (N, 3).
     heights : how many are looked at.
     """
-    rows = segment_rows(segments_of(loops))
+    rows = make_segment_rows(segments_of(loops))
     faults = []
     for k in range(heights):
         z = top * (k + 0.5) / heights
@@ -110,7 +110,7 @@ def border_faults(shape: Any, loops: Sequence[Array], top: float, prismatic: boo
     for segment in segments_of(loops):
         for share in (-0.93, -0.31, 0.0, 0.57, 1.0):
             place = share * segment.half_extent
-            (x, y), (nx, ny) = segment.at(place), segment.normal(place)
+            (x, y), (nx, ny) = segment.compute_point(place), segment.compute_normal(place)
             if (away := distance(upright_line(x, y, 0.0, below), shape)) > NEAR:
                 faults.append(f"nothing over the border at ({x:.6g}, {y:.6g}): {away:.3g} mm")
             # Beside an inner corner another piece of the border may be near.
@@ -137,8 +137,10 @@ def fixture_faults(shape: Any, part: Workpiece, fixture: Fixture, toolkit: Any) 
             yield f"{peg.hole} touches face {peg.face}, which has no band"
             continue
         x, y = fixture.pose.inverse.apply(peg.x, peg.y)
-        place = min(max(face.segment.parameter((x, y)), -face.segment.half_extent), face.segment.half_extent)
-        (px, py), (nx, ny) = face.segment.at(place), face.segment.normal(place)
+        place = min(
+            max(face.segment.find_parameter((x, y)), -face.segment.half_extent), face.segment.half_extent
+        )
+        (px, py), (nx, ny) = face.segment.compute_point(place), face.segment.compute_normal(place)
         if peg.is_on_wall:
             nx, ny = wall_normal(fixture, (nx, ny))
             body, smaller = wall(px, py, nx, ny, 0.0, top), wall(px, py, nx, ny, SHRUNK, top + room)

@@ -120,7 +120,7 @@ def vises(draw: st.DrawFn, max_columns: int = 3) -> Vise:
 
 
 def random_row(random: Random, kind: str) -> tuple[float, ...]:
-    """A random feature row (see ``segment_rows``) within some 20 mm of (0, 0); ``kind`` is line, arc or circle."""
+    """A random feature row (see ``make_segment_rows``) within some 20 mm of (0, 0); ``kind`` is line, arc or circle."""
     x, y, angle = random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-pi, pi)
     if kind == "line":
         return (0.0, x, y, cos(angle), sin(angle), random.uniform(2.0, 25.0), 0.0, 1.0, 0.0, 0.0)

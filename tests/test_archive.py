@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from workhold import archive
-from workhold.archive import ArchiveWriter, Column, is_archive, map_archive
+from workhold.archive import ArchiveWriter, ColumnFormat, is_archive, map_archive
 from workhold.errors import InputError
 
-COLUMNS = {"a": Column("<f8", (2,)), "b": Column("|i1"), "c": Column("<i4", (4,))}
+COLUMNS = {"a": ColumnFormat("<f8", (2,)), "b": ColumnFormat("|i1"), "c": ColumnFormat("<i4", (4,))}
 TEXT = '{"head": "ä"}'
 
 
@@ -180,7 +180,7 @@ def test_a_text_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_members_that_overlap_are_refused(tmp_path: Path) -> None:
     """Two names for one place, as in bombs that need little room."""
     path = zipped(tmp_path / "a.npz", [*GOOD.items(), ("head.json", TEXT.encode())])
-    names = {"a.npy": Column("<f8", (2,)), "d.npy": Column("<f8", (2,))}
+    names = {"a.npy": ColumnFormat("<f8", (2,)), "d.npy": ColumnFormat("<f8", (2,))}
     with zipfile.ZipFile(path, "a") as file:
         first = file.getinfo("a.npy")
         again = zipfile.ZipInfo("d.npy")

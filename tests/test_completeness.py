@@ -18,7 +18,7 @@ from workhold.algebra import find_fixtures_by_algebra
 from workhold.completeness import find_other_entries
 from workhold.files.result.writer import make_notes_entry, write_result
 from workhold.model.notes import KeptBest, Stopped
-from workhold.model.search_report import Proof, Undecided
+from workhold.model.search_report import ProofReport, UndecidedCandidate
 from workhold.search.seated import answer_with_seating
 from workhold.verification import Verification
 
@@ -118,9 +118,11 @@ def test_undecided_orientations_go_round(whole: Result) -> None:
     """Just below a turn is just above none; farther off is another candidate."""
     assert whole.proof is not None
 
-    def named(theta: float) -> Proof:
-        entry = Undecided("I", (0, 1, 2, 3), (0, 1, 0, 1), (0, 0, 1, 1), theta, "its rows are parallel", 1e-9)
-        return Proof(1, 1, 0, 0, 1, (entry,))
+    def named(theta: float) -> ProofReport:
+        entry = UndecidedCandidate(
+            "I", (0, 1, 2, 3), (0, 1, 0, 1), (0, 0, 1, 1), theta, "its rows are parallel", 1e-9
+        )
+        return ProofReport(1, 1, 0, 0, 1, (entry,))
 
     assert not list(find_other_entries(named(360 - 1e-9), named(1e-9)))
     assert len(list(find_other_entries(named(0.5), named(0.6)))) == 1

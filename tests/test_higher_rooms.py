@@ -93,6 +93,6 @@ def test_methods_are_typed(tmp_path: Path) -> None:
     (tmp_path / "asked.py").write_text(textwrap.dedent(code))
     checked = [sys.executable, "-m", "mypy", "--config-file", "", "--follow-imports=silent", "asked.py"]
     told = subprocess.run(checked, capture_output=True, text=True, cwd=tmp_path, check=False).stdout
-    for kind in ("presenting.papers.Picture", "support_triples.Supports", "notebook.WhyNone"):
+    for kind in ("presenting.papers.Picture", "support_triples.Supports", "notebook.NoFixtureNote"):
         assert kind in told
     assert 'Unexpected keyword argument "papers"' in told

@@ -24,7 +24,7 @@ from workhold.files.part.load import read_workpiece
 from workhold.limits import choose_thread_count
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.web.worker import explain_task_error
 
 Loops = list[list[list[float]]]
@@ -69,7 +69,7 @@ from workhold.model.requirements import Load
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
 from workhold.limits import choose_thread_count
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.files.input_forms import check_toolkit_entries
 from workhold.files.toolkit_file import make_described_toolkit
 
@@ -77,7 +77,7 @@ for searched, loops, vise in json.load(sys.stdin):
     try:
         part = Workpiece.from_loops("part", loops)
         held = make_described_toolkit("vise", check_toolkit_entries({"unit": "mm", **vise})).toolkit
-        print(len(design(part, held)) if searched else Problem.of(Query(part, held)))
+        print(len(design(part, held)) if searched else Problem.from_query(Query(part, held)))
     except InputError as error:
         print(error)
 """
@@ -235,7 +235,7 @@ def test_the_largest_load_is_answered_without_a_warning() -> None:
 def load_cases_of(**asked: float) -> object:
     """Load cases of a fixture."""
     result = answer(Query(load("widget"), Vise(pitch=8, columns=1, peg_radius=3), best=1))
-    return load_cases(result[0], result.workpiece, result.toolkit, [Load(moment=1.0)], **asked)  # type: ignore[arg-type]
+    return compute_load_cases(result[0], result.workpiece, result.toolkit, [Load(moment=1.0)], **asked)  # type: ignore[arg-type]
 
 
 def test_the_page_of_limits_says_what_the_code_enforces() -> None:

@@ -17,7 +17,7 @@ from packaging.specifiers import SpecifierSet
 
 import backend
 from workhold.errors import InputError
-from workhold.kernels.base.libraries import library_name
+from workhold.kernels.base.libraries import make_library_name
 from workhold.version import __version__
 
 ROOT = Path(__file__).parent.parent
@@ -166,7 +166,7 @@ def test_libraries_of_other_sources_are_removed(
 ) -> None:
     """Those of these sources stay."""
     monkeypatch.setattr(backend, "KERNELS", tmp_path)
-    ours = tmp_path / library_name("base", "so")
+    ours = tmp_path / make_library_name("base", "so")
     for path in (ours, tmp_path / "kernels-base-0123.linux_x86_64.so"):
         path.touch()
     backend.compile_kernels()

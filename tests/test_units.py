@@ -18,15 +18,15 @@ from workhold.units import INCH, MILLIMETRE, find_unit
 @given(st.floats(-5000, 5000))
 def test_numbers_are_right_to_half_their_last_digit(unit, length):
     """Every unit shows a length to 5 µm or better, as a fixed number of decimals or without its idle zeros."""
-    for text in (unit.number(length), unit.format_short_length(length)):
+    for text in (unit.format_number(length), unit.format_short_length(length)):
         assert float(text) * unit.millimetres == pytest.approx(length, abs=0.005)
-    assert len(unit.number(length).partition(".")[2]) == unit.decimals
-    assert unit.format_length(length) == f"{unit.number(length)} {unit.abbreviation}"
+    assert len(unit.format_number(length).partition(".")[2]) == unit.decimals
+    assert unit.format_length(length) == f"{unit.format_number(length)} {unit.abbreviation}"
 
 
 def test_there_is_no_negative_zero():
     """A length that rounds to nothing has no sign."""
-    assert INCH.number(-1e-9) == "0.0000"
+    assert INCH.format_number(-1e-9) == "0.0000"
     assert MILLIMETRE.format_short_length(-1e-9) == "0"
 
 

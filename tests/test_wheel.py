@@ -19,7 +19,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import workhold
-from workhold.kernels.base.libraries import ROOMS, library_name
+from workhold.kernels.base.libraries import ROOMS, make_library_name
 
 ROOT = Path(workhold.__file__).parents[2]
 VISE = ("--peg-radius", "3", "--threads")
@@ -210,7 +210,7 @@ def test_a_machine_without_a_compiler_makes_the_demo(without_numba, tmp_path):
 def test_libraries_fit_every_c_library_of_linux(without_numba, room):
     """It names no library that it needs, and no version of what it calls: glibc's old ones and musl have it all."""
     folder = next(Path(without_numba["VIRTUAL_ENV"]).glob("lib/python3*/site-packages/workhold/kernels"))
-    library = folder / library_name(room, "so")
+    library = folder / make_library_name(room, "so")
     dynamic = subprocess.run(["readelf", "-dV", library], capture_output=True, text=True, check=True).stdout
     assert "STRTAB" in dynamic
     assert "NEEDED" not in dynamic and "GLIBC" not in dynamic

@@ -50,18 +50,18 @@ def seats(part: str, pitch: float, columns: int, peg_radius: float, many: int) -
     """Task: figures of the seats of the best fixtures, and a picture of those of the first."""
     import workhold
     from workhold.drawing.seats import draw_seats
-    from workhold.seating.solver import Solver
+    from workhold.seating.solver import SeatingSolver
 
     workpiece, vise = loaded(part, pitch, columns, peg_radius)
     result = workhold.design(workpiece, vise, best=many)
     fixtures = list(result)
-    Solver(workpiece, vise).of(fixtures[0])
-    solver = Solver(workpiece, vise)
+    SeatingSolver(workpiece, vise).solve(fixtures[0])
+    solver = SeatingSolver(workpiece, vise)
     start = process_time()
-    told = solver.of_all(fixtures, False, 1)
+    told = solver.solve_all(fixtures, False, 1)
     spent = process_time() - start
     openings = [inf if one.capture_opening is None else one.capture_opening for one in told]
-    wrong = [len(one.wrong_within()) for one in told]
+    wrong = [len(one.list_wrong_seats()) for one in told]
     middle = float(np.median(openings))
     return {
         "fixtures": len(told),

@@ -94,12 +94,12 @@ def grown_features(name: str, peg_radius: float) -> str:
     """A workpiece with its features grown by the radius of a peg, and a peg on each."""
     part = workhold.load(name)
     scene = Scene.make_page(CARD, "features grown by the radius of the pegs")
-    bounds = Box(*part.bounds).grown(2 * peg_radius)
+    bounds = Box(*part.bounds).grow(2 * peg_radius)
     view = View.fit_box(bounds, Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE))
     scene.add_path(make_outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
     for feature in list_contact_features(part, peg_radius):
         scene.add_path(make_outline_path([[feature.segment]], view).rstrip("Z"), "#b3122a", 1.6)
-        middle = view(feature.segment.at(0.0))
+        middle = view(feature.segment.compute_point(0.0))
         scene.add_circle(middle, peg_radius * view.scale, "none", GREY, 0.8)
         scene.add_circle(middle, 1.8, "#b3122a")
     return scene.to_svg()

@@ -69,8 +69,8 @@ def timed(part: str, pitch: float, columns: int, peg_radius: float = PEG_RADIUS)
 
         return call
 
-    Problem.of = watched("features", Problem.of)  # type: ignore[method-assign]
-    ToolkitSearch.of = watched("curves", ToolkitSearch.of)  # type: ignore[method-assign]
+    Problem.from_query = watched("features", Problem.from_query)  # type: ignore[method-assign]
+    ToolkitSearch.from_problem = watched("curves", ToolkitSearch.from_problem)  # type: ignore[method-assign]
     vars(design)["run_blocks"] = watched("searching", design.run_blocks)
     for stage, name in (("deciding", "take"), ("deciding", "finish_deciding"), ("measuring", "measure")):
         setattr(ResultCollector, name, watched(stage, getattr(ResultCollector, name)))

@@ -8,7 +8,7 @@ from typing import Any
 
 from paper.document import Block, Figures, Heading, Inline, Marked, Paragraph, Table
 from paper.elimination import CASES, factors, random_system
-from workhold.algebra.table_two import table_two
+from workhold.algebra.table_two import tabulate_root_counts
 
 NAME, TITLE = "table-two", "Degrees of the resultants"
 SECONDS, QUICK_SECONDS = 15.0, 4.0
@@ -43,7 +43,7 @@ def measure(data: dict[str, Any], quick: bool) -> Iterator[tuple[float, str]]:
     yield 0.2, "all complex roots"
     counted = {
         (row.left, -1 if row.type == "II" else row.right): row
-        for row in table_two(count=QUICK_SYSTEMS if quick else SYSTEMS)
+        for row in tabulate_root_counts(count=QUICK_SYSTEMS if quick else SYSTEMS)
     }
     for kind, *contacts, degree in PRINTED:
         case = case_of(kind, contacts[1], contacts[3])

@@ -78,12 +78,12 @@ def clamp_counts(part: Any, pitch: float, gap: float) -> tuple[dict[str, int], A
 
 def naive_roots(tolerance: float) -> Callable[..., Any]:
     """In place of the algebra's search for orientations: roots in doubles, real if they are within a tolerance."""
-    from workhold.algebra.resultants import coefficients
+    from workhold.algebra.resultants import compute_resultant_coefficients
 
     def orientations(contacts: Any, case: Any, sectors: Any) -> tuple[Any, Any, Any]:
         """Indices of systems and orientations; none is undecided."""
         owners, found = [np.zeros(0, np.int64)], [np.zeros(0, np.complex128)]
-        for k, row in enumerate(coefficients(contacts, case)[0]):
+        for k, row in enumerate(compute_resultant_coefficients(contacts, case)[0]):
             if np.abs(row).max() > 0.0:
                 roots = np.roots(row[::-1])
                 real = roots[np.abs(np.abs(roots) - 1.0) <= tolerance]
@@ -123,7 +123,7 @@ def what_sampling_misses(name: str, pitch: float, columns: int, samples: tuple[i
     """Type I fixtures on chord curves that samples of the orientation do not show, see ``sampling``."""
     vise = workhold.Vise(pitch=pitch, columns=columns, peg_radius=PEG_RADIUS)
     result = workhold.design(workhold.load(name), vise, types=["I"], threads=1)
-    problem, wanted = Problem.of(result.query), sampling.expected(result)
+    problem, wanted = Problem.from_query(result.query), sampling.expected(result)
     chords = sampling.Chords.of(problem)
     out: dict[str, Any] = {"part": name, "pitch": pitch, "columns": columns, "there": len(wanted), "lost": []}
     for count in samples:
@@ -177,7 +177,7 @@ def sliding_picture(separations: tuple[int, int]) -> str:
     """The bar with its four pegs, the right ones at two separations."""
     scene = Scene.make_page((520.0, 340.0), "four contacts with force closure that slide apart")
     part = bar()
-    view = View.fit_box(Box(*part.bounds).grown(9.0), Box(12.0, 12.0, 508.0, 328.0))
+    view = View.fit_box(Box(*part.bounds).grow(9.0), Box(12.0, 12.0, 508.0, 328.0))
     scene.add_path(make_outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
     radius = PEG_RADIUS * view.scale
     for place in ((-3.0, -20.0), (7.0, 20.0)):

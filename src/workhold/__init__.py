@@ -1,9 +1,9 @@
 """workhold finds every way to hold a flat part: in a vise, on a plate with clamps, or against a fence.
 
-The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate`, :class:`Fence`,
-:class:`FlatJaw`, :class:`PlainVise` and :class:`StrapPlate` describe what holds it. The function :func:`design` finds
-all fixtures and returns a :class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on
-first use, so ``import workhold`` costs next to nothing.
+The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate`,
+:class:`Fence`, :class:`FlatJaw`, :class:`PlainVise` and :class:`StrapPlate` describe what holds it. The
+function :func:`design` finds all fixtures and returns a :class:`Result`; :func:`save` writes it, and
+:func:`open` reads it. Names are imported on first use, so ``import workhold`` costs next to nothing.
 """
 
 from __future__ import annotations
@@ -117,15 +117,19 @@ HOMES = {
 }
 
 
-def imported(name: str, home: str) -> Any:
-    """Import an object; ``home`` is its module, and behind a colon its name there if that is another."""
+def import_object(name: str, home: str) -> Any:
+    """Import and return an object.
+
+    ``home`` is its module, as "module" when the object is called ``name`` there, or "module:other_name".
+    """
     module, _, known_as = home.partition(":")
     return getattr(import_module(module), known_as or name)
 
 
 def __getattr__(name: str) -> Any:
+    """Import an exported name when it is first asked for (PEP 562)."""
     if name in HOMES:
-        return imported(name, HOMES[name])
+        return import_object(name, HOMES[name])
     raise AttributeError(f"module 'workhold' has no attribute {name!r}")
 
 

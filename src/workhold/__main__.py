@@ -10,14 +10,17 @@ __all__ = ["run"]
 
 
 def open_closed_streams() -> None:
-    """Opens every closed standard stream to nowhere; the next file opened would take its place."""
+    """Open ``os.devnull`` for each standard stream that is closed (None in ``sys``).
+
+    Otherwise the next file opened would get the closed stream's descriptor.
+    """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), "w" if number else "r"))
 
 
 def run() -> NoReturn:
-    """Runs the command line; Ctrl-C while it is being loaded ends it as it does later."""
+    """Run the command line and exit; Ctrl-C while modules are being imported exits like a later one."""
     open_closed_streams()
     try:
         end_on_signals()

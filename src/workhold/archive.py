@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["ArchiveWriter", "Column", "Columns", "is_archive", "map_archive"]
+__all__ = ["ArchiveWriter", "ColumnFormat", "Columns", "is_archive", "map_archive"]
 
 FIRST_BYTES = b"PK\x03\x04"
 ALIGNMENT = 64
@@ -51,13 +51,17 @@ MOST_DIRECTORY, MOST_TEXT = 1 << 20, 50_000_000
 
 
 @frozen
-class Column:
+class ColumnFormat:
     """The contents of a column: NumPy's name of their type, such as ``<f8``, and the shape of a row."""
 
     kind: str
     shape: tuple[int, ...] = ()
 
     def make_header(self, rows: int) -> bytes:
+        """Return the header of a ``.npy`` file, version 1.0, for an array of this many rows.
+
+        Its length in bytes does not depend on the number of rows.
+        """
         stream = io.BytesIO()
         about = {"descr": self.kind, "fortran_order": False, "shape": (rows, *self.shape)}
         np.lib.format.write_array_header_1_0(stream, about)
@@ -65,15 +69,24 @@ class Column:
 
     @property
     def row_bytes(self) -> int:
+        """Number of bytes of one row."""
         return int(np.dtype(self.kind).itemsize * np.prod(self.shape, dtype=np.int64))
 
 
-Columns = Mapping[str, Column]
+Columns = Mapping[str, ColumnFormat]
 
 
 @define(eq=False)
 class ArchiveMember:
-    """A member on its way into the file: its name, where it begins, and so much of it as is known."""
+    """A member of the archive that is being written.
+
+    Parameters
+    ----------
+    name : of the member.
+    start : byte of the file at which its local header begins.
+    size : bytes of its content.
+    checksum : CRC-32 of the content written so far.
+    """
 
     name: bytes
     start: int
@@ -82,15 +95,18 @@ class ArchiveMember:
 
     @property
     def room(self) -> int:
-        """Bytes that only make the content begin at a multiple of 64 bytes."""
+        """Number of padding bytes in the local header that
+        make the content begin at a multiple of 64 bytes.
+        """
         return -(self.start + LOCAL.size + len(self.name) + 24) % ALIGNMENT
 
     @property
     def content(self) -> int:
-        """Where the content begins."""
+        """Byte of the file at which the content begins."""
         return self.start + LOCAL.size + len(self.name) + 24 + self.room
 
     def make_local_header(self) -> bytes:
+        """Return the ZIP local file header, with the name and the extra fields (64-bit sizes and padding)."""
         sizes = struct.pack("<2H2Q", SIZES, 16, self.size, self.size)
         extra = sizes + struct.pack("<2H", ROOM, self.room) + bytes(self.room)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
@@ -99,6 +115,7 @@ class ArchiveMember:
         )
 
     def make_central_header(self) -> bytes:
+        """Return the member's entry in the ZIP central directory."""
         extra = struct.pack("<2H3Q", SIZES, 24, self.size, self.size, self.start)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
         fixed = CENTRAL.pack(
@@ -109,17 +126,18 @@ class ArchiveMember:
 
 @define(eq=False)
 class ArchiveWriter:
-    """Writes an archive block by block.
+    """Write an archive block by block: call :meth:`add` for each block, then :meth:`close` once.
 
     Parameters
     ----------
-    stream : an empty file, in which the writer goes forth and back.
-    columns : what each holds, by name.
-    rows : how many there will be at most; where there are fewer, the room of the others stays empty.
+    stream : an empty file opened for writing that can seek.
+    columns : formats of the columns by name, in the order in which :meth:`add` takes them.
+    rows : most rows that will be added. Space in the file is reserved for so many; what is not used stays
+        empty.
     """
 
     stream: BinaryIO
-    columns: Mapping[str, Column]
+    columns: Mapping[str, ColumnFormat]
     rows: int
     members: list[ArchiveMember] = field(factory=list, init=False)
     done: int = field(default=0, init=False)
@@ -135,11 +153,17 @@ class ArchiveWriter:
             start = member.content + size
 
     def put(self, place: int, content: Any) -> None:
+        """Write bytes at a byte position of the file."""
         self.stream.seek(place)
         self.stream.write(content)
 
     def add(self, block: Sequence[NDArray[Any]]) -> None:
-        """Write the next rows, an array for each column in their order."""
+        """Append rows.
+
+        Parameters
+        ----------
+        block : one array for each column, in the order of ``columns``, all with the same number of rows.
+        """
         for member, column, values in zip(self.members, self.columns.values(), block, strict=True):
             content = np.ascontiguousarray(values, column.kind).reshape(-1).view(np.uint8).data
             self.put(member.content + member.size - (self.rows - self.done) * column.row_bytes, content)
@@ -147,7 +171,10 @@ class ArchiveWriter:
         self.done += len(block[0])
 
     def shorten(self) -> None:
-        """Write the number of rows there are into the headers, whose length does not depend on it."""
+        """Set the row count of every column, in its header and here, to the number of rows that were added.
+
+        The column's data stay in place: the header's length does not depend on the row count.
+        """
         for member, column in zip(self.members, self.columns.values(), strict=True):
             said, header = column.make_header(self.rows), column.make_header(self.done)
             size = self.done * column.row_bytes
@@ -157,6 +184,15 @@ class ArchiveWriter:
         self.rows = self.done
 
     def close(self, name: str, text: str, mark: str) -> None:
+        r"""Write the text as the last member, all local headers,
+        the directory and the mark; the stream stays open.
+
+        Parameters
+        ----------
+        name : of the text's member.
+        text : written as UTF-8; lone surrogates become ``\udXXX`` escapes.
+        mark : written as the comment of the ZIP file, which are its last bytes.
+        """
         # Half a letter in a string of JSON becomes its escape.
         content = text.encode("utf-8", "backslashreplace")
         last = self.members[-1]
@@ -180,9 +216,11 @@ class ArchiveWriter:
 
 
 def extend_checksum_difference(difference: int, size: int) -> int:
-    """Return the difference (XOR) of two checksums after ``size`` equal bytes, from their difference before.
+    """Return the XOR of the CRC-32s of two byte strings
+    after both have been extended by ``size`` equal bytes.
 
-    Each bit that follows multiplies the difference by x, modulo the polynomial.
+    ``difference`` is the XOR of their CRC-32s before. Each bit that follows multiplies the difference by x,
+    modulo the polynomial.
 
     Reference: M. Adler, zlib, ``crc32_combine``.
     """
@@ -196,7 +234,10 @@ def extend_checksum_difference(difference: int, size: int) -> int:
 
 
 def multiply_polynomials(a: int, b: int) -> int:
-    """Return the product of two polynomials with bits for coefficients, modulo that of the checksum."""
+    """Return the product of two polynomials over GF(2), modulo the polynomial of CRC-32.
+
+    Bit 31 of an operand is the coefficient of x^0, bit 0 that of x^31.
+    """
     product = 0
     for place in range(TOP, -1, -1):
         if a >> place & 1:
@@ -206,7 +247,8 @@ def multiply_polynomials(a: int, b: int) -> int:
 
 
 def is_archive(path: Path) -> bool:
-    """Return whether a file begins as an archive does.
+    """Return whether a path is a file that begins with the
+    signature of a ZIP member; False where there is no file.
 
     Raises
     ------
@@ -219,11 +261,17 @@ def is_archive(path: Path) -> bool:
         return stream.read(len(FIRST_BYTES)) == FIRST_BYTES
 
 
-class CarefulFile(io.FileIO):
-    """A file of which a directory of a sensible size can be read."""
+class DirectoryCheckedFile(io.FileIO):
+    """A file for ``zipfile`` whose reads are limited to ``MOST_DIRECTORY`` bytes."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Read so many bytes, or those to the end; raise BadZipFile when they are too many."""
+        """Read ``size`` bytes, or for None or a negative size those to the end, at most ``MOST_DIRECTORY``.
+
+        Raises
+        ------
+        BadZipFile
+            For a ``size`` above ``MOST_DIRECTORY``.
+        """
         if size is not None and size > MOST_DIRECTORY:
             raise BadZipFile("its directory is too large")
         return super().read(MOST_DIRECTORY if size is None or size < 0 else size) or b""
@@ -232,27 +280,29 @@ class CarefulFile(io.FileIO):
 def map_archive(
     path: Path, columns: Columns | Callable[[str], Columns], name: str, whole: bool = False
 ) -> tuple[str, dict[str, NDArray[Any]]]:
-    """Return the text of an archive and its columns, which are read only where they are looked at.
+    """Return the text of an archive and its columns by name, read-only arrays that are mapped into memory.
 
-    Nothing in the file is trusted. Members must be stored uncompressed, apart from each other and inside the
-    file. An array's header must give just as many rows as there is room for.
+    Bytes of a column are read from the disk when they are accessed. Nothing in the file is trusted: members
+    must be stored uncompressed, inside the file and without overlap, and an array's header must give just as
+    many rows as there are bytes for.
 
     Parameters
     ----------
-    columns : what each must hold, by name, or a function that derives it from the text; further members are
-        ignored.
-    name : of the text.
-    whole : read the columns once, to compare their checksums.
+    columns : formats by name of the columns to return, or a function that derives them from the text; further
+        members are ignored.
+    name : of the text's member.
+    whole : read the columns once and compare their checksums; the text's is always compared.
 
     Raises
     ------
     InputError
-        When it is no such archive, or damaged; numbers are for the caller to check.
+        When the file is no such archive, is damaged, or its columns differ in their number of rows. The
+        numbers in the columns are not checked.
     OSError
         When it cannot be read.
     """
     try:
-        with CarefulFile(path) as stream:
+        with DirectoryCheckedFile(path) as stream:
             with ZipFile(stream) as archive:
                 everything = archive.infolist()
             content = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
@@ -284,7 +334,13 @@ def map_archive(
 
 
 def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
-    """Refuse members that are missing, there twice, or not apart from each other; raise BadZipFile."""
+    """Raise BadZipFile unless each name stands for exactly one of the members and no two spans overlap.
+
+    Parameters
+    ----------
+    members : with names among ``names``.
+    spans : byte ranges (first, end) of members in the file, in any order.
+    """
     found = [info.filename for info in members]
     for one in sorted(names):
         if found.count(one) != 1:
@@ -295,10 +351,10 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
 
 
 def find_member_span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
-    """Return where the content of a member begins and ends.
+    """Return the byte range (first, end) of a member's content in the file; ``end`` is excluded.
 
-    Raises BadZipFile when it is packed or locked, or not inside the file, and struct.error when its header is
-    not.
+    Raises BadZipFile for a compressed or encrypted member and for one that does not lie inside the file, and
+    struct.error when its local header does not.
     """
     if info.compress_type != ZIP_STORED or info.flag_bits & 1 or info.compress_size != info.file_size:
         raise BadZipFile(f"{info.filename} is packed, so it cannot be mapped into memory")
@@ -312,7 +368,7 @@ def find_member_span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
 
 
 def compute_checksum(content: mmap.mmap, first: int, end: int) -> int:
-    """Return the CRC-32 of a part of a file."""
+    """Return the CRC-32 of the bytes ``first`` to ``end`` (excluded) of a mapped file."""
     value = 0
     with memoryview(content) as view:
         for k in range(first, end, MOST_DIRECTORY):
@@ -320,11 +376,12 @@ def compute_checksum(content: mmap.mmap, first: int, end: int) -> int:
     return value
 
 
-def map_column(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
-    """Return a column (N, ...) in a mapped file, read-only.
+def map_column(content: mmap.mmap, first: int, end: int, name: str, column: ColumnFormat) -> NDArray[Any]:
+    """Return the column (N, ...) whose ``.npy`` file takes
+    the bytes ``first`` to ``end``, as a read-only view.
 
-    Raises BadZipFile when its header is not that of such a column of such a size, and struct.error when it is
-    too short for a header.
+    N is the number of rows for which there are bytes. Raises BadZipFile when the header does not give the
+    column's type and row shape and N rows, and struct.error when there are too few bytes for a header.
     """
     (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
     rows, rest = divmod(end - first - 10 - length, column.row_bytes)

@@ -19,10 +19,10 @@ from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
 from workhold.model.notes import KeptBest
 from workhold.model.result import Result
-from workhold.model.search_report import Proof, Undecided
+from workhold.model.search_report import ProofReport, UndecidedCandidate
 from workhold.model.straps import StrappedHold
 from workhold.verification.account import is_by_algebra
-from workhold.verification.listing import Listing, collect_claims, read_listing
+from workhold.verification.listing import WrittenListing, collect_claims, read_listing
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.verify import Verification, ignore_progress, verify_listing
 
@@ -85,7 +85,7 @@ def verify(
 
 
 def complete_verification(
-    outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any
+    outcome: Verification, listing: WrittenListing, *, threads: int | None = None, **watching: Any
 ) -> Verification:
     """Return a verification with the faults that a new search of the listing's query finds.
 
@@ -111,17 +111,17 @@ def complete_verification(
     return evolve(outcome, faults=(*outcome.faults, *find_differences(listing, result)), is_compared=True)
 
 
-def find_differences(listing: Listing, result: Result) -> Iterator[str]:
-    """Yield the differences between a listing and a new search of its query, one sentence each, without a
-    full stop.
+def find_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
+    """Yield the differences between a listing and a new search
+    of its query, one sentence each, without a full stop.
 
-    A listing that says it is incomplete may lack fixtures, and its account is that of a part of the work.
+    For a listing that says it is incomplete, only surplus fixtures and too large counts are differences.
     """
     if listing.query.toolkit.strap_set is not None:
-        yield from seat_differences(listing, result)
+        yield from find_seat_differences(listing, result)
         return
     if listing.query.toolkit.flat_jaws is not None:
-        yield from hold_differences(listing, result)
+        yield from find_hold_differences(listing, result)
         return
     seen = KnownFixtures(listing.hardware)
     for index, fixture in enumerate(listing.fixtures):
@@ -162,7 +162,7 @@ def find_differences(listing: Listing, result: Result) -> Iterator[str]:
     for fixture, match in matches:
         claim = None if match is None else listing.fixtures[match].seating
         if claim is not None and fixture.seating is not None:
-            other = find_first_difference(claim.fields, fixture.seating.as_fields())
+            other = find_first_difference(claim.fields, fixture.seating.to_fields())
             if other:
                 yield f"a search finds another {other} of the seating of fixture {(match or 0) + 1}"
                 break
@@ -171,8 +171,11 @@ def find_differences(listing: Listing, result: Result) -> Iterator[str]:
         yield f'the note is missing that says "{lacking[0]}"'
 
 
-def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
-    """Yield the same of what flat jaws hold, which angle, parallels and stop distinguish."""
+def find_hold_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
+    """Yield the differences, as :func:`find_differences`, for fixtures of flat jaws.
+
+    Two such fixtures are the same when angle, parallels and stop agree.
+    """
     listed, found = count_fixture_keys(listing.fixtures), count_fixture_keys(result)
     surplus, missing = sorted(listed[key] for key in listed.keys() - found), found.keys() - listed.keys()
     if surplus:
@@ -190,10 +193,14 @@ def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
             yield from find_other_numbers(name, getattr(listing, name), getattr(result, name))
 
 
-def seat_differences(listing: Listing, result: Result) -> Iterator[str]:
-    """The differences between seats under straps and a new search of their query, as :func:`differences`."""
+def find_seat_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
+    """Yield the differences, as :func:`find_differences`, for seats under strap clamps.
+
+    Seats are matched by :func:`seat_key`. Also compared is the clamping force that the best straps of each
+    need.
+    """
     plate = listing.query.toolkit.plates[0]
-    mine, theirs = ({seat_key(one, plate): one for one in some} for some in (result, listing.fixtures))
+    mine, theirs = ({make_seat_key(one, plate): one for one in some} for some in (result, listing.fixtures))
     is_cut = len(listing.fixtures) < sum(listing.found.values())
     for key, one in mine.items():
         if key not in theirs:
@@ -216,17 +223,25 @@ def seat_differences(listing: Listing, result: Result) -> Iterator[str]:
             yield from find_other_numbers(name, getattr(listing, name), getattr(result, name))
 
 
-def seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, ...], float, float]:
-    """What distinguishes a seat wherever it stands on its plate: angle, holes, and the part's place beside them."""
+def make_seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, ...], float, float]:
+    """Return a key that is equal for two seats when one is the other, moved along its plate by whole pitches.
+
+    The key is the angle in degrees in [0, 360), the peg holes as (column, row) flattened and counted from the
+    least column and row used, and x and y in mm of the part's pose from the centre of the hole at that column
+    and row.
+    """
     column, row = (min(getattr(peg, name) for peg in fixture.pegs) for name in ("column", "row"))
     holes = sorted((peg.column - column, peg.row - row) for peg in fixture.pegs)
-    x, y = plate.place(column, row)
+    x, y = plate.compute_hole_center(column, row)
     place = round(fixture.pose.x - x, 4) + 0.0, round(fixture.pose.y - y, 4) + 0.0
     return round(fixture.pose.theta_deg, 4) % 360, tuple(v for hole in holes for v in hole), *place
 
 
 def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
-    """Return the places of fixtures of flat jaws by what distinguishes them."""
+    """Return the index of each flat-jaw fixture by its key: angle in degrees, parallels in mm, stop.
+
+    Of fixtures with the same key the last one's index is kept. Fixtures with other holds are skipped.
+    """
     return {
         (round(one.pose.theta_deg, 4) % 360, round(one.hold.parallels, 6), one.hold.stop): place
         for place, one in enumerate(fixtures)
@@ -235,7 +250,15 @@ def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, 
 
 
 def find_first_difference(written: Any, derived: Any, key: str = "") -> str:
-    """Return the key of the first value that differs by more than ``SAME_SEATING``; empty where all agree."""
+    """Return the key under which the first value differs;
+    "" where all values of ``derived`` are in ``written``.
+
+    Parameters
+    ----------
+    written, derived : nested dicts and lists of values; numbers that differ by at most ``SAME_SEATING``
+        agree, and keys that only ``written`` has are ignored.
+    key : of these values in what contains them; inside a dict the outermost key is returned.
+    """
     if isinstance(derived, dict):
         pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
         return next((other for name, a, b in pairs if (other := find_first_difference(a, b, name))), "")
@@ -254,31 +277,46 @@ def find_first_difference(written: Any, derived: Any, key: str = "") -> str:
 
 
 def format_count(number: int) -> str:
+    """Return a count of fixtures in words: "1 fixture", "2 fixtures"."""
     return f"{number} fixture{'s' * (number != 1)}"
 
 
 def describe_fixture(fixture: Fixture) -> str:
+    """Return the type, the direction, the holes and the angle
+    of a fixture in words, to follow "the first of them".
+    """
     holes = ", ".join(peg.hole for peg in fixture.pegs)
     direction = "" if fixture.direction is None else f" {fixture.direction}"
     return f"of type {fixture.type}{direction} in {holes} at {fixture.pose.theta_deg:.6f} degrees"
 
 
-def list_proof_numbers(proof: Proof) -> dict[str, int]:
-    names = (attribute.name for attribute in fields(Proof) if attribute.name != "undecided")
+def list_proof_numbers(proof: ProofReport) -> dict[str, int]:
+    """Return the numbers of a proof report by field name: all its fields but ``undecided``."""
+    names = (attribute.name for attribute in fields(ProofReport) if attribute.name != "undecided")
     return {name: getattr(proof, name) for name in names}
 
 
 def find_other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
-    """Yield a fault for each number for which a search comes to another one."""
+    """Yield a sentence for each key of ``derived`` under which ``written`` has another number or none.
+
+    ``name`` is what the sentence calls the mapping.
+    """
     for key, number in derived.items():
         if written.get(key) != number:
             yield f"{name} says {written.get(key)} for {key}, and a search comes to {number}"
 
 
-def find_other_entries(written: Proof, derived: Proof) -> Iterator[str]:
-    """Yield a fault when other candidates are undecided in a search."""
+def find_other_entries(written: ProofReport, derived: ProofReport) -> Iterator[str]:
+    """Yield one sentence when the undecided candidates of two proofs differ, else nothing.
 
-    def key(entry: Undecided) -> tuple[Any, ...]:
+    Candidates are the same when all but their last field agree, and their orientations to
+    ``SAME_ORIENTATION``.
+    """
+
+    def key(entry: UndecidedCandidate) -> tuple[Any, ...]:
+        """Return all fields of an entry but its last, with
+        the orientation in steps of ``SAME_ORIENTATION``.
+        """
         *whole, theta, reason, _ = astuple(entry)
         return *whole, round(theta / SAME_ORIENTATION) % round(360 / SAME_ORIENTATION), reason
 

@@ -1,9 +1,9 @@
-"""The numbers that decide: what counts as parallel, as one point, as touching, as met.
+"""Tolerances and other numbers that decide: what counts as parallel, as one point, as touching.
 
-Each stands here once, with what it measures and why it is what it is, and is imported by whoever asks.
-Lengths are in mm and angles in radians unless said otherwise. Roundings counted by hand for a proof stand
-beside their formulas instead, and so do numbers that only say how much work is done.
-``workhold.verification.tolerances`` is a copy of what it needs, on purpose.
+Each is defined only here, with what it measures and why it has its value. Lengths are in mm and angles in
+radians unless said otherwise. Roundings counted by hand for a proof stand beside their formulas instead, and
+so do numbers that only limit the amount of work. ``workhold.verification.tolerances`` is a separate copy of
+those that the verification needs, on purpose.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The errors workhold raises on purpose, and text made fit to be shown.
+"""The errors that workhold raises on purpose, and the preparation of text for messages.
 
 Every message is one plain sentence that names the place and the remedy, because the command line prints it as
 it is. What it quotes, such as names of parts and layers from files, is made fit for a terminal.
@@ -32,8 +32,10 @@ CUT = " ... "
 
 
 def make_printable(text: str) -> str:
-    """Return the text without letters that steer a terminal, turn the direction of writing, or break a line
-    or string.
+    """Return the text with each whitespace character replaced
+    by a space, and each other unprintable one by "?".
+
+    Escape sequences, changes of writing direction and line breaks thus do not reach a terminal.
 
     Examples
     --------
@@ -51,7 +53,10 @@ FIRST_BYTE = 0xDC00
 
 
 def make_encodable(text: str) -> str:
-    """Return the text that can be written in UTF-8: bytes of a file's name that are none stand as ``\\xfc``.
+    """Return the text with lone surrogates, which UTF-8 cannot hold, replaced by visible escapes.
+
+    Python has such surrogates for bytes of a file's name that are not UTF-8; these become ``\\xfc`` and the
+    like, all others ``\\ufffd``.
 
     Examples
     --------
@@ -69,7 +74,7 @@ def make_encodable(text: str) -> str:
 
 
 def shorten_middle(text: str, most: int = LONGEST) -> str:
-    """Return the text of at most so many letters, its middle left out.
+    """Return the text, with its middle replaced by " ... " where it is longer than ``most`` characters.
 
     Examples
     --------
@@ -83,7 +88,7 @@ def shorten_middle(text: str, most: int = LONGEST) -> str:
 
 
 def join_words(words: Sequence[str]) -> str:
-    """Return the words with commas and a last "and".
+    """Return one or more words in one string, joined by commas and a last "and".
 
     >>> join_words(["a"]), join_words(["a", "b", "c"])
     ('a', 'a, b and c')
@@ -104,7 +109,7 @@ class WorkholdError(Exception):
 class InputError(WorkholdError, ValueError):
     """A file, a flag or a value given by the user cannot be used; the command line exits with code 2.
 
-    What the message quotes of the input may be of any length and steer a terminal; the message does not.
+    The message is cut in its middle to ``LONGEST`` characters, and unprintable characters are replaced.
     """
 
     def __init__(self, message: str) -> None:
@@ -112,11 +117,11 @@ class InputError(WorkholdError, ValueError):
 
 
 def list_causes(error: BaseException | None, *, or_context: bool = False) -> Iterator[BaseException]:
-    """Yield an error, the one that it was raised from, that one's, and so on; each once.
+    """Yield an error, then the error that it was raised from (``__cause__``), and so on; each error once.
 
     Parameters
     ----------
-    or_context : whether, where it was raised from none, the one that was being handled counts.
+    or_context : follow ``__context__``, the error that was being handled, where there is no ``__cause__``.
     """
     # An error that was raised from itself is its own cause.
     passed: list[BaseException] = []
@@ -127,7 +132,10 @@ def list_causes(error: BaseException | None, *, or_context: bool = False) -> Ite
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """Return whether an error is due to too little memory; libraries and threads report it in words of their own."""
+    """Return whether an error, or one of its causes, says that memory was lacking.
+
+    That is a MemoryError, the error number ENOMEM, or one of the texts in ``NO_MEMORY``.
+    """
     return any(
         isinstance(one, MemoryError)
         or getattr(one, "errno", None) == errno.ENOMEM
@@ -137,8 +145,9 @@ def lacks_memory(error: BaseException | None) -> bool:
 
 
 def quote_value(value: object) -> str:
-    """Return a value as a sentence shows it: text within quotes, numbers as they are written, all cut to some
-    length.
+    """Return a value as shown in a message: numbers as written, all else as its ``repr``.
+
+    Longer texts are cut in the middle to ``LONGEST_VALUE`` characters.
 
     >>> quote_value("12"), quote_value(2.5)
     ("'12'", '2.5')
@@ -148,17 +157,17 @@ def quote_value(value: object) -> str:
 
 
 def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
-    """Refuse an argument of another type than it must have.
+    """Raise an error unless a value is an instance of a type.
 
     Parameters
     ----------
-    name : of the argument, in words that begin a sentence.
-    remedy : what to give instead.
+    name : of the value, for the beginning of the error message.
+    remedy : what to give instead, for its end.
 
     Raises
     ------
     InputError
-        Then.
+        When it is not.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""How numbers from outside are converted, and how large they may be.
+"""Conversion of numbers from outside, and upper limits for them.
 
 A number of a few bytes must not ask for all memory, or for arithmetic that says nothing. The limits hold
-alike for files, Python and the page. What a file or a request may be in bytes, segments and seconds is said
-where these are read (``files.part.loaded``, ``web.guard``).
+alike for files, Python and the page. Limits of a file or a request in bytes, segments and seconds stand where
+these are read (``files.part.loaded``, ``web.guard``).
 """
 
 from __future__ import annotations
@@ -47,18 +47,19 @@ __all__ = [
 
 
 def convert_real(value: Any, name: str = "a number") -> float:
-    """Return a number as a float: infinite for a whole number too large for a float.
+    """Return a number as a float; inf or -inf for a whole number too large for a float.
 
-    A check that refuses numbers that are not finite then refuses these as well.
+    Anything with ``__float__`` and no dimensions counts as a number, also NumPy scalars, NaN and inf. Not a
+    number: text, also of digits, bytes, bool, None and arrays that have a dimension.
 
     Parameters
     ----------
-    name : of the value, in words that begin a sentence.
+    name : of the value, for the beginning of the error message.
 
     Raises
     ------
     InputError
-        For text, also of digits, for arrays, and for all else that is no number.
+        For what is not a number.
 
     Examples
     --------
@@ -85,8 +86,10 @@ def convert_real(value: Any, name: str = "a number") -> float:
 
 
 def name_number_fields(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
-    """Return the fields of an attrs class, whose numbers are called by the names of their fields where they
-    are refused.
+    """Return an attrs class's fields, with errors of :func:`convert_real` naming the field.
+
+    For the argument ``field_transformer`` of ``attrs.define``. Fields with another converter stay as they
+    are.
     """
     numbers: Any = convert_real
     return [
@@ -98,7 +101,9 @@ def name_number_fields(cls: type, fields: list[Attribute[Any]]) -> list[Attribut
 
 
 def read_number(text: Any) -> float:
-    """Return the number that a file or an option says in words or as a number; NaN for what is none.
+    """Return the float that a number, or text written as Python writes numbers, stands for.
+
+    NaN for anything else; inf or -inf for a whole number too large for a float.
 
     >>> read_number("12.5"), read_number("three")
     (12.5, nan)
@@ -112,14 +117,20 @@ def read_number(text: Any) -> float:
 
 
 def make_real_array(values: Any, name: str) -> NDArray[np.float64]:
-    """Return a copy of numbers as an array of floats.
+    """Return a float64 copy of an array or of nested sequences of numbers.
+
+    Parameters
+    ----------
+    name : of a value, for the beginning of an error message.
 
     Raises
     ------
     InputError
-        Quoting what is text.
-    TypeError, ValueError, OverflowError
-        For rows of unlike lengths, and what is no number otherwise.
+        For text and other elements that :func:`convert_real` refuses.
+    TypeError
+        For a single value.
+    ValueError, OverflowError
+        For rows of unlike lengths, and for whole numbers too large for a float.
     """
     import numpy as np
 
@@ -133,12 +144,16 @@ def make_real_array(values: Any, name: str) -> NDArray[np.float64]:
 
 
 def check_count(name: str, value: Any) -> int | None:
-    """Return a count from 1, or None.
+    """Return a whole number of at least 1 as an int, or None for None.
+
+    Parameters
+    ----------
+    name : of what is counted, for the beginning of the error message.
 
     Raises
     ------
     InputError
-        Naming what is counted, for anything else.
+        For any other value.
     """
     if value is None:
         return None
@@ -189,13 +204,16 @@ THREAD_SPACE = 8 << 20
 
 
 def refuse_little_space(needed: int, what: str, remedy: str) -> None:
-    """Refuse work that needs more address space than this process may have.
+    """Raise an error when this process is limited to less address space than some work needs.
 
-    Libraries would end the process without a message.
+    Libraries would end the process without a message. Without a limit, or where the system has none, nothing
+    is refused.
 
     Parameters
     ----------
     needed : bytes.
+    what : the work, for the beginning of the error message.
+    remedy : what to do instead, for its end.
 
     Raises
     ------
@@ -216,13 +234,16 @@ def refuse_little_space(needed: int, what: str, remedy: str) -> None:
 
 
 def refuse_long(name: str, value: float) -> None:
-    """Refuse a length in mm that is too large."""
+    """Raise InputError when a length in mm is above ``MOST_LENGTH`` in size; NaN passes."""
     if abs(value) > MOST_LENGTH:
         raise InputError(f"{name} {value:g} is beyond {MOST_LENGTH:g} mm: check the number and its unit.")
 
 
 def refuse_strong(name: str, value: float, unit: str = "N") -> None:
-    """Refuse a force in N or a moment in N mm that is too large."""
+    """Raise InputError when a force in N or a moment in N·mm is above ``MOST_FORCE`` in size; NaN passes.
+
+    ``unit`` is only shown in the message; the value is not converted.
+    """
     if abs(value) > MOST_FORCE:
         raise InputError(f"{name} {value:g} is beyond {MOST_FORCE:g} {unit}: check the number and its unit.")
 
@@ -230,13 +251,16 @@ def refuse_strong(name: str, value: float, unit: str = "N") -> None:
 def refuse_many_steps(
     pitch: tuple[float, float], columns: int | None, rows: int | None, diameter: float, features: int
 ) -> None:
-    """Refuse a lattice on which two pegs can be placed in too many ways.
+    """Raise an error when two pegs can stand on a lattice in too many ways.
+
+    The ways are counted as lattice steps from one peg to the other, at most ``diameter`` in each axis. The
+    limit is ``MOST_STEPS``, or ``MOST_CHORDS`` divided by the number of features.
 
     Parameters
     ----------
-    pitch, columns, rows : of the lattice, see ``fixels.toolkit.Carrier``.
+    pitch, columns, rows : of the lattice, see ``fixels.toolkit.Carrier``; None columns or rows are unbounded.
     diameter : largest distance in mm between two pegs that touch the part.
-    features : how many features they can touch.
+    features : number of features they can touch, 1 or more.
 
     Raises
     ------
@@ -258,12 +282,12 @@ def refuse_many_steps(
 
 
 def choose_thread_count(threads: int | None) -> int:
-    """Return the number of threads to use: as asked for, or one for each processor this process may use.
+    """Return ``threads`` when it is given, else the number of processors that this process may use.
 
     Raises
     ------
     InputError
-        For more than ``MOST_THREADS``, or more than there is room for in this process.
+        For more than ``MOST_THREADS``, or more than the process's address space has room for.
     """
     if threads is not None:
         if threads > MOST_THREADS:
@@ -278,19 +302,19 @@ def choose_thread_count(threads: int | None) -> int:
 def refuse_much_work(
     ways: float, extent: tuple[float, float], pitch: tuple[float, float], ways_at: Callable[[float], float]
 ) -> None:
-    """Refuse a search for two clamps on a lattice that would take hours, and more memory than there is.
+    """Raise an error when a search for two clamps on a lattice would take hours and too much memory.
 
     Parameters
     ----------
-    ways : in which two pairs of contacts may go together, see ``MOST_WAYS``.
+    ways : number of ways in which two pairs of contacts may go together, limited to ``MOST_WAYS``.
     extent : width and height of the part in mm.
-    pitch : of the lattice in mm.
-    ways_at : the same ways with another pitch in mm.
+    pitch : of the lattice in mm, along x and y.
+    ways_at : function that returns ``ways`` for another pitch in mm, the same along x and y.
 
     Raises
     ------
     InputError
-        With a pitch that does.
+        With a pitch for which the ways are few enough.
     """
     if ways > MOST_WAYS:
         enough, left = sqrt(pitch[0] * pitch[1]), ways

@@ -1,4 +1,7 @@
-"""Extremes of short rows: numpy finds them many times faster along the columns of a transposed copy."""
+"""Largest and smallest number of each row of an array with short rows.
+
+NumPy finds them many times faster along the columns of a transposed copy.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,8 @@ Number = TypeVar("Number", bound=np.generic)
 
 
 def find_largest(values: NDArray[Number]) -> NDArray[Number]:
-    """Return the largest (N,) of each row of (N, K) numbers, K above 0; NaN where there is one.
+    """Return the largest number of each row, shape (N,), of
+    an (N, K) array with K > 0; NaN for a row with a NaN.
 
     Examples
     --------
@@ -25,7 +29,8 @@ def find_largest(values: NDArray[Number]) -> NDArray[Number]:
 
 
 def find_smallest(values: NDArray[Number]) -> NDArray[Number]:
-    """Return the smallest (N,) of each row of (N, K) numbers, K above 0; NaN where there is one.
+    """Return the smallest number of each row, shape (N,),
+    of an (N, K) array with K > 0; NaN for a row with a NaN.
 
     Examples
     --------
@@ -37,5 +42,5 @@ def find_smallest(values: NDArray[Number]) -> NDArray[Number]:
 
 
 def split_columns(values: NDArray[Any]) -> Any:
-    """Return the columns (K, N) of (N, K) numbers, each in one piece."""
+    """Return the transpose (K, N) of an (N, K) array as a C-contiguous array."""
     return np.ascontiguousarray(values.T)

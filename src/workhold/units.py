@@ -1,4 +1,4 @@
-"""Units of length and the force that goes with each; inside, all numbers are in mm and N."""
+"""Units of length, each with its unit of force; inside the program all numbers are in mm and N."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ ROUNDING = 1e-9
 
 @frozen
 class Unit:
-    """A unit of length, and how lengths are written in it.
+    """A unit of length, and the way in which lengths, forces and stresses are written with it.
 
     Parameters
     ----------
-    name : what users call it.
-    abbreviation : what stands behind a number.
+    name : the unit's name, as users write it.
+    abbreviation : text that follows a number.
     millimetres : millimetres in one unit.
-    decimals : with which a length that has to be set is written: a micrometre, or a ten-thousandth of an inch
-        (2.5 µm).
-    force, newtons : abbreviation of the unit of force on paper of this unit of length, and N in one of it.
+    decimals : number of decimals of a length that somebody has to set: a micrometre, or a ten-thousandth of
+        an inch (2.5 µm).
+    force, newtons : abbreviation of the unit of force that goes with this unit of length, and N in one of it.
     """
 
     name: str
@@ -49,18 +49,18 @@ class Unit:
     newtons: float = 1.0
 
     def to_mm(self, number: float) -> float:
-        """Return the length in mm that a number of this unit means.
+        """Return a length given in this unit in mm, rounded to 1e-12 mm.
 
-        Rounded at 1e-12 mm, so that 1.5 inch is the 38.1 mm that a metric drawing says, not its neighbour in
-        floating point: coincidences of part and vise stay exact.
+        Thus 1.5 inch is the 38.1 mm that a metric drawing says, not its neighbour in floating point, and
+        coincidences of part and vise stay exact.
 
         >>> INCH.to_mm(1.5), 1.5 * 25.4
         (38.1, 38.099999999999994)
         """
         return float(number) if self.millimetres == 1 else round(number * self.millimetres, 12)
 
-    def number(self, length: float, decimals: int | None = None) -> str:
-        """Return a length in mm as a number of this unit, without a negative zero.
+    def format_number(self, length: float, decimals: int | None = None) -> str:
+        """Return a length in mm as a number in this unit, without the unit and without a negative zero.
 
         Parameters
         ----------
@@ -69,27 +69,33 @@ class Unit:
 
         Examples
         --------
-        >>> INCH.number(12.7), MILLIMETRE.number(-0.0001), MILLIMETRE.number(12.7, 1)
+        >>> INCH.format_number(12.7), MILLIMETRE.format_number(-0.0001), MILLIMETRE.format_number(12.7, 1)
         ('0.5000', '0.000', '12.7')
         """
         text = f"{length / self.millimetres:.{self.decimals if decimals is None else decimals}f}"
         return text.removeprefix("-") if float(text) == 0 else text
 
     def format_length(self, length: float, decimals: int | None = None) -> str:
-        """Return a length in mm as a number of this unit and the unit behind it.
+        """Return a length in mm as a number in this unit, followed by the unit.
+
+        ``decimals`` are the unit's own if None.
 
         >>> INCH.format_length(12.7), MILLIMETRE.format_length(24.125)
         ('0.5000 in', '24.125 mm')
         """
-        return f"{self.number(length, decimals)} {self.abbreviation}"
+        return f"{self.format_number(length, decimals)} {self.abbreviation}"
 
     @property
     def small_name(self) -> str:
-        """The unit of lengths that nobody sets but that count: micrometres, or thousandths of an inch."""
+        """Abbreviation of the unit for small lengths such as
+        errors: "µm", or "thou" (0.001 inch) when this is the inch.
+        """
         return "µm" if self.name != INCH.name else "thou"
 
     def format_small_number(self, length: float) -> str:
-        """Return a length in mm as a number of the small unit, with two figures or more.
+        """Return a length in mm as a number in the small unit (µm or thou), without the unit.
+
+        Numbers of 10 and more are whole, those from 1 have one decimal, smaller ones two significant figures.
 
         >>> [MILLIMETRE.format_small_number(length) for length in (0.01234, 0.00072)]
         ['12', '0.72']
@@ -98,7 +104,7 @@ class Unit:
         return f"{value:.0f}" if abs(value) >= 10 else f"{value:.1f}" if abs(value) >= 1 else f"{value:.2g}"
 
     def format_small_length(self, length: float) -> str:
-        """Return a length in mm in the small unit, with its name.
+        """Return a length in mm as a number in the small unit (µm or thou), followed by that unit.
 
         >>> MILLIMETRE.format_small_length(0.0081), INCH.format_small_length(0.0254)
         ('8.1 µm', '1.0 thou')
@@ -106,18 +112,21 @@ class Unit:
         return f"{self.format_small_number(length)} {self.small_name}"
 
     def format_short_length(self, length: float, decimals: int | None = None) -> str:
-        """Return a length in mm as a catalogue would print it: as many decimals as it takes and no more.
+        """Return a length in mm as a number in this unit, without trailing zeros and without the unit.
+
+        ``decimals`` are the most, the unit's own if None.
 
         >>> INCH.format_short_length(12.7), MILLIMETRE.format_short_length(20.0)
         ('0.5', '20')
         """
-        text = self.number(length, decimals)
+        text = self.format_number(length, decimals)
         return text.rstrip("0").rstrip(".") if "." in text else text
 
     def format_force(self, force: float) -> str:
-        """Return a force in N in whole units of force, or with three figures when it is small, and the unit.
+        """Return a force in N in the unit of force, followed by
+        that unit, and by newtons in brackets if it is another.
 
-        Where that unit is not the newton, newtons stand beside it.
+        Forces from 100 units and 0 are whole numbers, smaller ones have three significant figures.
 
         >>> MILLIMETRE.format_force(1234.5), MILLIMETRE.format_force(0.01234), INCH.format_force(1000.0)
         ('1234 N', '0.0123 N', '225 lbf (1000 N)')
@@ -126,7 +135,7 @@ class Unit:
         return words if self.newtons == 1 else f"{words} ({MILLIMETRE.format_force_alone(force)})"
 
     def format_force_alone(self, force: float) -> str:
-        """Return a force in N as of :meth:`format_force` in the unit of force alone, for columns of a table.
+        """Return a force in N as :meth:`format_force` does, but without the newtons in brackets.
 
         >>> INCH.format_force_alone(1000.0)
         '225 lbf'
@@ -135,8 +144,7 @@ class Unit:
         return f"{value:.0f} {self.force}" if value >= 100 or value == 0 else f"{value:.3g} {self.force}"
 
     def format_force_number(self, force: float, decimals: int = 1) -> str:
-        """Return a force in N as a number of the unit of force, without a negative zero, for columns of a
-        table.
+        """Return a force in N as a number in the unit of force, without the unit and without a negative zero.
 
         >>> MILLIMETRE.format_force_number(1000.0), INCH.format_force_number(1000.0), INCH.format_force_number(-0.01, 0)
         ('1000.0', '224.8', '0')
@@ -145,7 +153,8 @@ class Unit:
         return text.removeprefix("-") if float(text) == 0 else text
 
     def format_moment(self, moment: float) -> str:
-        """Return a moment in N mm in N m, or in ft lbf with N m beside it.
+        """Return a moment in N·mm as text in N m, or in ft lbf
+        followed by N m in brackets; with a typographic minus.
 
         >>> MILLIMETRE.format_moment(1234.5), INCH.format_moment(1000.0)
         ('1.23 N m', '0.738 ft lbf (1 N m)')
@@ -157,11 +166,11 @@ class Unit:
 
     @property
     def pressure(self) -> str:
-        """The unit of stress that goes with the unit of force."""
+        """Abbreviation of the unit of stress: "MPa", or "ksi" where the unit of force is not the newton."""
         return "MPa" if self.newtons == 1 else "ksi"
 
     def format_stress_number(self, stress: float) -> str:
-        """Return a stress in MPa as a number of the unit of stress, for columns of a table.
+        """Return a stress in MPa as a number in MPa or ksi, without the unit.
 
         >>> MILLIMETRE.format_stress_number(896.2), INCH.format_stress_number(896.2)
         ('896', '130.0')
@@ -169,7 +178,7 @@ class Unit:
         return f"{stress:.0f}" if self.newtons == 1 else f"{stress / KSI:.1f}"
 
     def format_stress(self, stress: float) -> str:
-        """Return a stress in MPa in the unit of stress; where that is not the MPa, it stands beside.
+        """Return a stress in MPa as text in MPa, or in ksi followed by MPa in brackets.
 
         >>> MILLIMETRE.format_stress(896.2), INCH.format_stress(896.2)
         ('896 MPa', '130.0 ksi (896 MPa)')
@@ -178,7 +187,7 @@ class Unit:
         return f"{self.format_stress_number(stress)} {self.pressure}{beside}"
 
     def format_force_rounded_up(self, force: float) -> str:
-        """Return a force in N as a whole number of the unit of force, rounded up to stay on the safe side.
+        """Return a force in N as a whole number in the unit of force, rounded up, without the unit.
 
         >>> MILLIMETRE.format_force_rounded_up(1234.2), INCH.format_force_rounded_up(1000.0)
         ('1235', '225')
@@ -201,12 +210,12 @@ UNITS = {
 
 
 def find_unit(name: str) -> Unit:
-    """Return the unit of a name, in any mixture of capitals.
+    """Return the unit called "mm", "cm", "m", "inch", "in" or '"', in upper or lower case.
 
     Raises
     ------
     InputError
-        For a unit that is not known.
+        For any other name.
 
     Examples
     --------
@@ -226,7 +235,7 @@ PIXEL = re.compile(r"px *([0-9]{1,5}(?:\.[0-9]{1,6})?)")
 
 
 def find_pixels_per_inch(name: str | None) -> float | None:
-    """Return how many pixels make an inch in a unit such as "px96"; None for other names.
+    """Return the pixels per inch of a unit such as "px96"; None for other names and for less than 1.
 
     >>> find_pixels_per_inch("px72"), find_pixels_per_inch("mm")
     (72.0, None)
@@ -236,12 +245,13 @@ def find_pixels_per_inch(name: str | None) -> float | None:
 
 
 def find_drawing_unit(name: str) -> Unit:
-    """Return the unit of a drawing: one of length, or pixels of which so many make an inch.
+    """Return the unit of a drawing by its name: one of
+    :func:`find_unit`, or pixels such as "px96" (96 per inch).
 
     Raises
     ------
     InputError
-        For a unit that is not known.
+        For any other name.
 
     Examples
     --------

@@ -9,18 +9,18 @@ import pytest
 
 from workhold import Query, Vise, Workpiece
 from workhold.algebra import engine, find_fixtures_by_algebra
-from workhold.algebra.candidates import SECTORS, Systems
+from workhold.algebra.candidates import SECTORS, EquationSystems
 from workhold.algebra.engine import MOST_NAMED, write_undecided_notes
-from workhold.algebra.sliding_pairs import two_and_two_sliding_pairs
+from workhold.algebra.sliding_pairs import find_two_and_two_contacts
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
 VISE = Vise(pitch=15, columns=2, peg_radius=2)
 
 
-def systems(feature: list[int], column: list[int], row: list[int], count: int = 1) -> Systems:
+def systems(feature: list[int], column: list[int], row: list[int], count: int = 1) -> EquationSystems:
     """One system, or the same several times."""
     ints = (np.tile(np.array(values), (count, 1)) for values in (feature, column, row))
-    return Systems(*ints, np.ones((count, SECTORS), np.bool_))
+    return EquationSystems(*ints, np.ones((count, SECTORS), np.bool_))
 
 
 def test_faces_and_holes_are_named() -> None:
@@ -53,11 +53,13 @@ def test_a_resultant_that_vanishes_is_named(monkeypatch: pytest.MonkeyPatch) -> 
     """Four pegs of which two on each jaw are the same: sent past the tests that keep such systems away."""
     coinciding = systems([0, 1, 0, 1], [0, 0, 0, 0], [0, 1, 0, 1])
 
-    def only_that(*_: object) -> Iterator[Systems]:
+    def only_that(*_: object) -> Iterator[EquationSystems]:
         yield coinciding
 
-    monkeypatch.setitem(engine.GENERATORS, (2, 2), (only_that, two_and_two_sliding_pairs))
-    monkeypatch.setattr(engine, "alike", lambda contacts: np.zeros(len(contacts.rows), np.bool_))
+    monkeypatch.setitem(engine.GENERATORS, (2, 2), (only_that, find_two_and_two_contacts))
+    monkeypatch.setattr(
+        engine, "are_alike_on_both_jaws", lambda contacts: np.zeros(len(contacts.rows), np.bool_)
+    )
     result = find_fixtures_by_algebra(Query(WEDGE, VISE, "I"))
     assert result.statistics["undecided"] == 1
     assert str(result.notes[-1]).startswith(

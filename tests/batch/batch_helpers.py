@@ -12,18 +12,18 @@ from threading import Event
 from attrs import define, field, frozen
 
 from workhold import Query, Vise
-from workhold.batch.durations import Measured
+from workhold.batch.durations import TaskDurations
 from workhold.batch.report import Report, Summary, write_results
-from workhold.batch.run import ANY_PART, Batch, BatchRun, HeldIn, Request, run_batch
-from workhold.batch.store import FolderStore, Store, make_refusal_record
+from workhold.batch.run import ANY_PART, BatchRunner, BatchState, PartRequest, ToolkitQuery, run_batch
+from workhold.batch.store import FolderStore, RecordStore, make_refusal_record
 from workhold.batch.tables import JobRow, list_job_rows
 from workhold.batch.tasks import Outcome, Task, run_task
 from workhold.errors import InputError
 from workhold.files.part_list import list_parts
 
-COARSE = HeldIn("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
-FINE = HeldIn("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))
-IMPOSSIBLE = HeldIn("impossible", InputError("there is no such vise."))
+COARSE = ToolkitQuery("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
+FINE = ToolkitQuery("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))
+IMPOSSIBLE = ToolkitQuery("impossible", InputError("there is no such vise."))
 
 
 @define
@@ -73,34 +73,34 @@ def run_in(
     folder: Path,
     *given: object,
     queue: InlineQueue,
-    held_in: tuple[HeldIn, ...] = (COARSE,),
+    held_in: tuple[ToolkitQuery, ...] = (COARSE,),
     best: int = 3,
-    store: Store | None = None,
-) -> Batch:
+    store: RecordStore | None = None,
+) -> BatchState:
     """Run a batch of parts into a folder."""
-    requests = [Request(part, {}, held_in) for part in list_parts([str(one) for one in given])]
+    requests = [PartRequest(part, {}, held_in) for part in list_parts([str(one) for one in given])]
     store = FolderStore(folder / "work") if store is None else store
-    measured = Measured(folder / "measured.csv")
-    return run_batch(requests, best, BatchRun(store, queue, measured, Onlooker(), Event()))
+    measured = TaskDurations(folder / "measured.csv")
+    return run_batch(requests, best, BatchRunner(store, queue, measured, Onlooker(), Event()))
 
 
-def rows_of(batch: Batch, folder: Path) -> Iterator[JobRow]:
+def rows_of(batch: BatchState, folder: Path) -> Iterator[JobRow]:
     """What is known of each job of a batch that was run into a folder."""
-    return list_job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
+    return list_job_rows(batch.jobs, FolderStore(folder / "work"), TaskDurations(folder / "measured.csv"))
 
 
 def reported(
-    batch: Batch,
+    batch: BatchState,
     folder: Path,
     out: Path,
     *,
     summary: tuple[str, list[str], list[str]] = ("x", [], []),
     sheets: Path | None = None,
-    store: Store | None = None,
+    store: RecordStore | None = None,
 ) -> Report:
     """The page ``r.html``, the tables and the sheets of a batch that was run into a folder."""
     store = FolderStore(folder / "work") if store is None else store
-    measured = Measured(folder / "measured.csv")
+    measured = TaskDurations(folder / "measured.csv")
     return write_results(batch, store, measured, out, "r.html", Summary(*summary), sheets)
 
 

@@ -20,7 +20,7 @@ from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, reported, ru
 from test_command import run, started, wait_for_records
 from test_run import square
 
-from workhold.batch.store import FolderStore, UrlStore, make_refusal_record, parse_record, store_at
+from workhold.batch.store import FolderStore, UrlStore, make_refusal_record, open_store, parse_record
 from workhold.batch.tasks import Outcome
 from workhold.errors import InputError
 
@@ -69,7 +69,7 @@ def test_a_cluster_makes_what_one_process_makes(shop: Path, tmp_path: Path) -> N
 
 
 def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: Path) -> None:
-    store = store_at("memory://workhold-test/batch/")
+    store = open_store("memory://workhold-test/batch/")
     assert isinstance(store, UrlStore)
     batch = run_in(tmp_path, shop / "p30.json", queue=InlineQueue(), store=store)
     run_in(tmp_path / "folder", shop / "p30.json", queue=InlineQueue())
@@ -115,9 +115,9 @@ def test_words_that_are_no_address_are_refused(address: str) -> None:
 
 def test_stores_are_told_by_their_urls(tmp_path: Path) -> None:
     for url in (str(tmp_path), f"file://{tmp_path}"):
-        assert store_at(url) == FolderStore(tmp_path)
+        assert open_store(url) == FolderStore(tmp_path)
     with pytest.raises(InputError, match="odd://bucket cannot be used"):
-        store_at("odd://bucket")
+        open_store("odd://bucket")
 
 
 @pytest.mark.prove

@@ -12,8 +12,8 @@ from attrs import define
 from batch_helpers import COARSE, FINE, IMPOSSIBLE, InlineQueue, records_in, rows_of, run_in
 
 from workhold.batch import store as store_module
-from workhold.batch.durations import Measured
-from workhold.batch.run import Batch
+from workhold.batch.durations import TaskDurations
+from workhold.batch.run import BatchState
 from workhold.batch.tasks import Outcome, Task, run_task
 from workhold.errors import InputError
 
@@ -37,7 +37,7 @@ def shop(tmp_path: Path) -> Path:
     return folder
 
 
-def states_of(batch: Batch, folder: Path) -> dict[tuple[str, str], str]:
+def states_of(batch: BatchState, folder: Path) -> dict[tuple[str, str], str]:
     return {(one.row["part"], one.row["toolkit"]): one.row["state"] for one in rows_of(batch, folder)}
 
 
@@ -243,19 +243,19 @@ def test_what_others_wrote_down_is_left_as_it_is(tmp_path: Path, content: bytes)
     path = tmp_path / "measured.csv"
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"was not written by workhold: give another folder, or rename it\."):
-        Measured(path)
+        TaskDurations(path)
     assert path.read_bytes() == content
     path.write_bytes(b"0a1b")
-    assert not Measured(path).known
+    assert not TaskDurations(path).known
 
 
 def test_what_tasks_took_is_kept_and_lines_cut_short_are_passed_over(shop: Path, tmp_path: Path) -> None:
     batch = run_in(tmp_path, shop, queue=InlineQueue())
     path = tmp_path / "measured.csv"
-    known = Measured(path).known
+    known = TaskDurations(path).known
     assert set(known) == {Path(name).stem for name in records_in(tmp_path)}
     assert all(seconds > 0 and worker == "inline" for seconds, worker in known.values())
     path.write_bytes(path.read_bytes()[:-9] + os.urandom(20))
-    assert len(Measured(path).known) <= len(known)
+    assert len(TaskDurations(path).known) <= len(known)
     rows = [one.row for one in rows_of(batch, tmp_path)]
     assert all(row["estimated_seconds"] > 0 for row in rows if row["state"] == "held")

@@ -15,14 +15,14 @@ from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, reported, rows_of, ru
 import workhold
 from workhold import Fence, Load, PlainVise, Plate, Query, StrapPlate
 from workhold.batch import tables
-from workhold.batch.run import ANY_PART, Batch, HeldIn
+from workhold.batch.run import ANY_PART, BatchState, ToolkitQuery
 from workhold.batch.tables import BEST, RESULTS, JobRow, list_table_names, write_tables
 from workhold.files.replacing import is_own
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
-PLATE = HeldIn("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))
-FENCE = HeldIn("fence", Query(ANY_PART, Fence(pitch=20, peg_radius=3, wall_offset=20)))
-PAIR = HeldIn("pair", Query(ANY_PART, Plate(pitch=20, peg_radius=3, clamps=2)))
+PLATE = ToolkitQuery("plate", Query(ANY_PART, Plate(pitch=20, peg_radius=3)))
+FENCE = ToolkitQuery("fence", Query(ANY_PART, Fence(pitch=20, peg_radius=3, wall_offset=20)))
+PAIR = ToolkitQuery("pair", Query(ANY_PART, Plate(pitch=20, peg_radius=3, clamps=2)))
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def batch(folder: Path) -> Batch:
+def batch(folder: Path) -> BatchState:
     """A part in every kind of toolkit, and one that cannot be read."""
     (folder / "bad.json").write_text("{")
     loop = [[0, 0, 0], [70, 0, 0], [61, 44, 0], [25, 49, 0], [4, 38, 0]]
@@ -41,7 +41,7 @@ def batch(folder: Path) -> Batch:
 
 
 @pytest.fixture
-def rows(batch: Batch, folder: Path) -> Iterator[JobRow]:
+def rows(batch: BatchState, folder: Path) -> Iterator[JobRow]:
     return rows_of(batch, folder)
 
 
@@ -55,7 +55,7 @@ def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
         result = workhold.open(Path(one.row["record"]))
         held_in.add(one.row["toolkit"])
         assert one.row["fixtures"] == sum(result.found.values())
-        assert one.row["fit"] is not bool(unfit(result.table.quality[:1], result.query.tolerance)[0])
+        assert one.row["fit"] is not bool(are_unfit(result.table.quality[:1], result.query.tolerance)[0])
         fit.add(one.row["fit"])
         assert 1 <= len(one.best) == len(result) <= 3
         for rank, (row, fixture) in enumerate(zip(one.best, result, strict=True), 1):
@@ -81,8 +81,8 @@ def test_rows_of_what_friction_holds_say_whether_it_does(
     vise = PlainVise(jaw_width=100, jaw_height=40, max_opening=80)
     asked = {"thickness": 20, "loads": [load], "strapped": 2}
     held_in = (
-        HeldIn("straps", Query(ANY_PART, straps, **asked)),
-        HeldIn("jaws", Query(ANY_PART, vise, thickness=20, loads=[load])),
+        ToolkitQuery("straps", Query(ANY_PART, straps, **asked)),
+        ToolkitQuery("jaws", Query(ANY_PART, vise, thickness=20, loads=[load])),
     )
     place = folder / f"straps-{straps.tip_radius:g}"
     place.mkdir()
@@ -96,7 +96,7 @@ def test_rows_of_what_friction_holds_say_whether_it_does(
 
 
 def test_both_forms_have_the_same_rows(
-    batch: Batch, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    batch: BatchState, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow")
 

@@ -15,7 +15,7 @@ from batch_helpers import COARSE, FINE, Failing, Unprepared
 import workhold
 from workhold import Query, answer, conventions, load
 from workhold.batch import tasks
-from workhold.batch.run import Job
+from workhold.batch.run import BatchJob
 from workhold.batch.store import (
     FolderStore,
     is_whole,
@@ -24,7 +24,7 @@ from workhold.batch.store import (
     read_workpiece_record,
 )
 from workhold.batch.tables import BEST, take_record
-from workhold.batch.tasks import Answering, Reading, identify_program, name_of, run_task
+from workhold.batch.tasks import DrawingTask, QueryTask, identify_program, make_task_name, run_task
 from workhold.errors import InputError
 from workhold.files.result.writer import write_result_text
 from workhold.search import estimate
@@ -36,7 +36,7 @@ FLANGE = Path(str(files("workhold"))) / "data" / "parts" / "flange.json"
 
 def part_of(content: bytes, ending: str = ".json") -> bytes:
     """The record of a drawing."""
-    record = run_task(Reading("name", "title", ending, content, {})).record
+    record = run_task(DrawingTask("name", "title", ending, content, {})).record
     assert record is not None
     return record
 
@@ -60,9 +60,9 @@ def test_of_very_many_fixtures_the_best_are_sought(
 ) -> None:
     """They are the first of all, and how many there are is told about."""
     assert isinstance(COARSE.query, Query)
-    counted = run_task(Answering("name", "title", part, COARSE.query, 3)).record
+    counted = run_task(QueryTask("name", "title", part, COARSE.query, 3)).record
     monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked, **more: 4_240_000)
-    sought = run_task(Answering("name", "title", part, COARSE.query, 3)).record
+    sought = run_task(QueryTask("name", "title", part, COARSE.query, 3)).record
     assert counted is not None and sought is not None
     all_counted, best = parse_record(counted), parse_record(sought)
     assert best["fixtures"] == all_counted["fixtures"] and len(best["fixtures"]) == 3
@@ -73,7 +73,7 @@ def test_of_very_many_fixtures_the_best_are_sought(
     rows = [dict[str, Any](), dict[str, Any]()]
     nobodys: Any = None
     for row, record in zip(rows, (all_counted, best), strict=True):
-        take_record(row, {}, record, Job(nobodys, COARSE))
+        take_record(row, {}, record, BatchJob(nobodys, COARSE))
     assert rows[0]["fixtures"] == sum(all_counted["found"].values()) and rows[0]["reason"] is None
     assert (rows[1]["fixtures"], rows[1]["distinct"]) == (4_200_000, None)
     assert "about 4,200,000 fixtures" in rows[1]["reason"]
@@ -86,12 +86,12 @@ def test_a_drawing_that_cannot_be_read_is_a_record_without_a_name_of_its_file() 
 
 def test_an_answer_is_the_first_of_all_fixtures_and_counts_all(part: bytes) -> None:
     assert isinstance(COARSE.query, Query)
-    outcome = run_task(Answering("name", "title", part, COARSE.query, 3))
+    outcome = run_task(QueryTask("name", "title", part, COARSE.query, 3))
     whole = answer(Query(evolve(load("flange"), name="part"), COARSE.query.toolkit), threads=2)
     assert sum(whole.found.values()) > 3
     first = evolve(whole, query=evolve(whole.query, best=3), table=whole.table.take(slice(0, 3)))
     assert outcome.record == "".join(write_result_text(first)).encode()
-    assert run_task(Answering("other", "title", part, COARSE.query, 3)).record == outcome.record
+    assert run_task(QueryTask("other", "title", part, COARSE.query, 3)).record == outcome.record
 
 
 def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Path) -> None:
@@ -100,8 +100,8 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Pa
     query = evolve(COARSE.query, seating=2, opening=0.001)
     whole = answer(evolve(query, workpiece=evolve(load("flange"), name="part")))
     for kept in (3, 1):
-        record = run_task(Answering("name", "title", part, query, kept)).record
-        first = evolve(whole.part(slice(0, kept)), query=evolve(whole.query, best=kept))
+        record = run_task(QueryTask("name", "title", part, query, kept)).record
+        first = evolve(whole.slice_rows(slice(0, kept)), query=evolve(whole.query, best=kept))
         assert (
             len(first.seating) == min(kept, 2)
             and first.notes
@@ -156,7 +156,7 @@ def test_a_full_disk_is_told_from_other_failures() -> None:
 
 def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) -> None:
     names = {
-        name_of(*content)
+        make_task_name(*content)
         for content in (
             (b"a", b"b"),
             (b"ab",),
@@ -166,10 +166,10 @@ def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) ->
             (COARSE.entry, 4),
         )
     }
-    assert len(names | {name_of(FINE.entry, 3)}) == 7
-    before = name_of(b"a")
+    assert len(names | {make_task_name(FINE.entry, 3)}) == 7
+    before = make_task_name(b"a")
     monkeypatch.setattr(tasks, "identify_program", lambda: "another")
-    assert name_of(b"a") != before
+    assert make_task_name(b"a") != before
 
 
 def test_names_outlive_what_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -197,7 +197,7 @@ def test_other_records_have_another_number(part: bytes) -> None:
     """Where this fails because answers or files have changed, raise ``version.ANSWERS`` and write the new pair here."""
     records = [
         part,
-        *(run_task(Answering("name", "title", part, one.query, 3)).record for one in (COARSE, FINE)),
+        *(run_task(QueryTask("name", "title", part, one.query, 3)).record for one in (COARSE, FINE)),
     ]
     assert (ANSWERS, sha256(b"".join(records)).hexdigest()[:16]) == (2, "0cd87a47255268de")
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import workhold
-from workhold.benchmark.catalogue import set_named, write_set_text
+from workhold.benchmark.catalogue import find_set, write_set_text
 from workhold.benchmark.making import make_list
 
 Content = dict[str, Any]
@@ -38,7 +38,7 @@ def set_texts() -> Callable[[str], str]:
 
     def text(name: str) -> str:
         if name not in known:
-            made = make_list(set_named(name), threads=1)
+            made = make_list(find_set(name), threads=1)
             assert made is not None
             known[name] = write_set_text(*made)
         return known[name]

@@ -16,7 +16,7 @@ import pytest
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
 from workhold import answer
 from workhold.benchmark.catalogue import load_manifest, load_sets, make_set_query, read_benchmark_file
-from workhold.benchmark.matching import Places, compare_places, read_entered_fixture
+from workhold.benchmark.matching import ListedPlaces, compare_places, read_entered_fixture
 
 Content = Callable[[str], dict[str, Any]]
 ROOT = Path(__file__).resolve().parents[2]
@@ -114,7 +114,7 @@ def test_the_share_of_a_grid_is_what_its_program_finds(tmp_path: Path, content: 
     mine = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
     query = next(make_set_query(one) for one in load_sets() if one.name == "bar-plate")
     complete, theirs = (
-        Places(query.workpiece, [read_entered_fixture(one) for one in several])
+        ListedPlaces(query.workpiece, [read_entered_fixture(one) for one in several])
         for several in (content("bar-plate")["fixtures"], mine["fixtures"])
     )
     outcome = compare_places(complete, theirs, 2.0, symmetric=False)

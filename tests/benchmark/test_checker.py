@@ -16,8 +16,8 @@ import workhold
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
 from workhold.benchmark.catalogue import (
     compute_sha256,
+    find_set,
     load_manifest,
-    set_named,
     write_holes_line,
     write_set_text,
 )
@@ -53,7 +53,7 @@ def test_a_true_file_holds(
     The last digits are those of a machine's arithmetic; the holes are the same on all machines.
     """
     lines = [line.rstrip(",") for line in set_texts(name).splitlines() if line.startswith('{"type"')]
-    assert compute_sha256("\n".join(map(write_holes_line, lines))) == set_named(name).sums["holes"]
+    assert compute_sha256("\n".join(map(write_holes_line, lines))) == find_set(name).sums["holes"]
     said = checker.check(content(name), set_texts(name), load_manifest(), starts=200)
     assert [one for one in said if one not in OF_LAST_DIGITS] == []
 

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workhold.benchmark.catalogue import make_set_query, set_named
+from workhold.benchmark.catalogue import find_set, make_set_query
 from workhold.benchmark.making import compare_entry
 from workhold.benchmark.matching import (
     Comparison,
-    Entry,
-    Places,
+    ListedPlaces,
+    Submission,
     compare_places,
     read_entered_fixture,
     read_entry,
@@ -40,9 +40,9 @@ def compare(
     name: str, fixtures: list[dict[str, Any]], content: Content, symmetric: bool = False
 ) -> Comparison:
     """The comparison of some fixtures with a set."""
-    part = make_set_query(set_named(name)).workpiece
+    part = make_set_query(find_set(name)).workpiece
     complete, theirs = (
-        Places(part, [read_entered_fixture(one) for one in several])
+        ListedPlaces(part, [read_entered_fixture(one) for one in several])
         for several in (content(name)["fixtures"], fixtures)
     )
     return compare_places(complete, theirs, TOLERANCE, symmetric)
@@ -76,7 +76,7 @@ def half_turned(fixture: dict[str, Any]) -> dict[str, Any]:
 def test_the_list_itself_is_found_whole(name: str, content: Content) -> None:
     """A set's own file finds every fixture once and nothing else."""
     outcome = compare(name, content(name)["fixtures"], content)
-    assert len(outcome.found) == outcome.listed == set_named(name).size > 0
+    assert len(outcome.found) == outcome.listed == find_set(name).size > 0
     assert outcome.share == 1.0
     assert (outcome.missed, outcome.extra, outcome.repeated) == ((), (), ())
 
@@ -125,8 +125,8 @@ def test_another_jaw_or_a_quarter_turn_is_another_fixture(content: Content) -> N
 def test_one_stands_for_its_images_where_that_is_asked(content: Content) -> None:
     """A third of the triangle's fixtures finds all of them under its rotations, and else a third."""
     theirs = content("triangle-vise")["fixtures"]
-    part = make_set_query(set_named("triangle-vise")).workpiece
-    complete = Places(part, [read_entered_fixture(one) for one in theirs])
+    part = make_set_query(find_set("triangle-vise")).workpiece
+    complete = ListedPlaces(part, [read_entered_fixture(one) for one in theirs])
     kept: list[dict[str, Any]] = []
     seen: set[int] = set()
     for number, (one, place) in enumerate(zip(theirs, complete.places, strict=True)):
@@ -202,6 +202,6 @@ def test_a_table_without_its_columns_is_refused(tmp_path: Path) -> None:
 
 def test_an_empty_set_is_found_whole_by_an_empty_list() -> None:
     """Nothing to find is found."""
-    outcome = compare_entry(Entry("disc-vise", ()), TOLERANCE, symmetric=True, threads=1)
+    outcome = compare_entry(Submission("disc-vise", ()), TOLERANCE, symmetric=True, threads=1)
     assert outcome is not None
     assert (outcome.listed, outcome.share) == (0, 1.0)

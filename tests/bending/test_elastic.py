@@ -26,7 +26,7 @@ from bent_bodies import (
 )
 from workhold import InputError, Workpiece
 from workhold.bending import meshing
-from workhold.bending.elastic import ElasticBody, PointForces, rigid_motions
+from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
 from workhold.bending.laying import Constraints, find_rigid_motion
 from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
@@ -170,7 +170,7 @@ def some_loads(body: ElasticBody, count: int = 6) -> list[PointForces]:
 def test_what_one_load_moves_another_by_is_what_that_moves_the_first_by() -> None:
     """Maxwell and Betti, also of loads that do not balance."""
     body = bodies(block, (60.0, 20.0), 15.0)[0]
-    works = np.array([body.spread(load) for load in some_loads(body)])
+    works = np.array([body.compute_work(load) for load in some_loads(body)])
     compliance = np.einsum("ank,bnk->ab", works, body.respond(works))
     assert np.abs(compliance - compliance.T).max() <= 1e-8 * np.abs(compliance).max()
     assert np.linalg.eigvalsh(compliance).min() > 0.0
@@ -178,7 +178,7 @@ def test_what_one_load_moves_another_by_is_what_that_moves_the_first_by() -> Non
 
 def test_loads_superposed_are_loads_at_once() -> None:
     body = bodies(block, (60.0, 20.0), 15.0)[0]
-    works = np.array([body.spread(load) for load in some_loads(body)])
+    works = np.array([body.compute_work(load) for load in some_loads(body)])
     factors = np.array([1.0, -2.0, 0.3, 5.0, -0.7, 1.1])
     superposed = np.tensordot(factors, body.respond(works), axes=1)
     at_once = body.respond([np.tensordot(factors, works, axes=1)])[0]
@@ -198,7 +198,7 @@ def test_work_is_that_of_the_forces_on_every_motion_that_elements_know(order: in
         assert body.move_nodes(own) == pytest.approx(field_at(of, body.surface.nodes), abs=1e-9)
         for load in some_loads(body):
             expected = (load.forces * field_at(of, load.points)).sum()
-            assert (body.spread(load) * own).sum() == pytest.approx(expected, abs=1e-6)
+            assert (body.compute_work(load) * own).sum() == pytest.approx(expected, abs=1e-6)
 
 
 def field_at(
@@ -278,7 +278,7 @@ def test_a_finer_body_is_no_stiffer_and_keeps_to_round_faces() -> None:
         shared(over(side * 41.5, 0.0, even(0, 10)), (-side * FORCE, 0, 0), (side, 0, 0))
         for side in (1.0, -1.0)
     ]
-    works = [[sum(body.spread(load) for load in loads)] for body in (coarse, higher, fine)]
+    works = [[sum(body.compute_work(load) for load in loads)] for body in (coarse, higher, fine)]
     energy = [
         float((work[0] * body.respond(work)[0]).sum())
         for body, work in zip((coarse, higher, fine), works, strict=True)
@@ -309,7 +309,7 @@ def test_a_body_that_is_laid_against_three_points_and_a_floor_is_where_they_are(
     random = np.random.default_rng(3)
     motion = random.normal(size=6)
     points, normals = random.normal(size=(6, 3)), np.vstack([np.eye(3)[[0, 0, 1]], np.tile(UP, (3, 1))])
-    rows = np.einsum("nk,nkj->nj", normals, rigid_motions(points))
+    rows = np.einsum("nk,nkj->nj", normals, make_rigid_motions(points))
     levels = [Constraints(rows[part], rows[part] @ motion) for part in (slice(0, 3), slice(3, 6))]
     assert find_rigid_motion(levels) == pytest.approx(motion)
 

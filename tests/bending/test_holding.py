@@ -15,7 +15,7 @@ from workhold.bending import asking, library, meshing
 from workhold.bending.asking import BendingQuestion, SolvedLoads, UnitLoads, find_bendings, measure_distances
 from workhold.bending.elastic import ElasticBody
 from workhold.bending.figures import find_bending_figure
-from workhold.bending.holding import ElasticHold, hold_of_fixture
+from workhold.bending.holding import ElasticHold, make_elastic_hold
 from workhold.bending.materials import MATERIALS, ElasticMaterial, find_material
 from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import LoadPatch, make_foot
@@ -67,7 +67,7 @@ def foot_of(body: ElasticBody) -> LoadPatch:
 
 def hold_in(name: str, **further: object) -> ElasticHold:
     result = result_in(name)
-    return hold_of_fixture(
+    return make_elastic_hold(
         result[0],
         result.workpiece,
         result.toolkit,
@@ -147,7 +147,9 @@ def test_solved_at_once_is_what_is_superposed(order: int) -> None:
     solved = SolvedLoads(body, UnitLoads(body.surface))
     numbers = solved.units.add(hold.columns)
     superposed = solved.add_up(numbers, hold.clamping)
-    works = [factor * solved.work_of(number) for number, factor in zip(numbers, hold.clamping, strict=True)]
+    works = [
+        factor * solved.compute_work(number) for number, factor in zip(numbers, hold.clamping, strict=True)
+    ]
     at_once = body.respond([sum(works)])[0]
     assert np.abs(at_once - superposed).max() <= 1e-10 * np.abs(at_once).max()
     summed = SolvedLoads(body, solved.units, is_summed=True)
@@ -274,7 +276,7 @@ def test_what_is_told_has_its_error_its_place_and_its_remedy() -> None:
     assert "thou" in one.list_sentences("jaw", INCH)[0]
     assert one.list_warnings(None, MILLIMETRE) == one.list_warnings(1.0, MILLIMETRE) == []
     assert len(one.list_warnings(1e-6, MILLIMETRE)) == 2
-    data = one.as_data()
+    data = one.to_data()
     assert data["clamp_distortion"]["value"] == one.figures["clamp_distortion"]
     assert data["give"]["load"] == 1 and data["elements"] == one.elements
 

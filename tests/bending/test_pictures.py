@@ -7,7 +7,7 @@ import pytest
 
 from bent_bodies import METAL, block, bodies, need_elements
 from workhold.bending.figures import Bending, BentPlace
-from workhold.drawing.bent_part import BentView, picture_of_bending
+from workhold.drawing.bent_part import BentView, draw_bending
 from workhold.drawing.scene import LengthUnit
 from workhold.units import MILLIMETRE
 
@@ -29,7 +29,7 @@ def bent_at(place: tuple[float, float, float]) -> Bending:
 
 
 def draw(bending: Bending) -> str:
-    return picture_of_bending(bending, "A block", LengthUnit(MILLIMETRE, 2), ["Words."])
+    return draw_bending(bending, "A block", LengthUnit(MILLIMETRE, 2), ["Words."])
 
 
 def test_what_is_on_top_is_seen_from_above() -> None:

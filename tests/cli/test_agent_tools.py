@@ -72,7 +72,7 @@ def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
         for asked in (True, False)
     ]
     [right] = workhold.seatings(workhold.open("some.json"), [workhold.open("some.json")[2]])
-    assert shown[0]["fixture"]["seating"]["reading"] == pytest.approx(right.reading_of(), abs=1e-8)
+    assert shown[0]["fixture"]["seating"]["reading"] == pytest.approx(right.find_least_reading(), abs=1e-8)
     assert "seating" not in shown[1]["fixture"]
     told("sheet", folder, result_file="some.json", rank=3, path="setup.svg", seating=True)
     assert "Does the part end up there?" in Path("setup.svg").read_text()
@@ -86,10 +86,10 @@ def test_with_two_clamps_agents_are_told_what_to_do_by_hand(folder: Path) -> Non
     plate = {"toolkit": "two-clamp-plate-20mm"}
     made = told("design", folder, part="wedge.json", **plate, seating=1, count=2, out="some.json")
     right, other = workhold.seatings(workhold.open("some.json"), 2)
-    assert made["fixtures"][0]["by_hand"] == right.as_fields() and "by_hand" not in made["fixtures"][1]
+    assert made["fixtures"][0]["by_hand"] == right.to_fields() and "by_hand" not in made["fixtures"][1]
     for asked in (True, False):
         shown = told("show", folder, result_file="some.json", rank=2, seating=asked, picture=False)["fixture"]
-        assert shown.get("by_hand") == (other.as_fields() if asked else None) and "seating" not in shown
+        assert shown.get("by_hand") == (other.to_fields() if asked else None) and "seating" not in shown
     told("sheet", folder, result_file="some.json", rank=2, path="setup.svg", seating=True)
     assert "Does the part end up there?" in Path("setup.svg").read_text()
 

@@ -115,12 +115,12 @@ def test_kernels_say_where_they_come_from(
     assert findings()["kernels"] == ("compiled in the package", None)
     assert findings()["numba"] == ("not needed here", None)
     monkeypatch.setattr(libraries, "find_in", lambda folder, room: None)
-    monkeypatch.setattr(libraries, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(libraries, "make_cache_folder", lambda: tmp_path)
     monkeypatch.setattr(libraries, "is_built", lambda: False)
     assert findings()["kernels"] == (f"to be compiled on the first run, kept in {tmp_path}", None)
     monkeypatch.setattr(libraries, "is_built", lambda: True)
     assert findings()["kernels"] == (f"compiled on this machine, kept in {tmp_path}", None)
-    monkeypatch.setattr(libraries, "cache_folder", lambda: None)
+    monkeypatch.setattr(libraries, "make_cache_folder", lambda: None)
     state, remedy = findings()["kernels"]
     assert state.startswith("compiled again in every process") and "WORKHOLD_CACHE_DIR" in str(remedy)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from workhold.cli.jobs import read_jobs
-from workhold.cli.options import PartWords
-from workhold.cli.search_options import QueryWords, SeatingWords
+from workhold.cli.options import PartOptions
+from workhold.cli.search_options import QueryOptions, SeatingOptions
 from workhold.errors import InputError
 
 TOML = """
@@ -56,21 +56,21 @@ def folder(tmp_path: Path) -> Path:
 def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
     first, second = read_jobs(folder / name)
     assert (first.part, first.toolkits) == (str(folder / "a.json"), ["plate-20mm", str(folder / "own.toml")])
-    assert first.make_options(PartWords) == {"unit": "inch", "part_number": "2"}
-    assert first.make_options(QueryWords) == {
+    assert first.make_options(PartOptions) == {"unit": "inch", "part_number": "2"}
+    assert first.make_options(QueryOptions) == {
         "avoid": ["3", "7"],
         "keep_out": ["circle=1,2,3"],
         "load": ["force=200 at=1,0.5", "moment=5000"],
         "loads": str(folder / "loads.toml"),
         "tolerance": "0.01,0.02",
     }
-    assert (second.part, second.toolkits, second.make_options(QueryWords)) == (
+    assert (second.part, second.toolkits, second.make_options(QueryOptions)) == (
         "widget",
         ["fence-20mm"],
         {"contact_margin": "0.5"},
     )
-    assert first.make_options(SeatingWords) == {}
-    assert second.make_options(SeatingWords) == {"seating": "5", "opening": "0.1in", "foolproof": True}
+    assert first.make_options(SeatingOptions) == {}
+    assert second.make_options(SeatingOptions) == {"seating": "5", "opening": "0.1in", "foolproof": True}
 
 
 @pytest.mark.parametrize(

@@ -58,7 +58,7 @@ def test_show_writes_bodies(run: Any, result_file: Path, tmp_path: Path) -> None
         assert ("10.000 mm high, because no thickness is given" in " ".join(outcome.stderr.split())) == (
             not given
         )
-        sizes = BodySizes.of(result.workpiece, thickness)
+        sizes = BodySizes.from_workpiece(result.workpiece, thickness)
         assert (tmp_path / "a.glb").read_bytes() == fixture_glb(*held, sizes)
 
 

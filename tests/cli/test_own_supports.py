@@ -53,7 +53,7 @@ def test_a_result_keeps_them_and_supports_sheet_and_bodies_use_them(
         size_supported_bodies(found).floor == -12
         and size_supported_bodies(found, support_height=7).floor == -7
     )
-    chosen = ChosenSupports.of(found)
+    chosen = ChosenSupports.from_supports(found)
     assert (find_part_lift(chosen, None), find_part_lift(chosen, 7.0), find_part_lift(None, None)) == (
         12,
         7,

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from workhold.model.setup import part_zero
+from workhold.model.setup import choose_part_zero
 
 BRACKET = str(Path(__file__).parents[2] / "examples" / "bracket.dxf")
 HELD = ("--pitch", "8", "--columns", "2", "--peg-radius", "3")
@@ -57,7 +57,7 @@ def test_its_zero_is_named_as_on_the_sheet(
     outcome = run("design", BRACKET, *HELD, "--program", file, "--thickness", "10", "--zero", place)
     assert outcome.exit_code == 0, outcome.stderr
     query = searched["asked"]
-    assert query.program.zero == part_zero(query.workpiece, place).point
+    assert query.program.zero == choose_part_zero(query.workpiece, place).point
 
 
 @pytest.mark.parametrize(

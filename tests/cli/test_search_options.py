@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from workhold import Load, Tolerance
-from workhold.fixels.carrier import Holes
+from workhold.fixels.carrier import HoleSelection
 from workhold.model.requirements import ANY_DIRECTION
 
 WIDGET = ("design", "widget", "--pitch", "10", "--columns", "2", "--peg-radius", "3")
@@ -48,7 +48,7 @@ def test_restrictions_reach_the_search(run: Any, searched: dict[str, Any]) -> No
     circle, polygon = (zone.loop for zone in restrictions.zones)
     assert circle[:, :2].tolist() == [pytest.approx([-50.8, 50.8]), pytest.approx([101.6, 50.8])]
     assert polygon[2, :2].tolist() == pytest.approx([101.6, 25.4])
-    assert asked.toolkit.blocked == (Holes("left", 1, 2), Holes("right", 0, None))
+    assert asked.toolkit.blocked == (HoleSelection("left", 1, 2), HoleSelection("right", 0, None))
     assert asked.toolkit.body_radius == pytest.approx(3.81)
 
 

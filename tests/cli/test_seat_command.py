@@ -15,7 +15,7 @@ from workhold import OpeningVise, Plate, Vise, Workpiece
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.model.quality import FIGURE_RANKING
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 from workhold.units import INCH, MILLIMETRE
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -81,7 +81,7 @@ def test_it_tells_what_to_do_and_what_to_read(
     assert reads[0] == right.split()[0]
     rest = [f"{seat.jaw_separation:.3f}" for seat in told.seats if not seat.is_own]
     assert reads[1:] == rest
-    assert f"in {len(told.wrong_within())} wrong places" in text
+    assert f"in {len(told.list_wrong_seats())} wrong places" in text
 
 
 @pytest.mark.thorough
@@ -106,7 +106,7 @@ def test_a_design_tells_it_of_the_first_and_lists_what_is_as_asked(
     sentence = f"When the part is in its place, the opening S is {result[0].travel:.3f} mm."
     assert sentence in shown and sentence in told
     data = json.loads(run("show", out, 1, "--json").stdout)
-    assert data["fixture"]["seating"] == json.loads(json.dumps(result.seating[0].as_fields()))
+    assert data["fixture"]["seating"] == json.loads(json.dumps(result.seating[0].to_fields()))
     opening = min(one.capture_opening or 0.0 for one in result.seating)
     opened = run(*asked, "--opening", opening, "--foolproof", "--rank-by", "reading", "--out", out, "--force")
     assert opened.exit_code == 0, opened.stderr
@@ -127,11 +127,11 @@ def test_one_side_and_one_opening_leave_seats_out(run: Any, result_file: Path) -
         (k, one) for k, one in enumerate(every, 1) if any(seat.difference > 0.1 for seat in one.seats)
     )
     level = min(seat.difference for seat in told.seats if seat.difference > 0.1) - 0.05
-    opened = told.wrong_within(level)
-    assert len(opened) < len(told.wrong_within())
+    opened = told.list_wrong_seats(level)
+    assert len(opened) < len(told.list_wrong_seats())
     text = " ".join(run("seat", result_file, rank, "--opening", f"{level}mm").stdout.split())
     assert (f"in {len(opened)} wrong place" if len(opened) != 1 else "in one wrong place") in text
-    assert told.reading_of(level) == min(abs(seat.difference) for seat in opened)
+    assert told.find_least_reading(level) == min(abs(seat.difference) for seat in opened)
 
 
 @pytest.mark.thorough
@@ -142,12 +142,12 @@ def test_json_has_the_fields(run: Any, result_file: Path, tmp_path: Path) -> Non
     assert outcome.exit_code == 0, outcome.stderr
     content = json.loads(outcome.stdout)
     result = workhold.open(result_file)
-    told = Solver(result.workpiece, result.toolkit).of(result[1])
-    assert content == {"rank": 2, "seating": told.as_fields(), "written": [str(picture)]}
+    told = SeatingSolver(result.workpiece, result.toolkit).solve(result[1])
+    assert content == {"rank": 2, "seating": told.to_fields(), "written": [str(picture)]}
     fields = content["seating"]
     manual = (Path(__file__).parents[2] / "docs" / "seating.md").read_text()
     assert all(f"`{name}`" in manual for name in fields)
-    assert fields["wrong_seats"] == len(told.wrong_within()) and fields["reading"] > 0
+    assert fields["wrong_seats"] == len(told.list_wrong_seats()) and fields["reading"] > 0
     assert {"kind", "pose", "difference", "mirrored", "same_place", "contacts", "forces"} <= set(
         fields["seats"][0]
     )
@@ -195,7 +195,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(
         assert outcome.exit_code == 0 and not outcome.stderr
         assert max(map(len, outcome.stdout.splitlines())) <= 80
         [told], text = workhold.seatings(made, [fixture]), " ".join(outcome.stdout.split())
-        steps = told.steps(INCH.format_length)
+        steps = told.list_steps(INCH.format_length)
         assert (
             f"Seating of fixture {rank} of {len(made)}: square Neither of the two clamps holds the part alone"
             in text
@@ -207,7 +207,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(
         assert shown == {
             "rank": rank,
             "seating": None,
-            "by_hand": told.as_fields(INCH.format_length),
+            "by_hand": told.to_fields(INCH.format_length),
             "written": [str(picture)],
         }
         assert shown["by_hand"]["steps"] == steps and " in at clamp" in steps[-1]
@@ -241,8 +241,8 @@ def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path
     for rank, [told] in ((rank, workhold.seatings(result, [result[rank - 1]])) for rank in (2, 3)):
         text = " ".join(run("show", tmp_path / "r.json", rank).stdout.split())
         shown = json.loads(run("show", tmp_path / "r.json", rank, "--json").stdout)["fixture"]
-        assert all((step in text) == (rank == 2) for step in told.steps()[:2])
-        assert shown.get("by_hand") == (told.as_fields() if rank == 2 else None)
+        assert all((step in text) == (rank == 2) for step in told.list_steps()[:2])
+        assert shown.get("by_hand") == (told.to_fields() if rank == 2 else None)
     refused = run(*asked, "--foolproof")
     assert refused.exit_code == 2 and "ask for the seating alone" in refused.stderr
 

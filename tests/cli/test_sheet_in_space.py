@@ -256,7 +256,7 @@ def test_a_fixture_like_an_earlier_one_may_be_the_first_on_supports(monkeypatch:
             yield SimpleNamespace(triples=["three"] if asked[-1] == rank else [], stopped=False)
 
     monkeypatch.setattr("workhold.supports.asking.yield_supports", found)
-    monkeypatch.setattr("workhold.model.support_triples.ChosenSupports.of", lambda found: found)
+    monkeypatch.setattr("workhold.model.support_triples.ChosenSupports.from_supports", lambda found: found)
     monkeypatch.setattr("workhold.presenting.papers.write_paper", lambda *_: None)
     assert write_first_sheet(result, "a.pdf", "-", 20.0, MILLIMETRE, None) == rank
     assert asked == list(range(1, rank + 1))

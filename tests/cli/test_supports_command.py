@@ -13,7 +13,7 @@ from typer.testing import Result as Outcome
 import workhold
 from workhold import Plate, Workpiece
 from workhold.model.solid import SolidOutline
-from workhold.supports.asking import fixture_supports
+from workhold.supports.asking import find_fixture_supports
 
 Run = Callable[..., Outcome]
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
@@ -182,7 +182,7 @@ def test_supports_of_a_result_in_python() -> None:
     ]
     assert every[0].request.inside == 4.0 and every[0].request.pad_radius == 4.0
     with pytest.raises(workhold.InputError, match="supports have no 'pads': give some of pad_radius"):
-        fixture_supports(result[0], 20, pads=3)
+        find_fixture_supports(result[0], 20, pads=3)
     with pytest.raises(workhold.InputError, match="the thickness of the part is not known"):
         result.supports()
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from workhold.cli.toolkit_options import LISTED, ListWords, list_toolkits_to_try
+from workhold.cli.toolkit_options import LISTED, ToolkitListOptions, list_toolkits_to_try
 from workhold.errors import InputError
 from workhold.files.toolkit_file import list_preset_names, load_toolkit
 from workhold.fixels.fields import OPTIONS
@@ -30,11 +30,11 @@ def has_pitch(kind: str) -> bool:
     return any(row.name == "pitch" for row in TABLES[kind].fields)
 
 
-def lists(kind: str, **more: str) -> ListWords:
+def lists(kind: str, **more: str) -> ToolkitListOptions:
     """Lists that make toolkits of a kind."""
     needed = {row.name: NEEDED[row.name] for row in TABLES[kind].fields if row.is_required}
     pitch = {"pitch": NEEDED["pitch"]} if has_pitch(kind) else {}
-    return ListWords(**{**pitch, **needed, **more})
+    return ToolkitListOptions(**{**pitch, **needed, **more})
 
 
 def test_every_number_of_every_kind_can_be_varied() -> None:
@@ -77,13 +77,13 @@ def test_what_is_varied_makes_toolkits(kind: str, more: dict[str, str]) -> None:
 
 def test_lengths_have_the_unit_that_is_asked() -> None:
     """Half an inch is 12.7 mm."""
-    (one,) = list_toolkits_to_try(["fence-20mm"], None, ListWords(wall_offset="0.5"), INCH)
+    (one,) = list_toolkits_to_try(["fence-20mm"], None, ToolkitListOptions(wall_offset="0.5"), INCH)
     assert one.fields["wall_offset"] == pytest.approx(12.7) and one.name == "fence-20mm, wall offset 0.5"
 
 
 def test_presets_without_a_varied_field_are_not_tried() -> None:
     """A wall's offset is varied of the fence among the presets alone."""
-    tried = list_toolkits_to_try(None, None, ListWords(wall_offset="8,10"), MILLIMETRE)
+    tried = list_toolkits_to_try(None, None, ToolkitListOptions(wall_offset="8,10"), MILLIMETRE)
     assert [one.name for one in tried] == ["fence-20mm, wall offset 8", "fence-20mm, wall offset 10"]
 
 

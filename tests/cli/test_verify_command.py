@@ -17,7 +17,7 @@ import pytest
 from fakes import fake_result
 from workhold import Query, Result, Tolerance, Vise, Workpiece, design, save
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 from workhold.statics.effective_error import EffectiveErrors
 from workhold.statics.quality import measure_quality
 
@@ -111,11 +111,11 @@ def find_miss_of_exact_test(hair: float) -> Result:
         quality=make_unknown_quality((force / force.sum()).min(axis=1)),
     )
     table = attrs.evolve(table, quality=measure_quality(table, part, vise, Tolerance(), ()))
-    counts, proof = {"I": 0, "II": 1}, Proof(96, 1, 0, 1, 0)
+    counts, proof = {"I": 0, "II": 1}, ProofReport(96, 1, 0, 1, 0)
     work = ("chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
     statistics = {"features": 9} | dict.fromkeys(work, 0)
     query = Query(part, vise)
-    least = round(float(EffectiveErrors.of(query).errors(table).min()), 9)
+    least = round(float(EffectiveErrors.from_query(query).compute_errors(table).min()), 9)
     return Result(
         query, table, counts, counts, statistics=statistics, proof=proof, least_effective_error=least
     )

@@ -14,9 +14,9 @@ from workhold import Workpiece, errors
 from workhold.cli.workbench_command import (
     WorkbenchOrder,
     convert_body_to_prisms,
+    find_rank_in_file,
     identify_fixture,
     list_avoided_segments,
-    rank_in,
     watch_for_cancel,
 )
 from workhold.geometry.segment import Arc
@@ -40,11 +40,11 @@ def test_a_fixture_is_known_by_its_holes_and_how_the_part_lies() -> None:
         listed(178.0, row=2),
         listed(178.0, ways=("-x", "y")),
     ]
-    assert rank_in(others, marks) == 3
-    assert rank_in(others[:2], marks) == 2
-    assert rank_in([listed(357.0), *others[3:], listed(178.0, kind="clamp")], marks) is None
-    assert rank_in([], marks) is None
-    assert rank_in(others, "") is None
+    assert find_rank_in_file(others, marks) == 3
+    assert find_rank_in_file(others[:2], marks) == 2
+    assert find_rank_in_file([listed(357.0), *others[3:], listed(178.0, kind="clamp")], marks) is None
+    assert find_rank_in_file([], marks) is None
+    assert find_rank_in_file(others, "") is None
 
 
 def test_an_order_of_another_version_is_a_sentence(tmp_path: Path) -> None:

@@ -9,12 +9,12 @@ import pytest
 
 from chord_examples import arc_row, chord_intervals, line_row, overshoot, solutions
 from workhold import Plate, Query, Vise, Workpiece, count_contacts, load
-from workhold.contact.curves import curve_table, loosened
+from workhold.contact.curves import loosen_rows, make_curve_table
 from workhold.contact.problem import Problem
 from workhold.conventions import LOOSE
 from workhold.kernels.base.tables import BRANCH, FIRST_STRETCH, FROM, HEAD, LENGTH, SHIFT, TAIL, TO
 from workhold.kernels.chord.intervals import NARROW
-from workhold.search.toolkit_search import lattice_steps
+from workhold.search.toolkit_search import list_lattice_steps
 
 
 def test_ends_are_moved_out_by_the_same_length_on_lines_and_arcs() -> None:
@@ -22,9 +22,9 @@ def test_ends_are_moved_out_by_the_same_length_on_lines_and_arcs() -> None:
     rows = np.array(
         [line_row(1, 2, 0.3, 7.0), *(arc_row(0, 0, r, 1.0, 0.8) for r in (0.5, 3.0, 80.0)), arc_row(0, 0, 3)]
     )
-    grown = (loosened(rows) - rows)[:, 5] * np.where(rows[:, 6] == 0.0, 1.0, rows[:, 6])
+    grown = (loosen_rows(rows) - rows)[:, 5] * np.where(rows[:, 6] == 0.0, 1.0, rows[:, 6])
     assert grown == pytest.approx([LOOSE, LOOSE, LOOSE, LOOSE, 0.0], rel=1e-6)
-    assert (loosened(rows)[:, :5] == rows[:, :5]).all()
+    assert (loosen_rows(rows)[:, :5] == rows[:, :5]).all()
 
 
 def gear(teeth: int, root: float, head: float) -> Workpiece:
@@ -46,10 +46,10 @@ def test_a_chord_that_just_touches_a_circle_is_of_those_of_its_arcs_that_it_meet
     """The heads of all teeth are on one circle. No narrow range is missing in which a chord reaches both features, and
     most others are left out."""
     vise = Vise(pitch=50.0, columns=2, peg_radius=8.0)
-    problem = Problem.of(Query(gear(8, 28.0, 34.0), vise))
-    rows = loosened(problem.rows[:, :10])
-    steps = lattice_steps(problem.frame.carriers, problem.diameter)
-    curves = curve_table(rows, steps).curves
+    problem = Problem.from_query(Query(gear(8, 28.0, 34.0), vise))
+    rows = loosen_rows(problem.rows[:, :10])
+    steps = list_lattice_steps(problem.frame.carriers, problem.diameter)
+    curves = make_curve_table(rows, steps).curves
     kept = {
         (*whole[[TAIL, HEAD]].tolist(), *real[[LENGTH, FROM, TO, BRANCH]].tolist())
         for whole, real in zip(curves.integers, curves.reals, strict=True)
@@ -83,15 +83,15 @@ def test_a_table_for_some_orientations_has_all_curves_that_come_there(
     ranges: list[tuple[float, float]],
 ) -> None:
     """It has each curve of the whole table that is at an orientation within a range, and no other."""
-    problem = Problem.of(Query(load("flange"), Plate(pitch=12, peg_radius=3)))
-    rows = loosened(problem.rows[:, :10])
-    steps = lattice_steps(problem.frame.carriers, problem.diameter)
+    problem = Problem.from_query(Query(load("flange"), Plate(pitch=12, peg_radius=3)))
+    rows = loosen_rows(problem.rows[:, :10])
+    steps = list_lattice_steps(problem.frame.carriers, problem.diameter)
     whole, some = (
         {
             tuple(kept[:FIRST_STRETCH].tolist()) + tuple(real.tolist())
             for kept, real in zip(*table.curves[:2], strict=True)
         }
-        for table in (curve_table(rows, steps), curve_table(rows, steps, within=np.array(ranges)))
+        for table in (make_curve_table(rows, steps), make_curve_table(rows, steps, within=np.array(ranges)))
     )
     assert some <= whole and 0 < len(some) < 0.6 * len(whole)
     for row in whole:

@@ -13,12 +13,21 @@ from exact_chords import exactly
 from strategies import outlines, vises
 from workhold import Query, Restrictions, Vise, Workpiece, load, polygon_zone
 from workhold.contact import features
-from workhold.contact.features import allowed_features, end_slacks, list_contact_features, make_feature_rows
+from workhold.contact.features import (
+    find_allowed_features,
+    list_contact_features,
+    make_feature_rows,
+    measure_end_slacks,
+)
 from workhold.contact.problem import Problem
-from workhold.geometry.segment import Arc, segment_rows
-from workhold.kernels.base.distance import outline_distance, outline_distances, segment_distance
+from workhold.geometry.segment import Arc, make_segment_rows
+from workhold.kernels.base.distance import (
+    measure_outline_distance,
+    measure_outline_distances,
+    measure_segment_distance,
+)
 from workhold.model.own_outlines import measure_outline_diameter, measure_segments_diameter
-from workhold.proof.ball_contacts import compute_contact_value, from_origin
+from workhold.proof.ball_contacts import compute_contact_value, measure_from_origin
 from workhold.statics.contact_matrix import compute_outward_normals
 from workhold.verification.ball_geometry import BallOutline
 
@@ -27,17 +36,17 @@ from workhold.verification.ball_geometry import BallOutline
 @given(outlines(), vises())
 def test_a_peg_on_a_feature_touches_its_face_and_nothing_else(part, vise):
     """At every point of a feature the face is at distance rho, along the feature's normal, and no face is nearer."""
-    outline = segment_rows(part.segments)
+    outline = make_segment_rows(part.segments)
     faces = {face.number: face for face in part.faces}
     for feature in list_contact_features(part, vise.peg_radius):
         face = faces[feature.face].segment
-        row = segment_rows([face])[0]
+        row = make_segment_rows([face])[0]
         for t in np.linspace(-1, 1, 9) * feature.segment.half_extent:
-            (x, y), (nx, ny) = feature.segment.at(t), feature.segment.normal(t)
-            assert segment_distance(x, y, row) == pytest.approx(vise.peg_radius, abs=2e-9)
-            assert outline_distance(x, y, outline) == pytest.approx(vise.peg_radius, abs=2e-9)
+            (x, y), (nx, ny) = feature.segment.compute_point(t), feature.segment.compute_normal(t)
+            assert measure_segment_distance(x, y, row) == pytest.approx(vise.peg_radius, abs=2e-9)
+            assert measure_outline_distance(x, y, outline) == pytest.approx(vise.peg_radius, abs=2e-9)
             foot = (x - vise.peg_radius * nx, y - vise.peg_radius * ny)
-            assert segment_distance(*foot, row) < 2e-9
+            assert measure_segment_distance(*foot, row) < 2e-9
 
 
 @pytest.mark.thorough
@@ -54,8 +63,8 @@ def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
         if isinstance(face, Arc):
             assert feature.segment.radius == pytest.approx(face.radius + face.sign * vise.peg_radius)
         t = 0.4 * feature.segment.half_extent
-        normal = compute_outward_normals(row, np.array(feature.segment.at(t)))
-        assert normal == pytest.approx(feature.segment.normal(t), abs=1e-9)
+        normal = compute_outward_normals(row, np.array(feature.segment.compute_point(t)))
+        assert normal == pytest.approx(feature.segment.compute_normal(t), abs=1e-9)
 
 
 @pytest.mark.thorough
@@ -64,7 +73,7 @@ def test_features_are_ordered_by_face_and_carry_outward_normals(part, vise):
 def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
     """The diameter is at least every sampled distance and no more than the finest one plus the sampling's error."""
     points = np.array(
-        [s.at(t * s.half_extent) for s in part.loop_segments[0] for t in np.linspace(-1, 1, 81)]
+        [s.compute_point(t * s.half_extent) for s in part.loop_segments[0] for t in np.linspace(-1, 1, 81)]
     )
     farthest = np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)).max()
     diameter = measure_outline_diameter(part)
@@ -99,18 +108,18 @@ def test_known_diameters():
 def test_tangent_joints_forgive_rounding_and_corners_do_not():
     """Ends of features joined tangentially have a positive slack, all others a negative one; a whole circle has none."""
     obround = Workpiece.from_loops("obround", [[[0, 0, 0], [30, 0, 1], [30, 10, 0], [0, 10, 1]]])
-    assert (end_slacks(list_contact_features(obround, 2.0)) > 0).all()
+    assert (measure_end_slacks(list_contact_features(obround, 2.0)) > 0).all()
     square = Workpiece.from_loops("square", [[[0, 0, 0], [30, 0, 0], [30, 30, 0], [0, 30, 0]]])
-    assert (end_slacks(list_contact_features(square, 2.0)) < 0).all()
+    assert (measure_end_slacks(list_contact_features(square, 2.0)) < 0).all()
     # With rho = 0 features join at corners, but not tangentially.
-    assert (end_slacks(list_contact_features(square, 0.0)) < 0).all()
+    assert (measure_end_slacks(list_contact_features(square, 0.0)) < 0).all()
     half = Workpiece.from_loops("half", [[[0, 0, 0], [30, 0, 0], [30, 10, 1], [0, 10, 0]]])
     features = list_contact_features(half, 2.0)
-    slack = end_slacks(features)
+    slack = measure_end_slacks(features)
     for feature, (low, high) in zip(features, slack, strict=True):
         ends = [
-            feature.segment.at(-feature.segment.half_extent),
-            feature.segment.at(feature.segment.half_extent),
+            feature.segment.compute_point(-feature.segment.half_extent),
+            feature.segment.compute_point(feature.segment.half_extent),
         ]
         for (x, y), value in zip(ends, (low, high), strict=True):
             assert (value > 0) == (min(hypot(x - 32, y - 10), hypot(x + 2, y - 10)) < 1e-9)
@@ -119,11 +128,11 @@ def test_tangent_joints_forgive_rounding_and_corners_do_not():
 def test_ends_are_compared_alike_however_many_at_a_time(monkeypatch):
     """All at once, one by one, or five by five."""
     locus = list_contact_features(load("widget"), 3.0)
-    slack = end_slacks(locus)
+    slack = measure_end_slacks(locus)
     assert (slack > 0).any() and (slack < 0).any()
     for together in (1, 10 * len(locus)):
         monkeypatch.setattr(features, "TOGETHER", together)
-        assert (end_slacks(locus) == slack).all()
+        assert (measure_end_slacks(locus) == slack).all()
 
 
 def test_a_peg_too_fat_for_every_corner_leaves_no_feature_there():
@@ -165,7 +174,7 @@ def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
         "half", [[[0, 0, 0], [30, 0, 0], [30, 10, tan(pi / 4 + turn / 2)], [0, 10, 0]]]
     )
     # Point pegs: their features end at the corners themselves.
-    assert (end_slacks(list_contact_features(half, 0.0)) > 0).any() == tangent
+    assert (measure_end_slacks(list_contact_features(half, 0.0)) > 0).any() == tangent
     with exactly():
         outline = BallOutline.from_workpiece(half)
     assert outline.find_smooth_ends(2, has_flat=False) == (tangent, tangent)
@@ -180,19 +189,19 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
     part is drawn, to the rounding of its own coordinates and not of a centre kilometres away."""
     corners = [(aside[0] + x, aside[1] + y) for x, y in ((0.0, 0.1), (61.3, 0.0), (58.9, 41.7), (-1.2, 39.3))]
     part = Workpiece.from_loops("crowned", [[[x, y, bulge] for x, y in corners]])
-    problem = Problem.of(Query(part, Vise(pitch=10, columns=2, peg_radius=3)))
+    problem = Problem.from_query(Query(part, Vise(pitch=10, columns=2, peg_radius=3)))
     size = 3e-14 * (100 + max(map(abs, aside)))
     for row, (x, y), (to_x, to_y) in zip(problem.rows, corners, corners[1:] + corners[:1], strict=True):
         dx, dy = to_x - x, to_y - y
         out = 3.0 / np.hypot(dx, dy)
         middle = ((x + to_x) / 2 + bulge * dy / 2 + out * dy, (y + to_y) / 2 - bulge * dx / 2 - out * dx)
         place = np.array(middle) - part.center
-        assert outline_distances(place[None], row[None])[0] < size
+        assert measure_outline_distances(place[None], row[None])[0] < size
         with exactly():
             assert (
                 abs(
                     compute_contact_value(
-                        row.tolist(), from_origin(row.tolist(), (arb(place[0]), arb(place[1])))
+                        row.tolist(), measure_from_origin(row.tolist(), (arb(place[0]), arb(place[1])))
                     )
                 )
                 < size
@@ -202,8 +211,10 @@ def test_a_shallow_arc_stays_where_it_is_drawn_however_far_its_centre_is(
 def test_the_axis_of_a_line_counts_with_its_length() -> None:
     """Rounding makes it other than 1, and the distance from the line is none the less in mm."""
     row = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0, 1.0, 0.0, 0.0]
-    assert compute_contact_value(row, from_origin(row, (arb(1.0 + 4.0), arb(2.0 - 3.0)))).contains(5)
-    assert compute_contact_value(row, from_origin(row, (arb(1.0 - 8.0), arb(2.0 + 6.0)))).contains(-10)
+    assert compute_contact_value(row, measure_from_origin(row, (arb(1.0 + 4.0), arb(2.0 - 3.0)))).contains(5)
+    assert compute_contact_value(row, measure_from_origin(row, (arb(1.0 - 8.0), arb(2.0 + 6.0)))).contains(
+        -10
+    )
 
 
 @pytest.mark.parametrize(("margin", "beyond"), [(0.0, 0.0), (20.0, 20.0), (50.0, 43.0)])
@@ -214,7 +225,7 @@ def test_a_zone_may_be_touched_and_the_margin_counts_from_the_ends_of_the_uncut_
     square = Workpiece.from_loops("square", [[[0, 0, 0], [60, 0, 0], [60, 60, 0], [0, 60, 0]]])
     locus = list_contact_features(square, 3.0)
     box = polygon_zone([(20, -10), (30, -10), (30, -2), (20, -2)])
-    left = allowed_features(locus, square, Restrictions(zones=(box,)), 3.0)
-    slack = end_slacks(left, margin, locus)[:2]
+    left = find_allowed_features(locus, square, Restrictions(zones=(box,)), 3.0)
+    slack = measure_end_slacks(left, margin, locus)[:2]
     assert slack[0, 1] == pytest.approx(beyond + 1e-9, abs=1e-11)
     assert slack[0, 0] == slack[1, 1] == (1e-9 if margin else -1e-9)

@@ -10,9 +10,9 @@ from attrs import evolve, frozen
 
 from workhold import Query, Result, Vise, Workpiece, design
 from workhold.contact.features import measure_end_distances
-from workhold.contact.problem import Frame, Problem
+from workhold.contact.problem import Problem, SearchFrame
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes
+from workhold.fixels.carrier import HoleSelection
 from workhold.fixels.toolkit import Carrier, Travel
 from workhold.model.quality import END_DISTANCE
 from workhold.statics.quality import measure_quality
@@ -57,7 +57,7 @@ def turned_carrier(carrier: Carrier, quarters: int) -> Carrier:
     """A carrier turned about the origin, one quarter turn at a time: hole (i, j) becomes (rows - 1 - j, i)."""
     for _ in range(quarters):
         assert carrier.rows is not None
-        x, y = evolve(carrier, travel=None).place(0, carrier.rows - 1)
+        x, y = evolve(carrier, travel=None).compute_hole_center(0, carrier.rows - 1)
         travel = carrier.travel and Travel(
             carrier.travel.direction + pi / 2, carrier.travel.least, carrier.travel.most
         )
@@ -96,7 +96,7 @@ def test_a_toolkit_that_slides_another_way_has_the_same_fixtures_turned(quarters
         "rows": 7,
         "row_offset": 3.0,
         "max_opening": 30,
-        "blocked": [Holes("left", 1, 3), Holes("right", 0, 2)],
+        "blocked": [HoleSelection("left", 1, 3), HoleSelection("right", 0, 2)],
     }
     vise = design(PART, Vise(**asked))
     turned = design(PART, Turned(**asked, quarters=quarters))
@@ -115,10 +115,10 @@ def test_a_toolkit_that_slides_another_way_has_the_same_fixtures_turned(quarters
 def test_a_vise_is_its_own_frame() -> None:
     """Nothing is turned, and no travel is lost or won."""
     vise = Vise(pitch=(10, 7), columns=4, peg_radius=3, row_offset=2.5)
-    frame = Frame.of(vise, 100.0)
+    frame = SearchFrame.from_toolkit(vise, 100.0)
     assert frame.carriers == vise.carriers
     assert frame.lattice == (10.0, 7.0, 2.5)
-    assert (frame.travel_at_rest, frame.swapped, frame.gap) == (0.0, 2, 10.0)
+    assert (frame.travel_at_rest, frame.swapped_peg_count, frame.gap) == (0.0, 2, 10.0)
 
 
 def test_lattices_that_do_not_match_are_refused() -> None:
@@ -134,7 +134,7 @@ def test_lattices_that_do_not_match_are_refused() -> None:
             return left, evolve(right, travel=Travel(0.3, 0.0, None))
 
     with pytest.raises(InputError, match="quarter turns"):
-        Frame.of(Slanted(pitch=10, columns=2, peg_radius=3), 100.0)
+        SearchFrame.from_toolkit(Slanted(pitch=10, columns=2, peg_radius=3), 100.0)
 
 
 def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
@@ -143,15 +143,17 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
     asked = {"pitch": 14, "columns": 1, "peg_radius": 3}
     alike, apart = (Uneven(**asked, moving_radius=radius) for radius in (3.0, 3.0 + 1e-12))
     one, other = design(PART, alike), design(PART, apart)
-    assert Problem.of(Query(PART, alike)).standing == Problem.of(Query(PART, alike)).moving
-    assert Problem.of(Query(PART, apart)).standing[1] == Problem.of(Query(PART, apart)).moving[0]
+    assert Problem.from_query(Query(PART, alike)).standing == Problem.from_query(Query(PART, alike)).moving
+    assert (
+        Problem.from_query(Query(PART, apart)).standing[1] == Problem.from_query(Query(PART, apart)).moving[0]
+    )
     assert len(one) == len(other) > 0
     for name in ("column", "row", "face"):
         assert np.array_equal(getattr(one.table, name), getattr(other.table, name))
     # Without the half turn each fixture of two and two pegs is another one with the jaws swapped.
     assert one.found["I"] == 2 * design(PART, Vise(**asked)).found["I"]
     thin = design(PART, Uneven(**asked, moving_radius=1.0))
-    problem = Problem.of(thin.query)
+    problem = Problem.from_query(thin.query)
     assert len(thin) > 0
     turn = np.exp(-1j * thin.table.theta)[:, None]
     place = (pegs_of(thin) - (thin.table.position @ (1, 1j))[:, None]) * turn - complex(*PART.center)

@@ -22,7 +22,7 @@ def features_off(random: Random, kernel: Callable[..., Any]) -> float:
     """How far features are off lines and circles made of the drawing's numbers, over how far they may be by the program."""
     shift, radius = np.array([random.uniform(-60, 60), random.uniform(-60, 60), 0.0]), random.uniform(0.5, 3)
     part = Workpiece.from_loops("part", [(loop + shift).tolist() for loop in random_outline(random, 5).loops])
-    problem = Problem.of(Query(part, Vise(pitch=10.0, columns=2, peg_radius=radius)))
+    problem = Problem.from_query(Query(part, Vise(pitch=10.0, columns=2, peg_radius=radius)))
     vertices = [
         (vertex, loop[(k + 1) % len(loop)]) for loop in part.loops for k, vertex in enumerate(loop.tolist())
     ]

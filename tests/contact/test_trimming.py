@@ -7,9 +7,14 @@ from math import pi
 import numpy as np
 import pytest
 
-from workhold.contact.features import ContactFeature, passed_by
-from workhold.contact.swept import Swept
-from workhold.contact.trimming import LEAST_PART, find_covered_parts, find_line_most_in_the_way, left_of
+from workhold.contact.features import ContactFeature, trim_to_clear_features
+from workhold.contact.swept import SweptSpans
+from workhold.contact.trimming import (
+    LEAST_PART,
+    find_covered_parts,
+    find_line_most_in_the_way,
+    subtract_covered_ranges,
+)
 from workhold.geometry.segment import Arc, Line, Segment, make_segment_from_bulge
 from workhold.model.program import SweptPiece
 
@@ -21,7 +26,7 @@ def piece(line: int, path: tuple[tuple[float, float, float], ...], radius: float
     return SweptPiece(line, 1, "cut", path, (0.0, 0.0), radius, (0.0, 10.0))
 
 
-def random_case(seed: int) -> tuple[Segment, Swept]:
+def random_case(seed: int) -> tuple[Segment, SweptSpans]:
     """A feature of any form among swept pieces of any form."""
     random, pieces = np.random.default_rng(seed), []
     for k in range(random.integers(1, 6)):
@@ -39,7 +44,7 @@ def random_case(seed: int) -> tuple[Segment, Swept]:
     feature: Segment = make_segment_from_bulge(start, end, bulge)
     if random.random() < 0.2:
         feature = Arc((1.0, -2.0), float(random.uniform(1, 9)), 1.0, pi, 1.0)
-    return feature, Swept.of(tuple(pieces))
+    return feature, SweptSpans.from_pieces(tuple(pieces))
 
 
 def parameter_range(part: Segment, whole: Segment) -> tuple[float, float]:
@@ -47,7 +52,7 @@ def parameter_range(part: Segment, whole: Segment) -> tuple[float, float]:
     if isinstance(part, Arc) and isinstance(whole, Arc):
         middle = part.mid_angle - whole.mid_angle
     else:
-        middle = whole.parameter(part.middle)
+        middle = whole.find_parameter(part.middle)
     return middle - part.half_extent, middle + part.half_extent
 
 
@@ -56,13 +61,13 @@ def parameter_range(part: Segment, whole: Segment) -> tuple[float, float]:
 def test_what_is_left_is_what_a_walk_finds_clear(seed: int) -> None:
     feature, swept = random_case(seed)
     places = np.linspace(-feature.half_extent, feature.half_extent, 1501)
-    points = np.array([feature.at(place) for place in places])
-    reach, _ = swept.nearest(points, points)
+    points = np.array([feature.compute_point(place) for place in places])
+    reach, _ = swept.find_nearest_spans(points, points)
     for x0, y0, x1, y1 in swept.filled:
         inside = (points[:, 0] > x0) & (points[:, 0] < x1) & (points[:, 1] > y0) & (points[:, 1] < y1)
         reach[inside] = -1.0
     kept = np.zeros(len(places), np.bool_)
-    for part in left_of(feature, find_covered_parts(feature, swept, BEYOND)[0]):
+    for part in subtract_covered_ranges(feature, find_covered_parts(feature, swept, BEYOND)[0]):
         low, high = parameter_range(part, feature)
         kept |= (places >= low - 1e-9) & (places <= high + 1e-9)
     marginal = np.abs(reach - BEYOND) < 1e-6
@@ -71,23 +76,25 @@ def test_what_is_left_is_what_a_walk_finds_clear(seed: int) -> None:
 
 def test_a_place_exactly_at_the_distance_stays_and_the_feature_is_cut_from_the_whole_one() -> None:
     whole = ContactFeature(4, Line((0.0, 0.0), (20.0, 0.0)))
-    swept = Swept.of((piece(9, ((10.0, 3.0, 0.0),), 2.0),))
-    (left, right) = passed_by(whole, swept, 3.0)
+    swept = SweptSpans.from_pieces((piece(9, ((10.0, 3.0, 0.0),), 2.0),))
+    (left, right) = trim_to_clear_features(whole, swept, 3.0)
     assert left.segment.end == pytest.approx((6.0, 0.0)) and right.segment.start == pytest.approx((14.0, 0.0))
     assert left.cut_from is whole.segment and right.face == 4
-    assert passed_by(whole, swept, 1.0) == [whole]
+    assert trim_to_clear_features(whole, swept, 1.0) == [whole]
 
 
 def test_a_sliver_between_two_passes_is_no_place() -> None:
     feature = Line((0.0, 0.0), (40.0, 0.0))
     passes = [piece(k, ((5.0 + k, 0.0, 0.0),), 0.5 - 1e-9) for k in range(31)]
-    left = left_of(feature, find_covered_parts(feature, Swept.of(tuple(passes)), 0.0)[0])
+    left = subtract_covered_ranges(
+        feature, find_covered_parts(feature, SweptSpans.from_pieces(tuple(passes)), 0.0)[0]
+    )
     assert [part.middle for part in left] == [pytest.approx((2.25, 0.0)), pytest.approx((37.75, 0.0))]
     assert LEAST_PART < 2e-6
 
 
 def test_the_line_that_is_most_in_the_way_is_the_one_that_covers_most() -> None:
     features = [Line((0.0, 0.0), (20.0, 0.0))]
-    swept = Swept.of((piece(3, ((1.0, 0.0, 0.0),), 1.0), piece(5, ((12.0, 0.0, 0.0),), 4.0)))
+    swept = SweptSpans.from_pieces((piece(3, ((1.0, 0.0, 0.0),), 1.0), piece(5, ((12.0, 0.0, 0.0),), 4.0)))
     assert find_line_most_in_the_way(features, swept, 0.5) == 5
-    assert find_line_most_in_the_way(features, Swept.of(()), 0.5) is None
+    assert find_line_most_in_the_way(features, SweptSpans.from_pieces(()), 0.5) is None

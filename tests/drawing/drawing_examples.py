@@ -36,7 +36,7 @@ def example(size: float = 1.0, name: str = "notched plate") -> tuple[Fixture, Wo
     holes = [("left", 1, 0, 5), ("left", 1, 4, 3), ("right", 0, 1, 0), ("right", 0, 3, 0)]
     pegs = []
     for jaw, column, row, segment in holes:
-        x, y = vise.carriers[int(jaw == "right")].place(column, row, separation)
+        x, y = vise.carriers[int(jaw == "right")].compute_hole_center(column, row, separation)
         pegs.append(Peg("right" if jaw == "right" else "left", column, row, x, y, segment, 0.5))
     pose = Pose(90.0, 43.0 * size, -5.0 * size)
     quality = {"closure_margin": 0.125}
@@ -69,7 +69,7 @@ def any_set_up(seed: int) -> tuple[Fixture, Workpiece, Vise]:
         holes.add((int(len(holes) >= left), chance.randrange(vise.columns), row))
     pegs = []
     for jaw, column, row in sorted(holes):
-        x, y = vise.carriers[jaw].place(column, row, separation)
+        x, y = vise.carriers[jaw].compute_hole_center(column, row, separation)
         face = chance.choice(part.faces).number
         pegs.append(Peg("right" if jaw else "left", column, row, x, y, face, chance.uniform(0, 1.2)))
     quality = {"closure_margin": 0.1}
@@ -100,7 +100,7 @@ def diamond(
     separation = 2 * center * size
     pegs = []
     for jaw, row, segment in [(0, 0, 4 if rounded else 3), (0, 2, 2), (1, 0, 0), (1, 2, 1)]:
-        x, y = vise.carriers[jaw].place(0, row, separation)
+        x, y = vise.carriers[jaw].compute_hole_center(0, row, separation)
         pegs.append(Peg("right" if jaw else "left", 0, row, x, y, segment, 1 / sqrt(2)))
     pose = Pose(45.0, center * size, (10 - 20 * sqrt(2)) * size)
     return (

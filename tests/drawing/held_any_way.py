@@ -11,9 +11,9 @@ from attrs import evolve, frozen
 
 from workhold import Fence, Fixture, Load, OpeningVise, Peg, Plate, Pose, Vise, Workpiece
 from workhold.fixels.toolkit import Arrangement, Toolkit
-from workhold.model.fixture import Pair
+from workhold.model.fixture import ClampPair
 from workhold.model.quality import FIGURES
-from workhold.statics.loads import LoadCase, Worst
+from workhold.statics.loads import LoadCase, WorstLoad
 
 __all__ = ["AHEAD", "HELD", "PITCH", "WALL_OFFSET", "WORDS", "Held", "load_cases_of", "tips_of"]
 
@@ -102,7 +102,11 @@ def held_in(made: str, toolkit: Toolkit, arrangement: Arrangement) -> Held:
             pegs.append(Peg(carrier.name, 0, 0, x + 0.25, 0.0, face, force, place, beside))
         elif carrier.on is None:
             column %= carrier.columns or 6
-            pegs.append(Peg(carrier.name, column, row, *carrier.place(column, row, opening), face, force))
+            pegs.append(
+                Peg(
+                    carrier.name, column, row, *carrier.compute_hole_center(column, row, opening), face, force
+                )
+            )
         else:
             dx, dy = AHEAD[carrier.name.removeprefix("clamp ")]
             stroke = round(chance.uniform(*TRAVEL), 3)
@@ -110,13 +114,15 @@ def held_in(made: str, toolkit: Toolkit, arrangement: Arrangement) -> Held:
             y = row * PITCH[1] + (WALL_OFFSET if toolkit.wall else 0.0) + dy * stroke
             if not carrier.has_a_hole:
                 column, row = (0, row) if dx else (column, 0)
-            start = carrier.place(column, row)
+            start = carrier.compute_hole_center(column, row)
             travels.append((start[0] - x) * dx + (start[1] - y) * dy)
-            pegs.append(Peg(carrier.name, column, row, x, y, face, force, carrier.place_name(column, row)))
+            pegs.append(Peg(carrier.name, column, row, x, y, face, force, carrier.name_place(column, row)))
     pair = None
     if len(travels) == 2:
         low, high = chance.choice(((0.0, 2.3), (0.41, float("inf")), (0.37, 3.1), (0.0, float("inf"))))
-        pair = Pair((travels[0], travels[1]), (low, high), ((0.0, 0.0),) * len(pegs), chance.randrange(2, 90))
+        pair = ClampPair(
+            (travels[0], travels[1]), (low, high), ((0.0, 0.0),) * len(pegs), chance.randrange(2, 90)
+        )
     quality = {figure.key: round(0.061 + 0.1307 * k, 6) for k, figure in enumerate(FIGURES)}
     pose = Pose(
         round(chance.uniform(5, 340), 4), round(chance.uniform(20, 60), 3), round(chance.uniform(10, 50), 3)
@@ -137,7 +143,7 @@ def load_cases_of(held: Held) -> tuple[LoadCase, ...]:
     """Three loads, the second the hardest and the first the least; no two numbers are alike."""
     count, cases = len(held.fixture.pegs), []
     for number, needed in enumerate((310.5, 930.5, 620.5), 1):
-        worst = Worst(needed, number % count, (3.5 * number, 2.25 * number), 11.5 * number)
+        worst = WorstLoad(needed, number % count, (3.5 * number, 2.25 * number), 11.5 * number)
         largest = tuple(1000.0 * number + 71.0 * k + 0.25 for k in range(count))
         load = Load(
             ((4.5 * number, 1.5 * number),),

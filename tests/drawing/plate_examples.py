@@ -73,8 +73,8 @@ def on_plate(
         column, row = (0, row) if way[1] == "x" else (column, 0)
     carrier = plate.carriers[1]
     at = placed(tip)
-    travelled = float(np.dot(np.array(at) - carrier.place(column, row), plate.moving_axis))
-    pegs.append(Peg(carrier.name, column, row, *at, CLAMP[2], FORCES[3], carrier.place_name(column, row)))
+    travelled = float(np.dot(np.array(at) - carrier.compute_hole_center(column, row), plate.moving_axis))
+    pegs.append(Peg(carrier.name, column, row, *at, CLAMP[2], FORCES[3], carrier.name_place(column, row)))
     pose = Pose((degrees(turn) + 90 * quarters) % 360, *placed(corner))
     workpiece = Workpiece.from_loops(
         name, [[[size * u, size * v, 0] for u, v in ((0, 0), (WIDTH, 0), (WIDTH, HEIGHT), (0, HEIGHT))]]

@@ -16,7 +16,7 @@ from workhold.drawing.scene import UNITS_PER_MM
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import ChosenSupports
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 
 HEIGHT, PEG_HEIGHT, HEAD_ROOM = 24.0, 9.0, 0.75
 # The block as the outline of a solid: its faces are touched at different heights, one of them never.
@@ -67,8 +67,8 @@ def chosen(name: str, loaded: bool = False) -> ChosenSupports | None:
     """Three supports under the block as a prism 24 mm thick; None where there are none."""
     result = result_of(name, False, loaded)
     request = SupportRequest(HEIGHT, pad_radius=2.0, tip_radius=2.5, band=(1.0, 8.0))
-    found = supports_of(result[0], result.query, request, best=1)
-    return ChosenSupports.of(found) if found.triples else None
+    found = find_supports(result[0], result.query, request, best=1)
+    return ChosenSupports.from_supports(found) if found.triples else None
 
 
 def sheet(result: Result, **asked: object) -> tuple[str, ...]:
@@ -86,6 +86,6 @@ def faults(pages: tuple[str, ...]) -> list[object]:
     """Words that cover one another, and words off the paper."""
     found: list[object] = []
     for page in pages:
-        inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
+        inside = page_of(page).grow(-PRINTABLE * UNITS_PER_MM)
         found += collisions(page) + [word for word, box in words_of(page) if not inside.contains(box)]
     return found

@@ -21,7 +21,7 @@ from workhold.files.dxf.writer import make_setup_dxf
 from workhold.files.result.fixture_text import make_fixture_template, write_pin_list
 from workhold.fixels.setup_words import Datum, SetupWords
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
-from workhold.model.shown import shown
+from workhold.model.shown import find_shown
 from workhold.units import MILLIMETRE
 from workhold.web.answers import describe_fixture
 
@@ -149,7 +149,7 @@ def test_the_page_and_the_terminal_tell_it() -> None:
 @pytest.mark.parametrize("travelled", [30.0 + OUT, 40.0])
 def test_what_shows_of_it_keeps_the_wall_below_the_part(travelled: float) -> None:
     """The plate slides above and does not go on below the wall."""
-    seen = shown(evolve(HELD, travel=travelled), TOOLKIT, HOUSE)
+    seen = find_shown(evolve(HELD, travel=travelled), TOOLKIT, HOUSE)
     (wall,), (plate,) = seen.walls, seen.carriers
     assert wall.bar.y1 == 0.0 and wall.ends == (0.0, 40.0)
     assert plate.plate.y0 > wall.bar.y1 and plate.travelled == travelled

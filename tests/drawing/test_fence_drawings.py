@@ -13,7 +13,7 @@ from sheet_reading import collisions
 from svg_reading import texts
 
 from workhold import Fence, Restrictions, Result, Workpiece, design
-from workhold.cli.seat_command import seat_table
+from workhold.cli.seat_command import tabulate_seats
 from workhold.drawing import draw_fixture, draw_setup_sheet
 from workhold.drawing.bench import find_contact
 from workhold.drawing.scene import LengthUnit
@@ -24,8 +24,8 @@ from workhold.files.result.fixture_text import write_pin_list, write_result_csv
 from workhold.fixels.contacts import ROUND_PIN, WALL_END
 from workhold.geometry.segment import Line
 from workhold.model.seating import Seat
-from workhold.model.shown import shown
-from workhold.statics.contact_matrix import Touched
+from workhold.model.shown import find_shown
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.units import MILLIMETRE
 
 L = [[0, 0, 0], [60, 0, 0], [60, 20, 0], [20, 20, 0], [20, 50, 0], [0, 50, 0]]
@@ -73,7 +73,7 @@ def test_corners_on_the_fence_are_told_by_both_faces_and_not_marked_as_touched()
 def test_the_bar_lies_below_the_part_and_the_plate_goes_on_below_it() -> None:
     """As long as plate and part."""
     result = held(KITE)
-    seen = shown(result[0], result.toolkit, result.workpiece)
+    seen = find_shown(result[0], result.toolkit, result.workpiece)
     (wall,) = seen.walls
     assert wall.bar.y1 == 0.0 < -wall.bar.y0
     assert wall.bar.x0 <= seen.part.x0 and wall.bar.x1 >= seen.part.x1
@@ -144,12 +144,16 @@ def test_a_seat_like_a_fixture_is_said_to_lie_flush() -> None:
     assert picture.count("flush") == 2 and "four pegs" not in picture
     lengths = LengthUnit.from_typical_length(MILLIMETRE, 10.0)
     gauge = SeatingSentences(None, fixture, result.toolkit, lengths).gauge  # type: ignore[arg-type]
-    table = seat_table([own, seat], gauge, MILLIMETRE)
+    table = tabulate_seats([own, seat], gauge, MILLIMETRE)
     assert [row[-1] for row in table.rows] == ["right", "flush on the fence"]
 
 
 def test_what_lies_on_a_fence_ends_nowhere_that_matters() -> None:
     """Edges are infinitely far from the ends of the contact, and not from the locator and the tip."""
     result = held(KITE)
-    edges = Touched.of(result.workpiece, result.toolkit).of_fixture(result[0], result.toolkit).edges[0]
+    edges = (
+        TouchableFeatures.from_workpiece(result.workpiece, result.toolkit)
+        .compute_for_fixture(result[0], result.toolkit)
+        .edges[0]
+    )
     assert [bool(isinf(edge)) for edge in edges] == [False, True, True, False]

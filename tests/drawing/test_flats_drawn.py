@@ -20,7 +20,7 @@ from workhold.cli.main import app
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
 from workhold.files.dxf.writer import make_setup_dxf
 from workhold.files.result.fixture_text import write_pin_list
-from workhold.fixels.pegs import Flat, make_peg_outline
+from workhold.fixels.pegs import PegFlat, make_peg_outline
 from workhold.geometry.segment import Line
 from workhold.units import MILLIMETRE
 
@@ -44,16 +44,16 @@ def mixed() -> int:
 
 def test_an_outline_is_a_circle_cut_off() -> None:
     """A chord so far from the centre, looking that way, and the rest of the circle."""
-    arc, chord = make_peg_outline((10.0, 5.0), 3.0, Flat(1.5), 90.0)
+    arc, chord = make_peg_outline((10.0, 5.0), 3.0, PegFlat(1.5), 90.0)
     assert isinstance(chord, Line) and chord.start[1] == pytest.approx(6.5) == chord.end[1]
     assert chord.end[0] == pytest.approx(10 - np.sqrt(9 - 2.25)) and chord.start[0] > 12
-    assert np.allclose(arc.at(arc.half_extent), chord.start) and np.allclose(
-        arc.at(-arc.half_extent), chord.end
+    assert np.allclose(arc.compute_point(arc.half_extent), chord.start) and np.allclose(
+        arc.compute_point(-arc.half_extent), chord.end
     )
-    assert np.allclose(arc.at(0.0), (10, 2))
+    assert np.allclose(arc.compute_point(0.0), (10, 2))
     assert (
-        len(make_peg_outline((0.0, 0.0), 3.0, Flat(1.5), None))
-        == len(make_peg_outline((0.0, 0.0), 3.0, Flat(3.0), 0.0))
+        len(make_peg_outline((0.0, 0.0), 3.0, PegFlat(1.5), None))
+        == len(make_peg_outline((0.0, 0.0), 3.0, PegFlat(3.0), 0.0))
         == 1
     )
 
@@ -88,7 +88,7 @@ def test_files_have_them() -> None:
     assert len(polylines) == len(flat) and len(drawn) == 4
     faces = {face.number: face.segment for face in NOTCHED.faces}
     for peg, polyline in zip(flat, polylines, strict=True):
-        normal = np.array(fixture.pose.turn(*faces[peg.face].normal()))
+        normal = np.array(fixture.pose.turn(*faces[peg.face].compute_normal()))
         start = np.array(fixture.pose.apply(*faces[peg.face].start))
         ends = [np.array(point[:2]) for point in polyline.get_points("xyb")]
         assert all(abs((end - start) @ normal) < 1e-6 for end in ends)

@@ -31,9 +31,9 @@ def struck(svg: str) -> list[str]:
             for k in range(201)
         ]
         for word, box in words_of(svg):
-            if box.grown(8).contains(Box(*end, *end)):
+            if box.grow(8).contains(Box(*end, *end)):
                 continue
-            if any(box.grown(-1).contains(Box(*point, *point)) for point in points):
+            if any(box.grow(-1).contains(Box(*point, *point)) for point in points):
                 found.append(word)
     return found
 

@@ -110,7 +110,7 @@ def test_sheet_names_the_program_with_its_tools_and_zero(result: Result) -> None
 
 def moves(*rows: tuple[tuple[float, float], tuple[float, float], float]) -> Moves:
     """Cutting moves at height 0 from starts, ends and bulges."""
-    return Moves.of_rows(
+    return Moves.from_rows(
         [(1, 1, True, (*one, 0.0), (*other, 0.0), bulge, 0.0, 0.0) for one, other, bulge in rows]
     )
 

@@ -11,7 +11,7 @@ from sheet_reading import collisions
 from svg_reading import by_class, matrix, texts, to_model
 
 from workhold.drawing import draw_fixture, draw_thumbnails
-from workhold.model.shown import shown
+from workhold.model.shown import find_shown
 from workhold.units import INCH, MILLIMETRE, Unit
 
 BOLTED = pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"])
@@ -22,7 +22,7 @@ BOLTED = pytest.mark.parametrize("bolted", [True, False], ids=["bolted", "line"]
 def test_what_shows_of_a_clamp_is_where_it_is(way: str, bolted: bool) -> None:
     """One plate; the clamp pushes its way, its tip lies ahead of its hole by the stroke, and its hole or line is used."""
     fixture, workpiece, plate = on_plate(way, bolted)
-    seen = shown(fixture, plate, workpiece)
+    seen = find_shown(fixture, plate, workpiece)
     (lattice,), (clamp,), (measured,) = seen.carriers, seen.clamps, seen.measured
     assert clamp.clamping == towards(way)
     tip, (dx, dy) = fixture.pegs[3], clamp.clamping
@@ -45,9 +45,11 @@ def test_what_shows_of_a_clamp_is_where_it_is(way: str, bolted: bool) -> None:
 def test_a_body_is_a_capsule_from_its_hole_to_its_tip(way: str) -> None:
     """Its outline is closed, runs counter-clockwise, and every point of it is one radius from the axis."""
     fixture, workpiece, plate = on_plate(way)
-    (clamp,) = shown(fixture, plate, workpiece).clamps
-    body = clamp.outline()
-    points = [piece.at(share * piece.half_extent) for piece in body for share in (-1.0, -0.3, 0.4, 1.0)]
+    (clamp,) = find_shown(fixture, plate, workpiece).clamps
+    body = clamp.make_outline()
+    points = [
+        piece.compute_point(share * piece.half_extent) for piece in body for share in (-1.0, -0.3, 0.4, 1.0)
+    ]
     (ax, ay), (bx, by), (dx, dy) = clamp.back, (clamp.tip.x, clamp.tip.y), clamp.clamping
     length = hypot(bx - ax, by - ay)
     for x, y in points:
@@ -117,7 +119,7 @@ def test_the_line_of_a_clamp_is_named_as_used(way: str) -> None:
     """A row, or a column, in which only the clamp's tip moves counts as used, and no other does by it."""
     fixture, workpiece, plate = on_plate(way, bolted=False)
     tip = evolve(fixture.pegs[3], **({"row": 6} if way[1] == "x" else {"column": 6}))
-    (lattice,) = shown(evolve(fixture, pegs=(*fixture.pegs[:3], tip)), plate, workpiece).carriers
+    (lattice,) = find_shown(evolve(fixture, pegs=(*fixture.pegs[:3], tip)), plate, workpiece).carriers
     rows, columns = {peg.row for peg in fixture.pegs[:3]}, {peg.column for peg in fixture.pegs[:3]}
     assert (lattice.used_rows, lattice.used_columns) == (
         (rows | {6}, columns) if way[1] == "x" else (rows, columns | {6})

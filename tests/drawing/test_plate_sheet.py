@@ -14,7 +14,7 @@ from workhold import Fixture, Load, Plate, Workpiece
 from workhold.drawing import SheetDetails, draw_sheet
 from workhold.drawing.scene import UNITS_PER_MM
 from workhold.files.result.fixture_text import write_pin_list
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Plate]
@@ -32,7 +32,7 @@ def details_for(held: Held, **changes: object) -> SheetDetails:
     """Details with two loads, one of them at every corner of the part."""
     corners = tuple((float(x), float(y)) for x, y, _ in held[1].loops[0])
     loads = (Load(corners, 100.0, name="side milling"), Load(corners[:1], 30.0, (0.0, 90.0)))
-    cases = load_cases(*held, loads, 2000.0, 0.15)
+    cases = compute_load_cases(*held, loads, 2000.0, 0.15)
     return evolve(DETAILS, jaw_force=2000.0, friction=0.15, loads=cases, **changes)
 
 
@@ -60,7 +60,7 @@ def test_nothing_is_covered_or_cut_off(
     pages = draw_sheet(*held, evolve(DETAILS, **changes) if endless else details_for(held, **changes))
     for page in pages:
         assert collisions(page) == []
-        inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
+        inside = page_of(page).grow(-PRINTABLE * UNITS_PER_MM)
         assert [word for word, place in words_of(page) if not inside.contains(place)] == []
     words = facts(pages).lower()
     assert [

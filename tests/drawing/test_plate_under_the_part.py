@@ -13,7 +13,7 @@ from svg_reading import NAMESPACE, by_class, to_model
 from workhold import Pose
 from workhold.drawing import draw_fixture
 from workhold.files.dxf.writer import make_setup_dxf
-from workhold.model.shown import Shown, shown
+from workhold.model.shown import ShownSetUp, find_shown
 
 KINDS = (
     "vise, I",
@@ -29,11 +29,11 @@ EACH = pytest.mark.parametrize(
 FAR = Pose(200.0, -70.0, -60.0)
 
 
-def far_out(held: Held, **limits: int) -> tuple[Held, Shown]:
+def far_out(held: Held, **limits: int) -> tuple[Held, ShownSetUp]:
     """A part that reaches far beyond column A and row 1, and what shows."""
     fixture = evolve(held.fixture, pose=evolve(FAR, y=90.0) if held.made.startswith("fence") else FAR)
     held = evolve(held, fixture=fixture, toolkit=evolve(held.toolkit, **limits))  # type: ignore[misc]
-    return held, shown(held.fixture, held.toolkit, held.workpiece)
+    return held, find_shown(held.fixture, held.toolkit, held.workpiece)
 
 
 @EACH
@@ -51,8 +51,8 @@ def test_a_plate_without_limits_lies_under_the_whole_part(held: Held) -> None:
         if each.carrier.columns is None:
             assert each.plate.x0 <= seen.part.x0 and each.plate.x1 >= seen.part.x1 and each.columns[0] < 0
             assert {"left", "right"} <= each.broken
-        x, y = each.carrier.place(0, 0, each.travelled)
-        for hole in each.holes():
+        x, y = each.carrier.compute_hole_center(0, 0, each.travelled)
+        for hole in each.list_holes():
             assert hole.center == pytest.approx((x + hole.column * PITCH[0], y + hole.row * PITCH[1]))
         assert each.named_rows[0] == (0, pytest.approx(y)) and each.named_columns[0][0] >= 0
 
@@ -76,7 +76,7 @@ def test_a_plate_with_limits_ends_there(held: Held) -> None:
 def test_holes_keep_their_names(held: Held) -> None:
     """Column A and row 1 are named at hole A1, in the picture and in a drawing for a CAM system; none before them is."""
     held, seen = far_out(held)
-    origins = [each.carrier.place(0, 0, each.travelled) for each in seen.carriers]
+    origins = [each.carrier.compute_hole_center(0, 0, each.travelled) for each in seen.carriers]
     svg = draw_fixture(held.fixture, held.workpiece, held.toolkit)
     (group,), (names,) = by_class(svg, "part"), by_class(svg, "hole-names")
     places = [

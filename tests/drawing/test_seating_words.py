@@ -16,10 +16,10 @@ from workhold.drawing import SheetDetails, draw_setup_sheet, draw_sheet
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.sheet_facts import list_result_cautions
-from workhold.model.clamps import order_words
+from workhold.model.clamps import describe_tightening_order
 from workhold.model.quality import FIGURE_RANKING
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -63,7 +63,7 @@ def test_nothing_is_covered_or_cut_off(
     pages = draw_sheet(result[0], result.workpiece, result.toolkit, details)
     for page in pages:
         assert collisions(page) == []
-        inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
+        inside = page_of(page).grow(-PRINTABLE * UNITS_PER_MM)
         assert [word for word, place in words_of(page) if not inside.contains(place)] == []
     drawn = sum(
         element.tag.endswith("rect")
@@ -87,7 +87,7 @@ def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seatin
         unsettled=tuple(f"place {k} where the part may rest could not be settled." for k in range(30)),
     )
     loads = [Load(((20.0, 10.0 + k),), 100.0 + k, name=f"pass {k}") for k in range(6)]
-    cases = load_cases(result[0], result.workpiece, result.toolkit, loads)
+    cases = compute_load_cases(result[0], result.workpiece, result.toolkit, loads)
     details = evolve(DETAILS, seating=long, part_name="bracket, first operation " * 8, loads=cases)
     pages = draw_sheet(result[0], result.workpiece, result.toolkit, details)
     foot = page_of(pages[0]).y1 - 44
@@ -126,7 +126,7 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
     """Each with its reading and how it differs; those that the jaws cannot open to are left out."""
     words = words_for(result, told[1], 1)
     off = [abs(seat.difference) for seat in words.wrong]
-    assert off == sorted(off) and len(off) == len(told[1].wrong_within())
+    assert off == sorted(off) and len(off) == len(told[1].list_wrong_seats())
     near = words.wrong[0]
     pages = draw_sheet(result[1], WEDGE, result.toolkit, evolve(DETAILS, seating=told[1]))
     written = [word for page in pages for word in texts(page)]
@@ -220,12 +220,12 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
             pages = draw_setup_sheet(result, rank, seating=seating)
             words = " ".join(word for page in pages for word in texts(page))
             wanted = seating or (seating is None and rank == 2)
-            steps = told.steps(
+            steps = told.list_steps(
                 LengthUnit.from_typical_length(MILLIMETRE, 20.0).format_length, with_order=False
             )
             why = "Neither of the two clamps holds the part alone"
             assert all((part in words) == wanted for part in (why, *steps, "Does the part end up there?"))
-            assert words.count(order_words(result[rank - 1])) == 2
+            assert words.count(describe_tightening_order(result[rank - 1])) == 2
             assert "What it looks like" not in words and not any(collisions(page) for page in pages)
     [asked, plain] = [list_result_cautions(result, 1, seating=seating) for seating in (True, False)]
     assert asked == plain

@@ -20,8 +20,8 @@ from workhold.drawing.bench import make_bench
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
 from workhold.drawing.sheet import choose_standard_scale, fill_runs
 from workhold.drawing.sheet_facts import PAPERS, choose_caliper_check, list_cautions, measure_edge_distances
-from workhold.fixels.carrier import Holes
-from workhold.statics.loads import load_cases
+from workhold.fixels.carrier import HoleSelection
+from workhold.statics.loads import compute_load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
 Held = tuple[Fixture, Workpiece, Vise]
@@ -39,7 +39,7 @@ def details_for(held: Held, **changes: object) -> SheetDetails:
     fixture, workpiece, vise = held
     corners = tuple((float(x), float(y)) for x, y, _ in workpiece.loops[0])
     loads = (Load(corners, 100.0, name="side milling"), Load(corners[:1], 30.0, (0.0, 90.0)))
-    cases = load_cases(fixture, workpiece, vise, loads, 2000.0, 0.15, "constant")
+    cases = compute_load_cases(fixture, workpiece, vise, loads, 2000.0, 0.15, "constant")
     return evolve(DETAILS, jaw_force=2000.0, friction=0.15, loads=cases, **changes)
 
 
@@ -67,7 +67,7 @@ def test_nothing_is_covered_or_cut_off(
         box = page_of(page)
         assert {box.width, box.height} == sides
         assert collisions(page) == []
-        inside = box.grown(-PRINTABLE * UNITS_PER_MM)
+        inside = box.grow(-PRINTABLE * UNITS_PER_MM)
         assert [word for word, place in words_of(page) if not inside.contains(place)] == []
 
 
@@ -81,7 +81,7 @@ def test_no_two_labels_overlap_on_any_sheet(seed: int) -> None:
     details = evolve(DETAILS, unit=unit, paper=paper, others=seed % 3, jaw_force=2000.0 if seed % 5 else None)
     for page in draw_sheet(*any_set_up(seed), details):
         assert collisions(page) == []
-        inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
+        inside = page_of(page).grow(-PRINTABLE * UNITS_PER_MM)
         assert [word for word, place in words_of(page) if not inside.contains(place)] == []
 
 
@@ -94,7 +94,7 @@ def test_a_hole_that_places_are_told_from_is_shown_with_room_for_its_name() -> N
     moved = evolve(fixture, pegs=tuple(pegs), pose=evolve(fixture.pose, x=fixture.pose.x + 30))
     for paper in PAPERS:
         page = draw_sheet(moved, workpiece, evolve(vise, columns=4), evolve(DETAILS, paper=paper))[0]
-        inside = page_of(page).grown(-PRINTABLE * UNITS_PER_MM)
+        inside = page_of(page).grow(-PRINTABLE * UNITS_PER_MM)
         places = dict(words_of(page))
         assert inside.contains(places["L-A1 (0, 0)"]) and inside.contains(places["row"])
         assert collisions(page) == []
@@ -144,7 +144,7 @@ def test_pegs_are_labelled_by_the_holes_they_stand_in(held: Held) -> None:
     for peg, circle in zip(fixture.pegs, by_class(page, "peg"), strict=True):
         x, y = to_model(group, float(circle.attrib["cx"]), float(circle.attrib["cy"]))
         column, row = ord(peg.hole[2]) - ord("A"), int(peg.hole[3:]) - 1
-        place = vise.carriers[int(peg.hole[0] == "R")].place(column, row, fixture.travel)
+        place = vise.carriers[int(peg.hole[0] == "R")].compute_hole_center(column, row, fixture.travel)
         assert distance((x, y), place) < 1e-3 * vise.peg_radius
         assert peg.hole in flags
         assert texts(page).count(peg.hole) >= 2  # on the plan and in the table
@@ -246,8 +246,8 @@ def test_calipers_know_jaws_that_are_not_level(offset: float) -> None:
     fixture, _, vise = example()
     vise = evolve(vise, row_offset=offset)
     check = choose_caliper_check(fixture, vise)
-    left = vise.carriers[0].place(*check.left, fixture.travel)
-    right = vise.carriers[1].place(*check.right, fixture.travel)
+    left = vise.carriers[0].compute_hole_center(*check.left, fixture.travel)
+    right = vise.carriers[1].compute_hole_center(*check.right, fixture.travel)
     assert abs(left[1] - right[1]) <= vise.pitch[1] / 2
     assert check.distance == pytest.approx(distance(left, right))
 
@@ -255,7 +255,10 @@ def test_calipers_know_jaws_that_are_not_level(offset: float) -> None:
 def test_calipers_keep_off_blocked_holes() -> None:
     """A blocked hole takes no pin."""
     fixture, _, vise = example()
-    assert choose_caliper_check(fixture, evolve(vise, blocked=(Holes("right", 0, 0),))).right != (0, 0)
+    assert choose_caliper_check(fixture, evolve(vise, blocked=(HoleSelection("right", 0, 0),))).right != (
+        0,
+        0,
+    )
 
 
 def test_edges_are_measured_along_the_face() -> None:
@@ -322,10 +325,10 @@ def test_a_jaw_force_too_small_for_a_load_is_warned_of() -> None:
     """Just below the jaw force needed a peg lets go, and the sheet says which and how much it takes."""
     fixture, workpiece, vise = diamond()
     load = (Load(((30.0, 20.0),), 100.0),)
-    (needed,) = load_cases(fixture, workpiece, vise, load)
+    (needed,) = compute_load_cases(fixture, workpiece, vise, load)
     for share, expected in ((0.9, ["load"]), (1.1, [])):
         force = share * needed.needed.value
-        cases = load_cases(fixture, workpiece, vise, load, force)
+        cases = compute_load_cases(fixture, workpiece, vise, load, force)
         found = list_cautions(
             fixture, vise, [10.0] * 4, evolve(DETAILS, jaw_force=force, loads=cases), LengthUnit.in_mm()
         )
@@ -371,7 +374,7 @@ def test_boxes_of_words_are_found_to_collide() -> None:
     text = '<text x="10" y="20" font-size="10">word</text>'
     svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 99 99">{text}{text}</svg>'
     assert collisions(svg) == [("word", "word")]
-    assert words_of(svg)[0][1].overlap(Box(0, 0, 99, 99)) > 0
+    assert words_of(svg)[0][1].compute_overlap_area(Box(0, 0, 99, 99)) > 0
 
 
 def test_words_fill_the_second_page_before_a_third_begins() -> None:

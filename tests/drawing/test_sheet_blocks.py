@@ -10,7 +10,12 @@ from hypothesis import strategies as st
 from strategies import outlines
 from workhold import Pose, Workpiece
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.upper_side import Mark, describe_upper_side, find_distinguishing_marks, list_marks
+from workhold.drawing.upper_side import (
+    OutlineMark,
+    describe_upper_side,
+    find_distinguishing_marks,
+    list_marks,
+)
 from workhold.geometry.symmetry import is_own_mirror_image
 
 LENGTHS = LengthUnit.in_mm()
@@ -65,7 +70,7 @@ def test_marks_run_round_the_other_way_in_a_part_turned_over(part: Workpiece) ->
     twins = [[other for other in list_marks(mirrored(part)) if other.is_like(mark)] for mark in marks]
     assert [len(found) for found in twins] == [1, 1]
 
-    def turn(one: Mark, other: Mark) -> float:
+    def turn(one: OutlineMark, other: OutlineMark) -> float:
         return one.place[0] * other.place[1] - one.place[1] * other.place[0]
 
     assert turn(*marks) * turn(twins[0][0], twins[1][0]) < 0
@@ -73,10 +78,10 @@ def test_marks_run_round_the_other_way_in_a_part_turned_over(part: Workpiece) ->
 
 def test_marks_that_look_alike_are_not_told_apart() -> None:
     """A rounding and a hollow of one radius differ; two holes within 2.5 % of one another do not."""
-    rounding = Mark(0, (5.0, 5.0), 10.0, 5.0, 1)
-    assert not rounding.is_like(Mark(0, (9.0, 5.0), 10.0, 5.0, -1))
-    assert Mark(1, (5.0, 5.0), 10.0, 3.0, 2).is_like(Mark(2, (9.0, 5.0), 10.2, 3.06, 2))
-    assert not Mark(1, (5.0, 5.0), 10.0, 3.0, 2).is_like(Mark(2, (9.0, 5.0), 10.5, 3.15, 2))
+    rounding = OutlineMark(0, (5.0, 5.0), 10.0, 5.0, 1)
+    assert not rounding.is_like(OutlineMark(0, (9.0, 5.0), 10.0, 5.0, -1))
+    assert OutlineMark(1, (5.0, 5.0), 10.0, 3.0, 2).is_like(OutlineMark(2, (9.0, 5.0), 10.2, 3.06, 2))
+    assert not OutlineMark(1, (5.0, 5.0), 10.0, 3.0, 2).is_like(OutlineMark(2, (9.0, 5.0), 10.5, 3.15, 2))
 
 
 @given(st.floats(0, 360), st.floats(-50, 50))

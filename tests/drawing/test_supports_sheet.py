@@ -15,9 +15,9 @@ from workhold.drawing.hardware_table import list_hardware
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.supports_drawn import explain_hole_names
 from workhold.drawing.upper_side import describe_solid_side_up
-from workhold.model.dowel_lengths import find_shortest_dowel, standouts
+from workhold.model.dowel_lengths import find_shortest_dowel, list_standouts
 from workhold.model.first_side import FirstSide
-from workhold.model.setup import part_zero
+from workhold.model.setup import choose_part_zero
 from workhold.model.solid import SolidOutline
 from workhold.model.support_triples import ChosenSupports
 from workhold.units import INCH, MILLIMETRE
@@ -44,7 +44,7 @@ def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> No
     (labels,) = by_class(page, "labels")
     written = [element.text for element in labels.iter() if element.tag.endswith("text")]
     for pad, place in zip(found.pads, places, strict=True):
-        there = toolkit.find_carrier(pad.carrier).place(pad.column, pad.row, travel)
+        there = toolkit.find_carrier(pad.carrier).compute_hole_center(pad.column, pad.row, travel)
         assert place == pytest.approx(there, abs=2e-3) and pad.hole in written
     (tip,) = by_class(page, "top-clamp")
     at = to_model(group, float(tip.attrib["cx"]), float(tip.attrib["cy"]))
@@ -73,12 +73,12 @@ def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit:
     words = printed(sheet(result, thickness=HEIGHT, supports=found, zero=zero, unit=unit))
     assert unit in (MILLIMETRE, INCH)
     lengths = LengthUnit.from_typical_length(INCH if unit is INCH else MILLIMETRE, 10.0)
-    start = part_zero(BLOCK, zero).point
+    start = choose_part_zero(BLOCK, zero).point
     x, y = (place - origin for place, origin in zip(found.clamp.at, start, strict=True))
-    assert f"clamp presses at X {lengths.number(x)}, Y {lengths.format_length(y)}" in words
+    assert f"clamp presses at X {lengths.format_number(x)}, Y {lengths.format_length(y)}" in words
     there = found.recounted.fixture.pose.apply(*found.clamp.at)
-    assert f"x {lengths.number(float(there[0]))}, y {lengths.format_length(float(there[1]))}" in words
-    assert f"press the part down at X {lengths.number(x)}, Y {lengths.number(y)}" in words
+    assert f"x {lengths.format_number(float(there[0]))}, y {lengths.format_length(float(there[1]))}" in words
+    assert f"press the part down at X {lengths.format_number(x)}, Y {lengths.format_number(y)}" in words
     assert f"tipping arm {lengths.format_length(found.clamp.arm)}" in words
 
 
@@ -293,7 +293,7 @@ def test_the_drawer_names_the_dowel_that_would_do() -> None:
     result = result_of("plate", False)
     diameter = result.toolkit.peg_diameter
     would_do = find_shortest_dowel(
-        diameter, max(one for one in standouts(diameter) if one <= min(2 * diameter, HEIGHT))
+        diameter, max(one for one in list_standouts(diameter) if one <= min(2 * diameter, HEIGHT))
     )
     assert would_do is not None
     words = [word for page in sheet(result, thickness=HEIGHT) for word in texts(page)]

@@ -22,7 +22,7 @@ from sheet_reading import collisions
 from svg_reading import NAMESPACE, by_class, matrix, texts
 
 from workhold import Peg
-from workhold.cli.show_command import load_tables
+from workhold.cli.show_command import tabulate_load_cases
 from workhold.cli.table import print_tables
 from workhold.cli.tables import tabulate_fixture_setup, tabulate_quality
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbnails
@@ -186,7 +186,7 @@ def test_arrows_and_names_stand_at_what_they_tell_of(held: Held) -> None:
         (text,) = (text for text in labels if text.text == peg.hole)
         place = Box(*(float(text.attrib[key]) for key in "xyxy"))
         (frame,) = (frame for frame in frames if frame.contains(place))
-        leaders = [line[0] for line in lines if frame.grown(0.5).contains(Box(*line[-1], *line[-1]))]
+        leaders = [line[0] for line in lines if frame.grow(0.5).contains(Box(*line[-1], *line[-1]))]
         start = (
             leaders[0]
             if leaders
@@ -338,7 +338,7 @@ def test_the_terminal_tells_the_fixture(
     fixture, toolkit, noun = held.fixture, held.toolkit, "clamp" if tips_of(held.fixture) else "jaw"
     cases = load_cases_of(held)
     tables = (*tabulate_fixture_setup(fixture, toolkit, 3, 70), "", tabulate_quality(fixture, noun))
-    print_tables(*tables, *load_tables(cases, fixture, toolkit))
+    print_tables(*tables, *tabulate_load_cases(cases, fixture, toolkit))
     said = capsys.readouterr().out
     lines = [re.split(r"\s{2,}", line.strip()) for line in said.splitlines()]
     assert count_ways(said) == expected_ways(held)

@@ -17,10 +17,10 @@ from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbn
 from workhold.files.dxf.writer import make_setup_dxf
 from workhold.files.result.fixture_text import write_pin_list
 from workhold.listing.identity import make_entries
-from workhold.model.clamps import order_words
+from workhold.model.clamps import describe_tightening_order
 from workhold.model.setup import list_length_settings
-from workhold.model.shown import shown
-from workhold.statics.loads import load_cases
+from workhold.model.shown import find_shown
+from workhold.statics.loads import compute_load_cases
 from workhold.units import MILLIMETRE
 
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
@@ -53,7 +53,7 @@ def test_each_clamp_has_its_own_length(pair: str, bolted: bool) -> None:
     """Two settings, each from its clamp's hole to its tip; both are drawn with their words, and none hides another."""
     result = held(pair, bolted)
     fixture, plate = result[0], result.toolkit
-    settings, seen = list_length_settings(fixture, plate), shown(fixture, plate, RECTANGLE)
+    settings, seen = list_length_settings(fixture, plate), find_shown(fixture, plate, RECTANGLE)
     assert [setting.tip for setting in settings] == list(fixture.pegs[3:])
     assert [one.setting for one in seen.measured] == list(settings) and len(seen.clamps) == 2
     for setting, clamp in zip(settings, seen.clamps, strict=True):
@@ -67,7 +67,7 @@ def test_each_clamp_has_its_own_length(pair: str, bolted: bool) -> None:
     for setting in settings:
         assert f"{setting.sign} = {MILLIMETRE.format_length(setting.length)}".replace("-", "−") in words
     assert {peg.hole for peg in fixture.pegs} <= set(words)
-    assert order_words(fixture)[:20] in " ".join(words)
+    assert describe_tightening_order(fixture)[:20] in " ".join(words)
     assert len(by_class(draw_thumbnails([fixture], RECTANGLE, plate, ["one"]), "peg")) == 5
 
 
@@ -96,7 +96,7 @@ def test_a_sheet_with_much_to_say_still_has_a_plan() -> None:
     """With loads and warnings the words that must stand beside the plan leave it room, or go to the second page."""
     result = held()
     loads = [Load(points=((50.0, 30.0),), force=200.0, name=f"cut {k}") for k in range(6)]
-    cases = load_cases(result[0], RECTANGLE, result.toolkit, loads, 5000.0)
+    cases = compute_load_cases(result[0], RECTANGLE, result.toolkit, loads, 5000.0)
     words = sheet_words(result, jaw_force=5000.0, loads=cases, others=3, part_name="a long name " * 12)
     assert "Order of tightening" in words and "The clamp force is the sum of both clamps" in words
 
@@ -128,7 +128,7 @@ def test_the_terminal_tells_pairs_seats_and_order() -> None:
     assert max(map(len, table.fit_to_width(80).lines[:2])) <= 80 and "clamp freedom deg" in headings
     assert f"the best of {result.pairs} pairs of clamps at each seat" in count_fixtures_in_words(result)
     said = [part for part in tabulate_fixture_setup(fixture, result.toolkit, 1, 1) if isinstance(part, str)]
-    assert order_words(fixture) in said and sum("bolted in" in line for line in said) == 2
+    assert describe_tightening_order(fixture) in said and sum("bolted in" in line for line in said) == 2
 
 
 EXAMPLES = {

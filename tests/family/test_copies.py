@@ -14,7 +14,7 @@ from workhold import Fence, Fixture, Plate, Query, Result, Vise, Workpiece, answ
 from workhold.errors import InputError
 from workhold.family import copies as module
 from workhold.family.copies import (
-    Packing,
+    PackedCopies,
     draw_copies,
     find_too_near_shifts,
     list_places_on_plate,
@@ -52,7 +52,7 @@ def shapes(fixture: Fixture, part: Workpiece, toolkit: Plate) -> tuple[Any, Any]
     loops = []
     for loop in part.loop_segments:
         placed = [fixture.pose.carry(segment) for segment in loop]
-        loops.append([s.at(s.half_extent * (2 * k / 64 - 1)) for s in placed for k in range(64)])
+        loops.append([s.compute_point(s.half_extent * (2 * k / 64 - 1)) for s in placed for k in range(64)])
     bodies = []
     for peg in fixture.pegs:
         carrier = toolkit.find_carrier(peg.carrier)
@@ -60,7 +60,7 @@ def shapes(fixture: Fixture, part: Workpiece, toolkit: Plate) -> tuple[Any, Any]
             continue
         start = (peg.x, peg.y)
         if carrier.on is not None and carrier.has_a_hole:
-            start = carrier.place(peg.column, peg.row)
+            start = carrier.compute_hole_center(peg.column, peg.row)
         bodies.append(shapely.LineString([start, (peg.x, peg.y)]).buffer(carrier.peg_radius, quad_segs=64))
     return shapely.Polygon(loops[0], loops[1:]), shapely.union_all(bodies)
 
@@ -96,7 +96,7 @@ def test_pegs_keep_clear_of_pegs_however_far_the_parts_are_apart(
     """Pegs of 18 mm on holes 17 mm apart overlap; their parts, of 1 mm, would not be near each other."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     outline = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
-    bodies = module.Bodies(outline, np.array([[[0.5, 0.5], [0.5, 0.5]]]), np.array([9.0]))
+    bodies = module.CopyOutlines(outline, np.array([[[0.5, 0.5], [0.5, 0.5]]]), np.array([9.0]))
     monkeypatch.setattr(module, "collect_bodies", lambda *given: bodies)
     result = results["tips alone"]
     near = find_too_near_shifts(result[0], result.workpiece, Plate(pitch=17, peg_radius=3), 0.5, (3, 3))
@@ -175,7 +175,7 @@ def test_refusals(results: dict[str, Result]) -> None:
 @pytest.mark.parametrize("name", HELD)
 def test_the_plate_is_drawn_with_every_copy(results: dict[str, Result], name: str) -> None:
     result = results[name]
-    packing = Packing(pack_copies(result[0], result.workpiece, result.toolkit, 14, 8).shifts, 9)
+    packing = PackedCopies(pack_copies(result[0], result.workpiece, result.toolkit, 14, 8).shifts, 9)
     copies = make_copies(result.table.take(slice(0, 1)), result.toolkit, result.workpiece, packing)
     svg = draw_copies(copies, result.workpiece, result.toolkit, (14, 8))
     assert len(by_class(svg, "copy")) == len(packing.shifts)

@@ -14,7 +14,7 @@ from attrs import evolve
 from family_parts import shop_parts
 from workhold import Fence, Peg, Plate, Query, Restrictions, Vise, Workpiece, answer
 from workhold.errors import InputError
-from workhold.family.family import Asked, Family, make_family, make_peg_entry, write_family_json
+from workhold.family.family import Family, MemberRequest, make_family, make_peg_entry, write_family_json
 from workhold.family.members import RANKINGS, add_half_turns, compute_losses, make_member, make_threshold
 from workhold.family.patterns import list_holes, shift_fixture, turn_fixtures_over
 from workhold.family.plan import Holding
@@ -23,7 +23,7 @@ from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.statics.effective_error import EffectiveErrors
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 from workhold.verification import Judge
 from workhold.verification.first_choice import EffectiveJudge
 
@@ -33,10 +33,10 @@ VISE, WIDE = Vise(pitch=10, columns=1, peg_radius=3), Vise(pitch=10, columns=2, 
 TWENTY = shop_parts(20)
 
 
-def asked(parts: list[Workpiece], toolkit: Toolkit, **more: object) -> list[Asked]:
+def asked(parts: list[Workpiece], toolkit: Toolkit, **more: object) -> list[MemberRequest]:
     """Parts to be members, ranked by location error first."""
     ranking = RANKINGS[toolkit.travels]
-    return [Asked(part.name, Query(part, toolkit, **{"rank_by": ranking, **more})) for part in parts]  # type: ignore[arg-type]
+    return [MemberRequest(part.name, Query(part, toolkit, **{"rank_by": ranking, **more})) for part in parts]  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +116,7 @@ def measured_again(table: FixtureTable, one: Holding) -> FixtureTable:
     """A table with its figures."""
     from workhold.contact.problem import Problem
 
-    return measure_table(table, Problem.of(one.member.query))
+    return measure_table(table, Problem.from_query(one.member.query))
 
 
 @pytest.mark.thorough
@@ -128,8 +128,8 @@ def test_the_fewest_of_six_parts_by_trying_everything(first: int) -> None:
     for number, one in enumerate(asked(parts, VISE)):
         result = answer(one.query, threads=1)
         table, _ = add_half_turns(result.table, one.query)
-        table = table.take(np.flatnonzero(~unfit(table.quality, one.query.tolerance)))
-        errors = np.round(EffectiveErrors.of(one.query).errors(table), 9)
+        table = table.take(np.flatnonzero(~are_unfit(table.quality, one.query.tolerance)))
+        errors = np.round(EffectiveErrors.from_query(one.query).compute_errors(table), 9)
         for row, error in enumerate(errors.tolist()):
             left, right = (
                 [r for c, r in zip(range(4), table.row[row], strict=True) if jaw(table, row, c) == k]
@@ -250,11 +250,11 @@ def test_a_plan_is_made_of_all_fixtures_whatever_a_list_would_show(toolkit: Tool
 
 def test_unfit_fixtures_are_used_when_asked_for() -> None:
     result = answer(asked(TWENTY[:1], Vise(pitch=10, columns=2, peg_radius=3))[0].query, threads=1)
-    bad = unfit(result.table.quality, result.query.tolerance)
+    bad = are_unfit(result.table.quality, result.query.tolerance)
     assert bad.any()
     with_all, usual = make_member("a", result, unfit=True), make_member("a", result)
     assert len(with_all.words) > len(usual.words)
-    assert not unfit(usual.table.quality, result.query.tolerance).any()
+    assert not are_unfit(usual.table.quality, result.query.tolerance).any()
     assert with_all.fixtures == usual.fixtures == len(result)
 
 
@@ -264,10 +264,12 @@ def test_the_best_that_a_part_has_is_none_that_is_unfit() -> None:
     # The best fixture hardly holds, so that it is none for a workshop.
     quality[np.argmin(quality[:, LOCATION_ERROR]), CLOSURE_MARGIN] = 1e-6
     changed = evolve(result, table=evolve(result.table, quality=quality))
-    fit = ~unfit(quality, result.query.tolerance)
+    fit = ~are_unfit(quality, result.query.tolerance)
     table, _ = add_half_turns(changed.table.take(np.flatnonzero(fit)), result.query)
     member = make_member("a", changed)
-    assert member.best == pytest.approx(EffectiveErrors.of(result.query).errors(table).min(), abs=1e-12)
+    assert member.best == pytest.approx(
+        EffectiveErrors.from_query(result.query).compute_errors(table).min(), abs=1e-12
+    )
     assert member.loss.min() == 1.0
     assert make_member("a", changed, unfit=True).best < member.best
 

@@ -7,11 +7,11 @@ import pytest
 
 from family_parts import shop_parts
 from workhold import InputError, Load, Plate, Query, Restrictions, Vise, Workpiece, answer, circle_zone
-from workhold.family.family import Asked, make_family
+from workhold.family.family import MemberRequest, make_family
 from workhold.family.members import RANKINGS, make_other_side_query, mirror_zero
 from workhold.family.patterns import list_holes
 from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
-from workhold.model.setup import PartZero, part_zero
+from workhold.model.setup import PartZero, choose_part_zero
 from workhold.model.solid import SolidOutline
 from workhold.verification import Judge
 
@@ -75,19 +75,21 @@ def test_turned_over_twice_it_is_as_before() -> None:
     turned = make_other_side_query(query)
     before, after = ({face.number: face.segment for face in part.faces} for part in (LEVER, turned.workpiece))
     for number, image in zip(query.restrictions.avoid, reversed(turned.restrictions.avoid), strict=True):
-        x, y = before[number].at(0.0)
-        assert any(after[k].at(0.0) == pytest.approx((-x, y)) for k in turned.restrictions.avoid), image
+        x, y = before[number].compute_point(0.0)
+        assert any(
+            after[k].compute_point(0.0) == pytest.approx((-x, y)) for k in turned.restrictions.avoid
+        ), image
 
 
 def test_the_zero_is_the_same_point_of_the_part() -> None:
-    zero = part_zero(LEVER, "hole 1")
+    zero = choose_part_zero(LEVER, "hole 1")
     other = mirror_zero(zero)
     assert other == PartZero((-zero.point[0], zero.point[1]), zero.words)
-    turned = Asked("lever", lever_query(Restrictions())).turn_over(None)
+    turned = MemberRequest("lever", lever_query(Restrictions())).turn_over(None)
     assert turned.zero == PartZero((0.0, 0.0), "origin of the drawing")
-    assert turned.zero.point == pytest.approx(mirror_zero(part_zero(LEVER)).point)
+    assert turned.zero.point == pytest.approx(mirror_zero(choose_part_zero(LEVER)).point)
     assert turned.name == "lever, side 2"
-    assert Asked("lever", lever_query(Restrictions()), zero=zero).turn_over(None).zero == other
+    assert MemberRequest("lever", lever_query(Restrictions()), zero=zero).turn_over(None).zero == other
 
 
 def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
@@ -105,7 +107,7 @@ def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
     )
     asked = Restrictions(avoid=(2, 3), zones=[circle_zone(70.0, 11.0, 5.0)])
     query = Query(part, toolkit, restrictions=asked, rank_by=RANKINGS[1])
-    side = Asked("part", query, zero=part_zero(part, "corner")).turn_over(other)
+    side = MemberRequest("part", query, zero=choose_part_zero(part, "corner")).turn_over(other)
     assert (side.name, side.query.workpiece.name) == ("part, side 2", "part, side 2")
     assert side.query.workpiece.solid == turned and side.query.restrictions.avoid == (1, 2)
     assert side.query.restrictions.zones[0].loop[:, 0].min() == pytest.approx(-75.0)
@@ -116,7 +118,7 @@ def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
 
 def test_both_sides_share_pins() -> None:
     parts = [
-        Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), rank_by=RANKINGS[1]))
+        MemberRequest(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), rank_by=RANKINGS[1]))
         for p in shop_parts(2)
     ]
     family = make_family([side for one in parts for side in (one, one.turn_over(None))], threads=1)
@@ -145,7 +147,7 @@ def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
         Workpiece.from_loops(str(w), [[[0, 0, 0], [w, 0, 0], [w, 45.0, 0], [0, 45.0, 0]]])
         for w in (60.0, 63.0, 71.5, 84.0)
     ]
-    asked = [Asked(part.name, Query(part, toolkit, rank_by=ranking)) for part in parts]
+    asked = [MemberRequest(part.name, Query(part, toolkit, rank_by=ranking)) for part in parts]
     free, strict = make_family(asked, threads=1), make_family(asked, same_zero=True, threads=1)
     assert len(strict.members) == 4
     for plan in strict.plans:

@@ -13,10 +13,10 @@ from family_parts import shop_parts
 from own_heights import STEM, stepped
 from workhold import Plate, Query, Vise
 from workhold.drawing.pdf import convert_svg_to_pdf
-from workhold.family.family import Asked, Family, make_family
+from workhold.family.family import Family, MemberRequest, make_family
 from workhold.family.members import RANKINGS, format_loss
 from workhold.family.pages import describe_moves, draw_curve, draw_setups, list_holes, make_grid
-from workhold.family.plan import Plan
+from workhold.family.plan import FamilyPlan
 from workhold.geometry.segment import Box
 from workhold.units import INCH, MILLIMETRE, Unit
 
@@ -29,7 +29,8 @@ def family_in(toolkit: Vise | Plate, count: int) -> Family:
     """A family of so many parts."""
     ranking = RANKINGS[toolkit.travels]
     return make_family(
-        [Asked(part.name, Query(part, toolkit, rank_by=ranking)) for part in shop_parts(count)], threads=1
+        [MemberRequest(part.name, Query(part, toolkit, rank_by=ranking)) for part in shop_parts(count)],
+        threads=1,
     )
 
 
@@ -84,7 +85,7 @@ def test_many_parts_of_a_set_up_go_on_further_pages(families: dict[str, Family])
     setup = families["vise"].plans[0].setups[0]
     one = setup.holdings[0]
     many = [evolve(one, member=evolve(one.member, name=f"n{k}")) for k in range(32)]
-    plan = Plan(families["vise"].points[0], (evolve(setup, holdings=tuple(many)),))
+    plan = FamilyPlan(families["vise"].points[0], (evolve(setup, holdings=tuple(many)),))
     pages = draw_setups(plan, families["vise"].figure, DAY)
     assert [len(by_class(page, "part-cell")) for page in pages] == [12, 18, 2]
     assert [f"page {k} of 3" in " ".join(texts(page)) for k, page in enumerate(pages, 1)] == [True] * 3
@@ -160,8 +161,8 @@ def test_cells_fill_their_room_without_overlap(count: int) -> None:
     room = Box(0.0, 0.0, 650.0, 400.0)
     cells = make_grid(count, room)
     assert len(cells) == count
-    assert all(room.grown(1e-9).contains(cell) for cell in cells)
-    assert all(a.overlap(b) == 0 for k, a in enumerate(cells) for b in cells[:k])
+    assert all(room.grow(1e-9).contains(cell) for cell in cells)
+    assert all(a.compute_overlap_area(b) == 0 for k, a in enumerate(cells) for b in cells[:k])
 
 
 def test_the_curve_has_a_point_for_each_number_of_set_ups(families: dict[str, Family]) -> None:
@@ -196,7 +197,7 @@ def test_heights_of_their_own_are_told_where_solids_are_held() -> None:
     toolkit = Plate(pitch=10, peg_radius=3, columns=8, rows=8, clamp_heights=(12.7, 25.4))
     solid, prism = stepped({"clamp": ((12.7, 25.4), STEM)}), shop_parts(1)[0]
     for parts, said in (([solid], True), ([prism], False), ([solid, prism], True)):
-        asked = [Asked(part.name, Query(part, toolkit, rank_by=RANKINGS[1])) for part in parts]
+        asked = [MemberRequest(part.name, Query(part, toolkit, rank_by=RANKINGS[1])) for part in parts]
         family = make_family(asked, threads=1)
         plan = family.plans[0]
         pages = draw_setups(plan, family.figure, DAY, INCH)

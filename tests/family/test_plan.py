@@ -10,7 +10,7 @@ import pytest
 from workhold import Fence, Plate, Vise
 from workhold.family import plan as module
 from workhold.family.patterns import NOTHING, Hole
-from workhold.family.plan import Freedom, find_best_order, find_cheapest_move, find_freedom
+from workhold.family.plan import SetUpFreedom, find_best_order, find_cheapest_move, find_freedom
 
 
 def random_holes(random: Random) -> list[Hole]:
@@ -18,7 +18,7 @@ def random_holes(random: Random) -> list[Hole]:
     return [(carrier, random.randrange(2), random.randrange(4)) for carrier in (0, 0, 1, 1)]
 
 
-def fewest_moved(one: list[Hole], other: list[Hole], freedom: Freedom) -> int:
+def fewest_moved(one: list[Hole], other: list[Hole], freedom: SetUpFreedom) -> int:
     """Pegs to place for one set-up after another, by trying every move."""
     reach = range(-5, 6)
     tried = []
@@ -33,9 +33,11 @@ def fewest_moved(one: list[Hole], other: list[Hole], freedom: Freedom) -> int:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("freedom", [Freedom(False, False), Freedom(False, True), Freedom(True, True)])
+@pytest.mark.parametrize(
+    "freedom", [SetUpFreedom(False, False), SetUpFreedom(False, True), SetUpFreedom(True, True)]
+)
 @pytest.mark.parametrize("seed", range(6))
-def test_no_other_order_moves_fewer(seed: int, freedom: Freedom) -> None:
+def test_no_other_order_moves_fewer(seed: int, freedom: SetUpFreedom) -> None:
     random = Random(seed)
     setups = [random_holes(random) for _ in range(5)]
     steps = find_best_order(setups, freedom)
@@ -52,7 +54,7 @@ def test_no_other_order_moves_fewer(seed: int, freedom: Freedom) -> None:
 def test_what_is_told_to_be_moved_is_what_does_not_stand_yet(seed: int) -> None:
     random = Random(seed)
     setups = [[(c, x + 5, y + 7) for c, x, y in random_holes(random)] for _ in range(6)]
-    steps = find_best_order(setups, Freedom(True, True))
+    steps = find_best_order(setups, SetUpFreedom(True, True))
     stood = [[(c, x + step.columns, y + step.rows) for c, x, y in setups[step.setup]] for step in steps]
     for step, before, after in zip(steps[1:], stood, stood[1:], strict=False):
         for hole in before:
@@ -66,7 +68,7 @@ def test_what_is_told_to_be_moved_is_what_does_not_stand_yet(seed: int) -> None:
 def test_what_tells_nothing_stays() -> None:
     clamp = (1, NOTHING, 2)
     pegs, columns, rows = find_cheapest_move(
-        [(0, 0, 0), (0, 1, 0), clamp], [(0, 3, 1), (0, 4, 1), (1, NOTHING, 3)], Freedom(True, True)
+        [(0, 0, 0), (0, 1, 0), clamp], [(0, 3, 1), (0, 4, 1), (1, NOTHING, 3)], SetUpFreedom(True, True)
     )
     assert (pegs, columns, rows) == (0, -3, -1)
 
@@ -74,9 +76,9 @@ def test_what_tells_nothing_stays() -> None:
 def test_beyond_what_is_tried_the_way_goes_to_the_nearest(monkeypatch: pytest.MonkeyPatch) -> None:
     random = Random(4)
     setups = [random_holes(random) for _ in range(6)]
-    exact = sum(step.moved for step in find_best_order(setups, Freedom(False, True))[1:])
+    exact = sum(step.moved for step in find_best_order(setups, SetUpFreedom(False, True))[1:])
     monkeypatch.setattr(module, "MOST_EXACT", 3)
-    steps = find_best_order(setups, Freedom(False, True))
+    steps = find_best_order(setups, SetUpFreedom(False, True))
     assert sorted(step.setup for step in steps) == list(range(6))
     assert sum(step.moved for step in steps[1:]) >= exact
 
@@ -95,4 +97,4 @@ def test_beyond_what_is_tried_the_way_goes_to_the_nearest(monkeypatch: pytest.Mo
 def test_set_ups_move_where_the_toolkit_has_no_end(
     toolkit: Vise | Plate, expected: tuple[bool, bool]
 ) -> None:
-    assert find_freedom(toolkit) == Freedom(*expected)
+    assert find_freedom(toolkit) == SetUpFreedom(*expected)

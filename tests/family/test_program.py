@@ -10,14 +10,14 @@ from typer.testing import CliRunner
 from slow_program import END_MILL, path, program_of
 from workhold import InputError, Query, Vise, load
 from workhold.cli.main import app
-from workhold.family.family import Asked, make_family
+from workhold.family.family import MemberRequest, make_family
 
 
 def test_a_part_with_a_program_is_refused() -> None:
     program = program_of(path(END_MILL, [(0.0, 0.0, 5.0)]))
     query = Query(load("widget"), Vise(10, 2, 3), program=program, peg_height=9.0)
     with pytest.raises(InputError, match="widget has a program to let pass"):
-        make_family([Asked("widget", query)])
+        make_family([MemberRequest("widget", query)])
 
 
 def test_a_job_with_a_program_is_refused(tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ from workhold.files.result.parts import HEAD, describe_columns_from_head
 from workhold.files.result.reader import read_result
 from workhold.files.supports_file import read_supports
 from workhold.files.toolkit_file import read_toolkit_file
-from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.base.distance import measure_outline_distances
 from workhold.units import MILLIMETRE
 
 __all__ = ["check_one", "run_batch"]
@@ -167,14 +167,14 @@ def check_drawing(path: Path) -> None:
                 return
             rows += [line_row(start, end) for start, end in pairwise(points) if (start != end).any()]
     # ezdxf draws arcs as Bézier curves, which are off by 2.7e-4 of the radius.
-    assert outline_distances(samples, np.array(rows)).max() < 1e-3 + 4e-4 * size
+    assert measure_outline_distances(samples, np.array(rows)).max() < 1e-3 + 4e-4 * size
 
 
 def line_row(start: Any, end: Any) -> Any:
     """A short line as a kernel's row."""
-    from workhold.geometry.segment import Line, segment_rows
+    from workhold.geometry.segment import Line, make_segment_rows
 
-    return segment_rows([Line(tuple(map(float, start)), tuple(map(float, end)))])[0]
+    return make_segment_rows([Line(tuple(map(float, start)), tuple(map(float, end)))])[0]
 
 
 def points_of(segment: Any) -> list[tuple[float, float]]:

@@ -9,7 +9,7 @@ from typing import Any
 import ezdxf
 
 from workhold import Workpiece
-from workhold.files.part.load import Loaded, read_workpiece
+from workhold.files.part.load import LoadedPart, read_workpiece
 from workhold.geometry.loop import compute_signed_area
 
 RECTANGLE = [(0, 0), (60, 0), (60, 40), (0, 40)]
@@ -35,7 +35,7 @@ def new_dxf(insunits: int | None = 4, version: str = "R2000") -> tuple[Any, Any]
 
 def read_dxf(
     tmp_path: Path, draw: Callable[[Any], object], insunits: int | None = 4, **options: Any
-) -> Loaded:
+) -> LoadedPart:
     """What is read from a DXF file whose model space a function has drawn."""
     document, space = new_dxf(insunits)
     draw(space)
@@ -53,7 +53,7 @@ def rectangle(
         space.add_line(start, end, dxfattribs=attributes)
 
 
-def read_svg(tmp_path: Path, body: str, root: str = "", **options: Any) -> Loaded:
+def read_svg(tmp_path: Path, body: str, root: str = "", **options: Any) -> LoadedPart:
     """What is read from an SVG file with this body and these root attributes."""
     path = tmp_path / "drawn.svg"
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {root}>{body}</svg>')

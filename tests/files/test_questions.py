@@ -18,7 +18,7 @@ from workhold.files import questions
 from workhold.files.part.load import read_workpiece
 from workhold.files.questions import name_questions
 from workhold.web.part_tasks import CALLED as ON_THE_PAGE
-from workhold.web.part_tasks import Upload, read_part
+from workhold.web.part_tasks import UploadedPart, read_part
 
 SOURCE = Path(workhold.__file__).parent
 # Where the tip starts is asked by programs, which name it themselves.
@@ -80,7 +80,7 @@ def test_one_remark_in_three_languages(tmp_path: Path) -> None:
     path.write_bytes(TWO_SQUARES)
     assert "choose another with part_number" in read_workpiece(path).remarks[-1]
     assert "choose another with --part" in CliRunner().invoke(app, ["features", str(path)]).output
-    answer = read_part(Upload(TWO_SQUARES, "two.svg", 100, {}), None)  # type: ignore[arg-type]
+    answer = read_part(UploadedPart(TWO_SQUARES, "two.svg", 100, {}), None)  # type: ignore[arg-type]
     assert "choose another with the part number" in answer["remarks"][-1]
     with pytest.raises(workhold.InputError, match="leave layers out"):
         load(path, layers=["cut"])

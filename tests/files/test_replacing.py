@@ -201,7 +201,7 @@ def test_the_hash_of_another_result_does_not_get_on_a_sheet(result: Result, tmp_
         result[1].save_sheet(tmp_path / "a.svg", result_file=tmp_path / name)
         with pytest.raises(InputError, match="has another fixture in place 1"):
             other.save_sheet(tmp_path / "b.svg", result_file=tmp_path / name)
-    workhold.save(result.part(slice(1, 2)), tmp_path / "last.json")
+    workhold.save(result.slice_rows(slice(1, 2)), tmp_path / "last.json")
     with pytest.raises(InputError, match="has another fixture in place 1"):
         result[0].save_sheet(tmp_path / "b.svg", result_file=tmp_path / "last.json")
     assert not (tmp_path / "b.svg").exists()

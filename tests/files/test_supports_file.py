@@ -18,7 +18,7 @@ from workhold.files.supports_file import read_supports, write_supports
 from workhold.model.requirements import make_zone
 from workhold.model.support_request import SupportRequest, compute_usual_head
 from workhold.model.support_triples import Supports, Triple
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
 PLATE = Plate(pitch=20, peg_radius=3, columns=6, rows=6)
@@ -30,7 +30,9 @@ def supports(toolkit: Any = PLATE, **asked: Any) -> Supports:
     result = workhold.design(KITE, toolkit, best=6)
     request = SupportRequest(15, 3, 4, inside=3, **asked)
     return next(
-        found for fixture in result if (found := supports_of(fixture, result.query, request, best=4)).triples
+        found
+        for fixture in result
+        if (found := find_supports(fixture, result.query, request, best=4)).triples
     )
 
 

@@ -51,7 +51,7 @@ def loaded(folder: Path, tables: str, head: str = HEAD) -> LoadedToolkit:
 
 def usual_of(toolkit: workhold.Plate) -> dict[str, Any]:
     """The figures of what is usual in a toolkit."""
-    usual = SupportRequest.of(KITE, 12, toolkit=toolkit)
+    usual = SupportRequest.from_workpiece(KITE, 12, toolkit=toolkit)
     return {
         "pad_radius": usual.pad_radius,
         "pad_margin": usual.pad_margin,
@@ -81,7 +81,7 @@ def test_a_file_says_what_supports_and_clamp_there_are_and_they_are_the_usual_on
     assert usual_of(evolve(EQUIPPED, supports=None, top_clamp=None)) == bare
     only_tip = evolve(EQUIPPED, supports=SupportPads(height=3), top_clamp=TopClamp(tip_radius=2))
     assert usual_of(only_tip) == bare | {"tip_radius": 2, "inside": 2}
-    asked = SupportRequest.of(KITE, 12, toolkit=EQUIPPED, pad_radius=2, tip_radius=7)
+    asked = SupportRequest.from_workpiece(KITE, 12, toolkit=EQUIPPED, pad_radius=2, tip_radius=7)
     assert (asked.pad_radius, asked.tip_radius, asked.inside) == (2, 7, 6)
 
 

@@ -16,7 +16,7 @@ from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
 from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Toolkit, Wording
+from workhold.fixels.toolkit import Arrangement, Toolkit, ToolkitWording
 
 
 @make_class_from_table
@@ -33,7 +33,7 @@ class Press(Toolkit):
     locked = "a press, its ram"
     law = "vise"
     arrangements = (Arrangement("press", (3, 1)),)
-    wording = Wording(
+    wording = ToolkitWording(
         two="two pegs of the bed",
         four="three pegs of the bed and one of the ram",
         inside="in this press",

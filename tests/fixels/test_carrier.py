@@ -9,7 +9,7 @@ import pytest
 from workhold import Fence, Fixture, FlatJaw, OpeningVise, Peg, Plate, Pose, Vise
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Pair
+from workhold.model.fixture import ClampPair
 from workhold.model.setup import list_length_settings, name_contacts
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
@@ -64,9 +64,9 @@ def test_a_carrier_has_the_lattice_and_the_pegs_of_its_toolkit(toolkit: Any, bod
 
 def test_how_files_name_what_stands_on_a_carrier() -> None:
     """By the jaw where there are two, else by what it does; the ends of a wall locate the part."""
-    assert [carrier.written_as for carrier in VISE.carriers] == [("jaw", "left"), ("jaw", "right")]
+    assert [carrier.file_entry for carrier in VISE.carriers] == [("jaw", "left"), ("jaw", "right")]
     roles = [("role", "locator"), ("role", "locator"), ("role", "clamp"), ("role", "clamp")]
-    assert [carrier.written_as for carrier in FENCE.carriers] == roles
+    assert [carrier.file_entry for carrier in FENCE.carriers] == roles
 
 
 def test_how_many_things_move_in_a_fixture() -> None:
@@ -118,7 +118,7 @@ def test_the_only_clamp_needs_no_hole_to_be_named_by() -> None:
         Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0, "clamp row 2"),
         Peg("clamp -y", 2, 4, 40.0, 66.0, 1, 1.0, "clamp column C"),
     )
-    pair = Pair((0.0, 0.0), (0.0, 1.0), (), 1)
+    pair = ClampPair((0.0, 0.0), (0.0, 1.0), (), 1)
     one = Fixture("clamp", (locator, tips[0]), ONE, 0.0, {}, "-x")
     both = Fixture("clamp2", (locator, *tips), ONE, 0.0, {}, "-x -y", pair)
     assert name_contacts(one, PLATE) == ["B3", "clamp"]

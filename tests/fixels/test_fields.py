@@ -11,7 +11,7 @@ from attrs import NOTHING, fields, fields_dict
 import manual
 from toolkit_values import VALUES, given
 from workhold.cli.catalogue_commands import list_own_figures
-from workhold.cli.toolkit_options import ListWords, ToolkitWords, list_toolkits_to_try
+from workhold.cli.toolkit_options import ToolkitListOptions, ToolkitOptions, list_toolkits_to_try
 from workhold.errors import InputError
 from workhold.files.input_forms import check_toolkit_entries
 from workhold.files.toolkit_file import list_preset_names, load_toolkit, make_described_toolkit
@@ -23,9 +23,9 @@ from workhold.web.forms import FORMS
 from workhold.web.toolkits import list_page_fields
 
 
-def typed(**words: Any) -> ToolkitWords:
+def typed(**words: Any) -> ToolkitOptions:
     """What the command hands on where only these words were typed."""
-    return ToolkitWords(**{one.name: None for one in fields(ToolkitWords)} | words)
+    return ToolkitOptions(**{one.name: None for one in fields(ToolkitOptions)} | words)
 
 
 def typed_of(kind: str) -> dict[str, Any]:
@@ -138,7 +138,7 @@ def test_the_page_reads_each_form_by_a_field_that_it_has() -> None:
 
 def test_a_list_of_pitches_makes_toolkits_of_which_all_that_is_needed_is_given() -> None:
     """A gripper's name says its columns, and a plate needs none; a vise without them is refused."""
-    varied = ListWords(pitch="10", peg_radius="3")
+    varied = ToolkitListOptions(pitch="10", peg_radius="3")
     for kind, said in (("gripper", 1), ("plate", None)):
         (one,) = list_toolkits_to_try(None, kind, varied, MILLIMETRE)
         assert one.fields.get("columns") == said
@@ -148,7 +148,7 @@ def test_a_list_of_pitches_makes_toolkits_of_which_all_that_is_needed_is_given()
 
 def test_a_kind_picks_the_presets_that_have_its_fields() -> None:
     """A vise that opens is made of vises, and of no plate."""
-    picked = list_toolkits_to_try(None, "opening-vise", ListWords(), MILLIMETRE)
+    picked = list_toolkits_to_try(None, "opening-vise", ToolkitListOptions(), MILLIMETRE)
     assert {one.name for one in picked} == {
         name
         for name in list_preset_names()

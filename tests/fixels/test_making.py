@@ -71,7 +71,7 @@ def test_limits_are_those_of_the_rows_and_each_is_lifted_alone(kind: str) -> Non
     order = [("bodies", "travel", "reach", "holes").index(limit.bounds) for limit in toolkit.limits]
     assert order == sorted(order)
     for limit in toolkit.limits:
-        (name, *others), lifted = limit.lifted.fields, toolkit.without([limit])
+        (name, *others), lifted = limit.lifted.fields, toolkit.without_limits([limit])
         goes_along = name == "columns" and "jaw_width" in fields_dict(type(toolkit))
         assert others == (["jaw_width"] if goes_along else [])
         gone = {row.lifted.rule for row in limited if row.lifted and row.name in limit.lifted.fields}
@@ -86,7 +86,7 @@ def test_limits_are_those_of_the_rows_and_each_is_lifted_alone(kind: str) -> Non
             assert one.lifted.fields == {
                 field: value for field, value in kept[one.rule].items() if field not in limit.lifted.fields
             }
-    assert toolkit.without(toolkit.limits).limits == ()
+    assert toolkit.without_limits(toolkit.limits).limits == ()
 
 
 @pytest.mark.parametrize(("kind", "row"), [one for one in ROWS if one.values[1].allowed])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from strategies import vises
 from workhold import Peg, Vise
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes, make_column_letters, parse_hole_name
+from workhold.fixels.carrier import HoleSelection, make_column_letters, parse_hole_name
 from workhold.units import MILLIMETRE
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
@@ -76,14 +76,14 @@ def test_pegs_that_just_fit_are_accepted():
 @given(vises(), st.integers(0, 5), st.integers(0, 9), st.floats(0, 100))
 def test_holes_follow_the_lattice(vise, column, row, separation):
     """Left (i, j) is at (i lx, j ly); right (0, 0) is S to the right of the left jaw's last column, row_offset up."""
-    assert vise.carriers[0].place(0, 0, separation) == (0, 0)
-    left = vise.carriers[0].place(column, row, separation)
+    assert vise.carriers[0].compute_hole_center(0, 0, separation) == (0, 0)
+    left = vise.carriers[0].compute_hole_center(column, row, separation)
     assert left == pytest.approx((column * vise.pitch[0], row * vise.pitch[1]))
-    last = vise.carriers[0].place(vise.columns - 1, row, separation)
-    first = vise.carriers[1].place(0, row, separation)
+    last = vise.carriers[0].compute_hole_center(vise.columns - 1, row, separation)
+    first = vise.carriers[1].compute_hole_center(0, row, separation)
     assert first[0] - last[0] == pytest.approx(separation)
     assert first[1] - last[1] == pytest.approx(vise.row_offset)
-    right = vise.carriers[1].place(column, row, separation)
+    right = vise.carriers[1].compute_hole_center(column, row, separation)
     assert right[0] - first[0] == pytest.approx(left[0]) and right[1] == pytest.approx(
         left[1] + vise.row_offset
     )
@@ -98,11 +98,11 @@ def test_hole_names():
 @given(st.sampled_from(["left", "right"]), st.integers(0, 18_000), st.none() | st.integers(0, 999_999))
 def test_a_hole_is_found_again_by_its_name(carrier: str, column: int, row: int | None) -> None:
     """Of carriers of any names, also in small letters and without the hyphen."""
-    holes = Holes(carrier, column, row)
+    holes = HoleSelection(carrier, column, row)
     assert parse_hole_name(holes.name, ("left", "right"), "jaw") == holes
     assert parse_hole_name(f" {holes.name.lower().replace('-', '')}", ("left", "right"), "jaw") == holes
     plates = {"left": "wall", "right": "floor"}
-    on_plate = Holes(plates[carrier], column, row)
+    on_plate = HoleSelection(plates[carrier], column, row)
     assert parse_hole_name(on_plate.name, plates.values(), "plate") == on_plate
     with pytest.raises(InputError, match="give plate, column letter and row"):
         parse_hole_name(holes.name, ("wall", "floor"), "plate")
@@ -118,7 +118,7 @@ def test_column_letters_count_without_a_zero():
 def test_further_changes_are_what_their_words_say() -> None:
     """Lengths in the words are those of the changed vise; half the pitch is offered where pegs fit it both ways."""
     vise = Vise(pitch=(16, 20), columns=2, peg_radius=4, min_gap=12)
-    assert {one.words: vise.changed(one.fields) for one in vise.list_further_changes(MILLIMETRE)} == {
+    assert {one.words: vise.with_fields(one.fields) for one in vise.list_further_changes(MILLIMETRE)} == {
         "with a smallest gap of 8 mm": evolve(vise, min_gap=8.0),
         "with one more column on each jaw": evolve(vise, columns=3),
         "with the right jaw's rows offset by 10 mm": evolve(vise, row_offset=10.0),
@@ -137,6 +137,6 @@ def test_limits_are_lifted_one_by_one() -> None:
     vise = Vise(**VALID, body_radius=4, max_opening=50, rows=4, blocked=["L-A"])
     assert [limit.bounds for limit in vise.limits] == ["bodies", "travel", "holes", "holes"]
     for limit in vise.limits:
-        left = vise.changed(limit.lifted.fields).limits
+        left = vise.with_fields(limit.lifted.fields).limits
         assert [one.rule for one in left] == [one.rule for one in vise.limits if one != limit]
-    assert vise.without(vise.limits) == plain
+    assert vise.without_limits(vise.limits) == plain

@@ -12,21 +12,21 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from workhold.errors import InputError
-from workhold.geometry.curve_fit import FittedCurve, biarcs, fit_curve
+from workhold.geometry.curve_fit import FittedCurve, fit_biarcs, fit_curve
 from workhold.geometry.rational import (
     Pieces,
+    bound_departure,
+    compute_direction,
     compute_end_curvatures,
+    compute_point,
     cut,
-    departure,
-    direction_at,
     join_pieces,
     make_bezier_piece,
-    mapped,
-    point_at,
-    points_along,
+    sample_points,
     split_arc,
     split_ellipse,
     split_spline,
+    transform_pieces,
 )
 from workhold.geometry.segment import Arc, Line, Point, Segment, make_segment_from_bulge
 
@@ -65,9 +65,9 @@ def away_from(points: NDArray[np.float64], segments: list[Segment]) -> NDArray[n
     """Distance of each point from the nearest segment."""
 
     def distance(x: float, y: float, segment: Segment) -> float:
-        parameter = segment.parameter((x, y))
+        parameter = segment.find_parameter((x, y))
         inside = abs(parameter) <= segment.half_extent
-        foot = segment.at(parameter if inside else np.copysign(segment.half_extent, parameter))
+        foot = segment.compute_point(parameter if inside else np.copysign(segment.half_extent, parameter))
         return hypot(x - foot[0], y - foot[1])
 
     return np.array([min(distance(x, y, segment) for segment in segments) for x, y in points])
@@ -75,7 +75,9 @@ def away_from(points: NDArray[np.float64], segments: list[Segment]) -> NDArray[n
 
 def sampled(segments: list[Segment], each: int) -> NDArray[np.float64]:
     """Points along segments."""
-    return np.array([s.at(share * s.half_extent) for s in segments for share in np.linspace(-1, 1, each)])
+    return np.array(
+        [s.compute_point(share * s.half_extent) for s in segments for share in np.linspace(-1, 1, each)]
+    )
 
 
 def test_a_spline_in_pieces_is_the_spline() -> None:
@@ -88,7 +90,7 @@ def test_a_spline_in_pieces_is_the_spline() -> None:
     for number, (low, high) in enumerate([(0, 0.3), (0.3, 1)]):
         for share in (0, 0.2, 0.7, 0.999):
             x, y, _ = spline.point(low + share * (high - low))
-            assert point_at(pieces, number + share) == pytest.approx((x, y), abs=1e-12)
+            assert compute_point(pieces, number + share) == pytest.approx((x, y), abs=1e-12)
 
 
 def test_an_unclamped_closed_spline_closes() -> None:
@@ -96,9 +98,9 @@ def test_an_unclamped_closed_spline_closes() -> None:
     corners = [(0.0, 0.0), (50.0, -10.0), (80.0, 20.0), (60.0, 60.0), (-10.0, 30.0)]
     pieces = split_spline(corners + corners[:3], None, range(12), 3)
     assert len(pieces) == 5
-    assert point_at(pieces, 0) == pytest.approx(point_at(pieces, 5), abs=1e-12)
-    assert direction_at(pieces, 0, after=True) == pytest.approx(
-        direction_at(pieces, 5, after=False), abs=1e-12
+    assert compute_point(pieces, 0) == pytest.approx(compute_point(pieces, 5), abs=1e-12)
+    assert compute_direction(pieces, 0, after=True) == pytest.approx(
+        compute_direction(pieces, 5, after=False), abs=1e-12
     )
     begin, end = compute_end_curvatures(pieces)
     assert begin == pytest.approx(np.roll(end, 1), rel=1e-9)
@@ -138,10 +140,10 @@ def test_a_cut_curve_is_the_curve_between() -> None:
     pieces = wave(1)
     for first, last in ((0.3, 2.6), (1.2, 1.7), (3.0, 6.0), (5.5, 6.0)):
         part = cut(pieces, first, last)
-        assert point_at(part, 0) == pytest.approx(point_at(pieces, first), abs=1e-12)
-        assert point_at(part, len(part)) == pytest.approx(point_at(pieces, last), abs=1e-12)
+        assert compute_point(part, 0) == pytest.approx(compute_point(pieces, first), abs=1e-12)
+        assert compute_point(part, len(part)) == pytest.approx(compute_point(pieces, last), abs=1e-12)
     middle = cut(pieces, 1.2, 1.7)
-    assert point_at(middle, 0.5) == pytest.approx(point_at(pieces, 1.45), abs=1e-12)
+    assert compute_point(middle, 0.5) == pytest.approx(compute_point(pieces, 1.45), abs=1e-12)
 
 
 def test_an_ellipse_of_equal_axes_and_an_exact_spline_are_circles() -> None:
@@ -197,7 +199,7 @@ def test_a_line_that_turns_back_is_no_line() -> None:
     there = fit_curve(make_bezier_piece([(0, 0), (0, 0), (30, 0), (30, 0)]), 0.01)
     assert there is not None and there.bulges == (0.0,)
     line = Line((0.0, 0.0), (30.0, 0.0))
-    assert departure(make_bezier_piece([(0, 0), (60, 0), (60, 0), (30, 0)]), line, 1.0) == np.inf
+    assert bound_departure(make_bezier_piece([(0, 0), (60, 0), (60, 0), (30, 0)]), line, 1.0) == np.inf
 
 
 @pytest.mark.thinned(8)
@@ -210,7 +212,7 @@ def test_biarcs_are_smooth_and_as_near_as_said(fit: float, shape: str) -> None:
     pieces = {
         "ellipse": split_ellipse((0, 0), (24, 18), (-9, 12), 0.0, 2 * pi),
         "wave 1": wave(1),
-        "wave 2": mapped(wave(2), [(0, -1, 3), (1, 0.2, 5)]),
+        "wave 2": transform_pieces(wave(2), [(0, -1, 3), (1, 0.2, 5)]),
         "rational": split_spline(
             [(0, 0), (10, 40), (30, -30), (60, 10)], [1, 4, 0.3, 1], [0] * 4 + [1] * 4, 3
         ),
@@ -219,17 +221,17 @@ def test_biarcs_are_smooth_and_as_near_as_said(fit: float, shape: str) -> None:
     fitted = fit_curve(pieces, fit)
     assert fitted is not None and not fitted.is_disguise and fitted.departure <= fit
     segments = segments_of(fitted)
-    curve = points_along(pieces, 400 if fit > 0.001 else 100)
+    curve = sample_points(pieces, 400 if fit > 0.001 else 100)
     off = away_from(curve, segments)
     assert off.max() <= fitted.departure + 1e-9
     assert off.max() >= 0.8 * fitted.departure
     # The other way: the nearest of many points of the curve is half a step from the foot at most.
-    fine = points_along(pieces, 4000)
+    fine = sample_points(pieces, 4000)
     half_step = float(np.hypot(*np.diff(fine, axis=0).T).max()) / 2
     back = float(cKDTree(fine).query(sampled(segments, 5))[0].max())
     assert back <= hypot(fitted.departure, half_step) + 1e-6
     for one, other in pairwise(segments):
-        (ax, ay), (bx, by) = one.normal(edge(one, 1)), other.normal(edge(other, -1))
+        (ax, ay), (bx, by) = one.compute_normal(edge(one, 1)), other.compute_normal(edge(other, -1))
         assert hypot(ax - bx, ay - by) < 1e-6
 
 
@@ -287,11 +289,11 @@ def test_a_bound_is_never_below_the_distance() -> None:
         rows[1:3] += rng.normal(size=(2, 2)) * 0.01 * radius
         pieces = make_bezier_piece(rows)
         arc = Arc((0.0, 0.0), radius, sweep / 2, sweep / 2, 1.0)
-        bound = departure(pieces, arc, 0.05 * radius)
+        bound = bound_departure(pieces, arc, 0.05 * radius)
         if not np.isfinite(bound):
             continue
         bounded += 1
-        reached = np.abs(np.hypot(*points_along(pieces, 2000).T) - radius).max()
+        reached = np.abs(np.hypot(*sample_points(pieces, 2000).T) - radius).max()
         assert reached <= bound <= 1.05 * reached + 1e-8
     assert bounded > 40
 
@@ -299,7 +301,7 @@ def test_a_bound_is_never_below_the_distance() -> None:
 def test_a_curve_that_goes_round_once_more_is_not_the_arc() -> None:
     """Five quarters of a circle end where one quarter does."""
     turns = split_ellipse((0, 0), (10, 0), (0, 10), 0, 2.5 * pi)
-    assert departure(turns, Arc((0.0, 0.0), 10.0, pi / 4, pi / 4, 1.0), 1.0) == np.inf
+    assert bound_departure(turns, Arc((0.0, 0.0), 10.0, pi / 4, pi / 4, 1.0), 1.0) == np.inf
 
 
 def test_a_curve_that_turns_back_on_its_circle_is_not_the_arc() -> None:
@@ -307,8 +309,8 @@ def test_a_curve_that_turns_back_on_its_circle_is_not_the_arc() -> None:
     steps = [(0, 60), (60, -20), (40, 50)]
     pieces = join_pieces([split_ellipse((0, 0), (10, 0), (0, 10), radians(a), radians(b)) for a, b in steps])
     arc = Arc((0.0, 0.0), 10.0, pi / 4, pi / 4, 1.0)
-    assert departure(pieces, arc, 1.0) == np.inf
-    assert departure(split_ellipse((0, 0), (10, 0), (0, 10), 0, pi / 2), arc, 1.0) < 1e-12
+    assert bound_departure(pieces, arc, 1.0) == np.inf
+    assert bound_departure(split_ellipse((0, 0), (10, 0), (0, 10), 0, pi / 2), arc, 1.0) < 1e-12
 
 
 def test_a_cusp_does_not_end_the_fit() -> None:
@@ -317,8 +319,8 @@ def test_a_cusp_does_not_end_the_fit() -> None:
         fitted = fit_curve(make_bezier_piece(rows), 0.01)
         assert fitted is not None and fitted.departure < 0.02
         assert (
-            away_from(points_along(make_bezier_piece(rows), 300), segments_of(fitted)).max()
+            away_from(sample_points(make_bezier_piece(rows), 300), segments_of(fitted)).max()
             <= fitted.departure + 1e-9
         )
-    runs = biarcs(make_bezier_piece([(0, 0), (1, 0), (2, 0), (3, 0.0)]), 0.01)
+    runs = fit_biarcs(make_bezier_piece([(0, 0), (1, 0), (2, 0), (3, 0.0)]), 0.01)
     assert [atan2(run.points[-1][1], run.points[-1][0]) for run in runs] == [pytest.approx(0.0, abs=1e-12)]

@@ -76,9 +76,9 @@ def test_two_discs_joined_by_a_waist_have_two_edges_from_arc_to_arc() -> None:
         assert sorted((edge.start.radius, edge.end.radius)) == [pytest.approx(4.0), pytest.approx(10.0)]
         assert edge.length == pytest.approx(sqrt(40.0**2 - 6.0**2))
         assert abs(edge.tangent[1]) == pytest.approx(6.0 / 40.0)
-        assert edge.height((0.0, 0.0)) == pytest.approx(10.0) and edge.height((40.0, 0.0)) == pytest.approx(
-            4.0
-        )
+        assert edge.measure_height((0.0, 0.0)) == pytest.approx(10.0) and edge.measure_height(
+            (40.0, 0.0)
+        ) == pytest.approx(4.0)
 
 
 def test_where_a_face_runs_smoothly_into_an_arc_the_face_is_named() -> None:
@@ -120,7 +120,7 @@ def test_they_are_where_the_lowest_point_jumps_as_the_part_turns(count: int, see
     assert sum(edge.length > 1e-5 for edge in edges) == len(slow)
     theta = part.flush.theta
     for angle, left, right in slow:
-        k = int(part.flush.number(np.array([angle]))[0])
+        k = int(part.flush.find_nearest_edges(np.array([angle]))[0])
         assert abs((theta[k] - angle + pi) % tau - pi) < 1e-9
         assert apart(edges[k].start.point, left) < 1e-6 and apart(edges[k].end.point, right) < 1e-6
 

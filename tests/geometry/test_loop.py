@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from strategies import outlines
-from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
+from workhold.geometry.loop import compute_signed_area, make_loop_segments, reverse_vertices
 from workhold.geometry.segment import (
     Arc,
     Line,
@@ -28,7 +28,7 @@ def polygon_area(segments, steps: int) -> float:
     points = []
     for s in segments:
         ends = np.linspace(-1, 1, steps, endpoint=False) * s.half_extent
-        points += [s.at(t if isinstance(s, Line) or s.sign > 0 else -t) for t in ends]
+        points += [s.compute_point(t if isinstance(s, Line) or s.sign > 0 else -t) for t in ends]
     x, y = np.array(points).T
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
@@ -51,19 +51,19 @@ def test_a_reversed_loop_has_the_same_points_and_the_opposite_area(part):
         back = reverse_vertices(vertices)
         assert back[0, :2] == pytest.approx(vertices[0, :2])
         assert np.array_equal(reverse_vertices(back), vertices)
-        forward, reverse = loop_segments(vertices), loop_segments(back)
+        forward, reverse = make_loop_segments(vertices), make_loop_segments(back)
         assert compute_signed_area(reverse) == pytest.approx(-compute_signed_area(forward))
         assert sum(s.length for s in reverse) == pytest.approx(sum(s.length for s in forward))
         for s, t in zip(forward, reversed(reverse), strict=True):
-            assert s.at(0.0) == pytest.approx(t.at(0.0), abs=1e-9)
+            assert s.compute_point(0.0) == pytest.approx(t.compute_point(0.0), abs=1e-9)
             assert s.start == pytest.approx(t.end, abs=1e-9)
 
 
 def test_known_areas():
     """A 20 x 10 rectangle, a disc from two halves, and an obround."""
-    rectangle = loop_segments(np.array([[0, 0, 0], [20, 0, 0], [20, 10, 0], [0, 10, 0.0]]))
-    disc = loop_segments(np.array([[-5, 0, 1], [5, 0, 1.0]]))
-    obround = loop_segments(np.array([[0, 0, 0], [20, 0, 1], [20, 10, 0], [0, 10, 1.0]]))
+    rectangle = make_loop_segments(np.array([[0, 0, 0], [20, 0, 0], [20, 10, 0], [0, 10, 0.0]]))
+    disc = make_loop_segments(np.array([[-5, 0, 1], [5, 0, 1.0]]))
+    obround = make_loop_segments(np.array([[0, 0, 0], [20, 0, 1], [20, 10, 0], [0, 10, 1.0]]))
     assert compute_signed_area(rectangle) == pytest.approx(200)
     assert compute_signed_area(disc) == pytest.approx(25 * pi)
     assert compute_signed_area(obround) == pytest.approx(200 + 25 * pi)
@@ -118,11 +118,11 @@ def test_arcs_meet_where_a_sampling_says_so():
             1.0,
         )
         t = np.linspace(-a.half_sweep, a.half_sweep, 4001)
-        points = np.array([a.at(x) for x in t])
+        points = np.array([a.compute_point(x) for x in t])
         off = np.hypot(*(points - b.center).T) - b.radius
         changes = np.flatnonzero(off[1:] * off[:-1] < 0)
         inside = [holds(b, tuple(points[k]), 0.0) for k in changes]
-        margin = [abs(abs(b.parameter(tuple(points[k]))) - b.half_sweep) for k in changes]
+        margin = [abs(abs(b.find_parameter(tuple(points[k]))) - b.half_sweep) for k in changes]
         if min([*margin, 1.0]) < 0.01 or (
             np.abs(off).min() > 0 and np.abs(off).min() < 1e-2 and not len(changes)
         ):

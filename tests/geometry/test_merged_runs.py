@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from workhold.conventions import READING
-from workhold.geometry.loop import list_loop_faces, loop_segments
+from workhold.geometry.loop import list_loop_faces, make_loop_segments
 from workhold.geometry.merged_runs import MergedLoop, merge_chords, put_arcs_on_one_circle
 
 
@@ -175,9 +175,11 @@ def arcs(count: int, off: float, turn: float, seed: int = 0) -> NDArray[np.float
 
 def away(vertices: NDArray[np.float64], others: NDArray[np.float64]) -> float:
     """How far in mm vertices and the arcs' middles of two loops are apart, at most."""
-    pairs = zip(loop_segments(vertices), loop_segments(others), strict=True)
+    pairs = zip(make_loop_segments(vertices), make_loop_segments(others), strict=True)
     points = [
-        (p, q) for one, other in pairs for p, q in ((one.start, other.start), (one.at(0.0), other.at(0.0)))
+        (p, q)
+        for one, other in pairs
+        for p, q in ((one.start, other.start), (one.compute_point(0.0), other.compute_point(0.0)))
     ]
     return max(hypot(p[0] - q[0], p[1] - q[1]) for p, q in points)
 
@@ -188,32 +190,32 @@ def test_a_whole_circle_is_one_face_and_stays_so(count: int, sign: float) -> Non
     loop = arcs(count, 0.4 * READING, 0.7)
     if sign < 0:
         loop = np.column_stack([loop[::-1, :2], -np.roll(loop[::-1, 2], -1)])
-    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, make_loop_segments(loop))
     assert changed == count
     assert away(loop, out) <= 2 * READING
-    assert len(list_loop_faces(loop_segments(out), 0)) == 1
-    again, changed = put_arcs_on_one_circle(out, loop_segments(out))
+    assert len(list_loop_faces(make_loop_segments(out), 0)) == 1
+    again, changed = put_arcs_on_one_circle(out, make_loop_segments(out))
     assert changed == 0 and (again == out).all()
 
 
 def test_an_arc_in_pieces_keeps_its_ends() -> None:
     loop = arcs(16, READING, 0.3)[:7]
     loop[-1, 2] = 0.0
-    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, make_loop_segments(loop))
     assert changed == 6
     assert (out[[0, 6], :2] == loop[[0, 6], :2]).all()
-    assert [len(face.segments) for face in list_loop_faces(loop_segments(out), 0)] == [6, 1]
+    assert [len(face.segments) for face in list_loop_faces(make_loop_segments(out), 0)] == [6, 1]
 
 
 @pytest.mark.parametrize("off", [5e-6, 1e-4, 1e-2])
 def test_arcs_that_a_drawing_keeps_apart_stay(off: float) -> None:
     loop = arcs(16, off, 0.3)
-    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, make_loop_segments(loop))
     assert changed == 0 and (out == loop).all()
 
 
 def test_arcs_of_two_circles_that_join_smoothly_stay() -> None:
     """Half a circle of radius 20 and, tangent to it, half one of radius 20.001 mm, joined by a short line."""
     loop = np.array([[20.0, 0.0, 1.0], [-20.0, 0.0, 1.0], [20.002, 0.0, 0.0]])
-    out, changed = put_arcs_on_one_circle(loop, loop_segments(loop))
+    out, changed = put_arcs_on_one_circle(loop, make_loop_segments(loop))
     assert changed == 0 and (out == loop).all()

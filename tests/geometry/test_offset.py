@@ -10,15 +10,15 @@ from hypothesis import strategies as st
 from strategies import outlines
 from workhold import Workpiece
 from workhold.geometry.offset import list_trimmed_offsets, offset_segment
-from workhold.geometry.segment import Arc, segment_rows
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.geometry.segment import Arc, make_segment_rows
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 
 radii = st.one_of(st.sampled_from([0.0, 1.0, 3.0]), st.floats(0.05, 12.0).map(lambda r: round(r, 3)))
 
 
 def points_of(segment, count: int) -> np.ndarray:
     """Points all along a segment, ends included."""
-    return np.array([segment.at(t) for t in np.linspace(-1, 1, count) * segment.half_extent])
+    return np.array([segment.compute_point(t) for t in np.linspace(-1, 1, count) * segment.half_extent])
 
 
 @pytest.mark.thorough
@@ -27,10 +27,10 @@ def points_of(segment, count: int) -> np.ndarray:
 def test_every_kept_point_is_at_exactly_the_radius(part, radius):
     """dist(p, outline) = r to 1e-9 for p on a kept piece, and p is outside the material."""
     segments = [face.segment for face in part.faces]
-    rows = segment_rows(segments)
+    rows = make_segment_rows(segments)
     for _, piece in list_trimmed_offsets(segments, radius):
         points = points_of(piece, 25)
-        assert np.abs(outline_distances(points, rows) - radius).max() < 2e-9
+        assert np.abs(measure_outline_distances(points, rows) - radius).max() < 2e-9
         if radius > 1e-3:
             assert not any(is_inside(x, y, rows) for x, y in points)
 
@@ -41,19 +41,19 @@ def test_every_kept_point_is_at_exactly_the_radius(part, radius):
 def test_every_point_at_the_radius_is_kept(part, radius):
     """A point of a raw offset that is no nearer than r to the outline lies on a kept piece of the same face."""
     segments = [face.segment for face in part.faces]
-    rows = segment_rows(segments)
+    rows = make_segment_rows(segments)
     kept = list_trimmed_offsets(segments, radius)
     for index, segment in enumerate(segments):
         raw = offset_segment(segment, radius)
         if raw is None:
             continue
         parameters = np.linspace(-0.9999, 0.9999, 60) * raw.half_extent
-        points = np.array([raw.at(t) for t in parameters])
-        clear = outline_distances(points, rows) >= radius - 1e-10
+        points = np.array([raw.compute_point(t) for t in parameters])
+        clear = measure_outline_distances(points, rows) >= radius - 1e-10
         pieces = [piece for k, piece in kept if k == index]
         for point in points[clear]:
             scale = 1.0 if not isinstance(raw, Arc) else raw.radius
-            past = [(abs(p.parameter(tuple(point))) - p.half_extent) * scale for p in pieces]
+            past = [(abs(p.find_parameter(tuple(point))) - p.half_extent) * scale for p in pieces]
             assert past and min(past) < 1e-6, (part.loops, radius, point)
 
 

@@ -16,12 +16,12 @@ from workhold import Workpiece
 from workhold.geometry.segment import (
     Arc,
     Line,
-    bounding_box,
+    compute_bounding_box,
     cross_carrying_circles,
     find_common_points,
     holds,
     make_segment_from_bulge,
-    segment_rows,
+    make_segment_rows,
 )
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100)).map(lambda p: (round(p[0], 3), round(p[1], 3)))
@@ -41,7 +41,7 @@ def test_a_bulge_is_the_tangent_of_a_quarter_of_the_sweep(start, end, bulge):
     # The middle of the arc lies |bulge| c / 2 from the chord, on the right for a counter-clockwise arc.
     dx, dy = end[0] - start[0], end[1] - start[1]
     middle = ((start[0] + end[0] + bulge * dy) / 2, (start[1] + end[1] - bulge * dx) / 2)
-    assert arc.at(0.0) == pytest.approx(middle, abs=size)
+    assert arc.compute_point(0.0) == pytest.approx(middle, abs=size)
 
 
 @given(places, places, st.one_of(st.just(0.0), bulges), st.floats(-1, 1))
@@ -51,11 +51,11 @@ def test_parameter_is_the_inverse_of_at(start, end, bulge, part):
     segment = make_segment_from_bulge(start, end, bulge)
     t = part * segment.half_extent * 0.999999
     scale = 1.0 if isinstance(segment, Line) else segment.radius
-    assert segment.parameter(segment.at(t)) == pytest.approx(t, abs=1e-9 * (1 + 200 / scale))
-    (x, y), (nx, ny) = segment.at(t), segment.normal(t)
+    assert segment.find_parameter(segment.compute_point(t)) == pytest.approx(t, abs=1e-9 * (1 + 200 / scale))
+    (x, y), (nx, ny) = segment.compute_point(t), segment.compute_normal(t)
     assert hypot(nx, ny) == pytest.approx(1.0)
     moved = (x + 0.3 * scale * nx, y + 0.3 * scale * ny)
-    assert segment.parameter(moved) == pytest.approx(t, abs=1e-9 * (1 + 200 / scale))
+    assert segment.find_parameter(moved) == pytest.approx(t, abs=1e-9 * (1 + 200 / scale))
 
 
 @given(places, places, st.one_of(st.just(0.0), bulges))
@@ -65,8 +65,8 @@ def test_the_normal_points_to_the_right(start, end, bulge):
     segment = make_segment_from_bulge(start, end, bulge)
     step = 1e-6 * segment.half_extent
     forward = 1.0 if isinstance(segment, Line) else segment.sign
-    (x0, y0), (x1, y1) = segment.at(-forward * step), segment.at(forward * step)
-    nx, ny = segment.normal(0.0)
+    (x0, y0), (x1, y1) = segment.compute_point(-forward * step), segment.compute_point(forward * step)
+    nx, ny = segment.compute_normal(0.0)
     length = hypot(x1 - x0, y1 - y0)
     assert (nx, ny) == pytest.approx(((y1 - y0) / length, -(x1 - x0) / length), abs=1e-6)
 
@@ -77,9 +77,9 @@ def test_a_part_is_the_segment_between_two_parameters(start, end, bulge, one, tw
     assume(start != end and abs(one - two) > 1e-3)
     segment = make_segment_from_bulge(start, end, bulge)
     low, high = (t * segment.half_extent for t in sorted((one, two)))
-    part = segment.part(low, high)
+    part = segment.cut_part(low, high)
     near = 1e-9 * (200 + getattr(segment, "radius", 0.0))
-    ends = (segment.at(low), segment.at(high))
+    ends = (segment.compute_point(low), segment.compute_point(high))
     found = (
         (part.start, part.end) if not (isinstance(part, Arc) and part.sign < 0) else (part.end, part.start)
     )
@@ -93,8 +93,8 @@ def test_the_bounding_box_is_the_range_of_the_points(start, end, bulge):
     """No point of the segment lies outside its box, and each side of the box is reached."""
     assume(start != end)
     segment = make_segment_from_bulge(start, end, bulge)
-    points = [segment.at(segment.half_extent * k / 500) for k in range(-500, 501)]
-    x0, y0, x1, y1 = bounding_box(segment)
+    points = [segment.compute_point(segment.half_extent * k / 500) for k in range(-500, 501)]
+    x0, y0, x1, y1 = compute_bounding_box(segment)
     xs, ys = [p[0] for p in points], [p[1] for p in points]
     slack = 1e-4 * (1 + getattr(segment, "radius", 0.0))
     assert x0 <= min(xs) + 1e-9 * 200 and x1 >= max(xs) - 1e-9 * 200
@@ -105,23 +105,23 @@ def test_known_arcs():
     """Bulge 1 is a half circle, tan(pi / 8) a quarter, 1 + sqrt 2 three quarters; a tiny bulge is a line."""
     half = make_segment_from_bulge((0, 0), (2, 0), 1.0)
     assert (half.center, half.radius, half.half_sweep) == (pytest.approx((1, 0)), 1.0, pytest.approx(pi / 2))
-    assert half.at(0.0) == pytest.approx((1, -1))
+    assert half.compute_point(0.0) == pytest.approx((1, -1))
     quarter = make_segment_from_bulge((1, 0), (0, 1), tan(pi / 8))
     assert (quarter.center, quarter.radius) == (pytest.approx((0, 0)), pytest.approx(1.0))
     big = make_segment_from_bulge((1, 0), (0, -1), tan(3 * pi / 8))
     assert (big.center, big.radius, big.sign) == (pytest.approx((0, 0)), pytest.approx(1.0), 1.0)
-    assert big.at(0.0) == pytest.approx((cos(3 * pi / 4), sin(3 * pi / 4)))
+    assert big.compute_point(0.0) == pytest.approx((cos(3 * pi / 4), sin(3 * pi / 4)))
     assert make_segment_from_bulge((0, 0), (1, 0), 1e-13) == Line((0, 0), (1, 0))
 
 
 def test_rows_hold_the_segments():
     """A row is kind, middle or centre, direction, largest parameter, radius, sign, rest; rows cannot be written to."""
-    rows = segment_rows([Line((0, 0), (6, 8)), Arc((1, 2), 5.0, pi / 2, 0.7, -1.0)])
+    rows = make_segment_rows([Line((0, 0), (6, 8)), Arc((1, 2), 5.0, pi / 2, 0.7, -1.0)])
     assert rows[0] == pytest.approx([0, 3, 4, 0.6, 0.8, 5, 0, 1, 0, 0])
     assert rows[1] == pytest.approx([1, 1, 2, 0, 1, 0.7, 5, -1, 0, 0])
     with pytest.raises(ValueError, match="read-only"):
         rows[0, 0] = 1.0
-    assert segment_rows([]).shape == (0, 10)
+    assert make_segment_rows([]).shape == (0, 10)
 
 
 def off_circle(arc: Arc, point: tuple[float, float]) -> float:
@@ -147,16 +147,18 @@ def test_a_shallow_arc_is_where_it_is_drawn(points, size, sign, by):
     arc = make_segment_from_bulge(start, end, bulge)
     dx, dy = end[0] - start[0], end[1] - start[1]
     middle = ((start[0] + end[0]) / 2 + bulge * dy / 2, (start[1] + end[1]) / 2 - bulge * dx / 2)
-    assert arc.at(0.0) == pytest.approx(middle, abs=1e-13)
+    assert arc.compute_point(0.0) == pytest.approx(middle, abs=1e-13)
     assert (*arc.start, *arc.end) == pytest.approx(points, abs=3e-13)
     for point in (start, middle, end):
         assert abs(off_circle(arc, point)) < 3e-13
-    grown = arc.grown(by).part(-0.3 * arc.half_sweep, 0.9 * arc.half_sweep)
-    assert abs(off_circle(grown, grown.at(0.1 * arc.half_sweep))) < 3e-13
+    grown = arc.grow(by).cut_part(-0.3 * arc.half_sweep, 0.9 * arc.half_sweep)
+    assert abs(off_circle(grown, grown.compute_point(0.1 * arc.half_sweep))) < 3e-13
     assert grown.half_sweep == pytest.approx(0.6 * arc.half_sweep)
     for s in (-0.9, 0.0, 0.5):
-        (x, y), (nx, ny) = arc.at(s * arc.half_sweep), arc.normal(s * arc.half_sweep)
-        assert arc.parameter((x, y)) * arc.radius == pytest.approx(s * arc.half_sweep * arc.radius, abs=1e-11)
+        (x, y), (nx, ny) = arc.compute_point(s * arc.half_sweep), arc.compute_normal(s * arc.half_sweep)
+        assert arc.find_parameter((x, y)) * arc.radius == pytest.approx(
+            s * arc.half_sweep * arc.radius, abs=1e-11
+        )
         outer = (x + arc.sign * by * nx, y + arc.sign * by * ny)
         assert abs(off_circle(grown, outer)) < 3e-13
 
@@ -185,7 +187,7 @@ def test_splitting_segments_changes_no_face(part):
         loop = []
         for (x, y, bulge), segment in zip(vertices, segments, strict=True):
             half = tan(np.arctan(bulge) / 2)
-            loop += [[x, y, half], [*segment.at(0.0), half]]
+            loop += [[x, y, half], [*segment.compute_point(0.0), half]]
         loops.append(loop)
     split = Workpiece.from_loops("split", loops)
     assert len(split.faces) == len(part.faces)
@@ -193,7 +195,7 @@ def test_splitting_segments_changes_no_face(part):
         assert sorted(two.segments) == sorted(2 * n + k for n in one.segments for k in (0, 1))
         assert two.segment.length == pytest.approx(one.segment.length)
         if not (isinstance(one.segment, Arc) and one.segment.is_full):
-            assert two.segment.at(0.0) == pytest.approx(one.segment.at(0.0), abs=1e-6)
+            assert two.segment.compute_point(0.0) == pytest.approx(one.segment.compute_point(0.0), abs=1e-6)
 
 
 def test_collinear_segments_are_one_face_across_the_first_vertex():
@@ -239,7 +241,7 @@ def test_a_box_holds_its_arc_and_touches_it_on_all_sides(seed: int) -> None:
         [random.uniform(-pi, pi), random.randrange(4) * pi / 2 + half - 10 ** random.uniform(-6, -1)]
     )
     arc = Arc((3.0, -2.0), 7.0, middle, half, random.choice([1.0, -1.0]))
-    low_x, low_y, high_x, high_y = bounding_box(arc)
+    low_x, low_y, high_x, high_y = compute_bounding_box(arc)
     angles = middle + half * np.concatenate([np.linspace(-1, 1, 2001), 1 - np.geomspace(1e-9, 1e-2, 60)])
     extremes = np.arange(-12, 13) * pi / 2
     angles = np.concatenate([angles, extremes[np.abs(extremes - middle) <= half]])
@@ -279,5 +281,5 @@ def test_circles_that_touch_have_one_common_point_and_one_inside_another_none() 
 def test_a_tolerance_at_the_end_of_an_arc_is_a_length() -> None:
     """So much along the arc, whatever its radius."""
     arc = Arc((0.0, 0.0), 100.0, 0.0, 0.5, 1.0)
-    assert holds(arc, arc.at(0.5 + 0.9e-5), 1e-3)
-    assert not holds(arc, arc.at(0.5 + 1.1e-5), 1e-3)
+    assert holds(arc, arc.compute_point(0.5 + 0.9e-5), 1e-3)
+    assert not holds(arc, arc.compute_point(0.5 + 1.1e-5), 1e-3)

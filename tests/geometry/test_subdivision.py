@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import (
     BorderPiece,
@@ -46,7 +46,7 @@ def each(inside: Callable[[Point], bool]) -> Inside:
 def area(loops: list[list[BorderPiece]]) -> float:
     """The area that loops enclose, holes taken away."""
     vertices = [np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in loops]
-    return sum(compute_signed_area(loop_segments(loop)) for loop in vertices)
+    return sum(compute_signed_area(make_loop_segments(loop)) for loop in vertices)
 
 
 def union_loops(boxes: list[Box], circles: list[Circle]) -> list[list[BorderPiece]]:
@@ -107,21 +107,23 @@ def test_corners_that_touch_stay_loops_of_their_own() -> None:
 def test_equal_carriers_are_one() -> None:
     """Segments on one line, however they are run, are pieces of one carrier."""
     found = subdivide([Line((0, 0), (4, 0)), Line((6, 0), (2, 0)), Line((1, -1), (1, 1))])
-    assert [len(carrier.pieces()) for carrier in found] == [4, 2]
+    assert [len(carrier.list_covered_pieces()) for carrier in found] == [4, 2]
 
 
 def test_carriers_are_cut_only_where_both_are_covered() -> None:
     """A line that ends before another cuts nothing of it, on either side."""
     found = subdivide([Line((0, 0), (10, 0)), Line((5, 3), (5, 9)), Arc((5, 0), 2, pi / 2, 0.5, 1.0)])
-    assert [len(carrier.pieces()) for carrier in found] == [1, 1, 1]
+    assert [len(carrier.list_covered_pieces()) for carrier in found] == [1, 1, 1]
 
 
 def test_pieces_of_rounding_are_left_out() -> None:
     """Between two cuts that lie as near to each other as rounding puts them, on a line and on a circle."""
     side, circle = Line((0, 0), (10, 0)), Arc((20, 0), 5, 0.0, pi, 1.0)
-    cuts = [(one, one.at(parameter)) for one in (side, circle) for parameter in (1.0, 1.0 + 4e-6 / 5)]
-    cuts.append((side, side.at(1.0 + 5e-6)))
-    assert [len(carrier.pieces()) for carrier in subdivide([side, circle], cuts)] == [2, 2]
+    cuts = [
+        (one, one.compute_point(parameter)) for one in (side, circle) for parameter in (1.0, 1.0 + 4e-6 / 5)
+    ]
+    cuts.append((side, side.compute_point(1.0 + 5e-6)))
+    assert [len(carrier.list_covered_pieces()) for carrier in subdivide([side, circle], cuts)] == [2, 2]
 
 
 @pytest.mark.parametrize("chord", [6e-5, 2e-4])
@@ -130,7 +132,9 @@ def test_two_points_within_a_gap_are_one_in_the_middle(chord: float) -> None:
     circle = Arc((0, 0), 1, 0.0, pi, 1.0)
     height = sqrt(1 - chord**2 / 4)
     line, _ = subdivide([Line((-5, height), (5, height)), circle])
-    ends = sorted(line.at(position)[0] for piece in line.pieces() for position in piece)
+    ends = sorted(
+        line.compute_point(position)[0] for piece in line.list_covered_pieces() for position in piece
+    )
     assert len(ends) == (4 if chord < 1e-4 else 6)
     assert abs(ends[1]) == pytest.approx(0 if chord < 1e-4 else chord / 2, abs=2e-6)
 
@@ -154,7 +158,10 @@ def test_of_twins_the_outer_one_is_the_border() -> None:
     for turn in (0.0, 1.0, 2.5):
         box: list[Segment] = sides((-5, -5, 5, 1 - over))
         if turn:
-            box = [Line(one.at(-one.half_extent), one.at(one.half_extent)) for one in box[::-1]]
+            box = [
+                Line(one.compute_point(-one.half_extent), one.compute_point(one.half_extent))
+                for one in box[::-1]
+            ]
         carriers = subdivide([*box, Arc((0, 0), 1, turn, pi, 1.0)])
 
         def inside(at: Point) -> bool:
@@ -183,7 +190,7 @@ def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
     """Pieces shorter than the gaps that are closed are no loops, wherever they come first."""
     square = sides((0, 0, 4, 4))
     cut = square[side]
-    points = [cut.at(sign * (cut.half_extent - apart)) for sign in (-1.0, 1.0)]
+    points = [cut.compute_point(sign * (cut.half_extent - apart)) for sign in (-1.0, 1.0)]
     carriers = subdivide(square, [(cut, point) for point in points])
     pieces = find_border_pieces(carriers, each(lambda p: 0 < p[0] < 4 and 0 < p[1] < 4))
     assert len(pieces) == 6
@@ -210,7 +217,7 @@ def test_a_circle_that_nearly_touches_a_polygon(corners: int, gap: float) -> Non
     points = [(7.0 + float(size * np.cos(a)), -3.0 + float(size * np.sin(a))) for a in angles]
     polygon: list[Segment] = [Line(points[k - 1], points[k]) for k in range(corners)]
     circle = Arc((7.0, -3.0), radius, 0.2, pi, 1.0)
-    normals = [segment.normal() for segment in polygon]
+    normals = [segment.compute_normal() for segment in polygon]
 
     def in_polygon(at: Point) -> bool:
         return all((at[0] - 7) * nx + (at[1] + 3) * ny < apothem for nx, ny in normals)

@@ -11,10 +11,10 @@ from attrs import evolve, fields
 from workhold import Fence, Plate, Query, Vise, Workpiece, answer, design, load
 from workhold.conventions import SAME_POSE
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import rotate_vectors, symmetries
+from workhold.geometry.symmetry import find_symmetries, rotate_vectors
 from workhold.listing.identity import (
-    Identity,
-    SetCount,
+    FixtureIdentity,
+    SetCounter,
     find_smallest_images,
     make_entries,
     number_near_duplicates,
@@ -22,7 +22,7 @@ from workhold.listing.identity import (
 )
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import TILT
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
 TOOLKITS: dict[str, Toolkit] = {
     "vise": Vise(pitch=9, columns=2, peg_radius=2),
@@ -54,11 +54,11 @@ def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> 
     toolkit = TOOLKITS[name]
     query = Query(polygon(corners), toolkit, listing="all" if toolkit.travels > 1 else None)
     result = answer(query)
-    table, identity = result.table, Identity(toolkit, query.workpiece)
+    table, identity = result.table, FixtureIdentity(toolkit, query.workpiece)
     assert len(identity.rotations) == corners
     assert len(table) > 10 or (corners, name) == (4, "wall")
     words, pose = identity.find_smallest_images(table)
-    sets, everything = identity.count(words, pose, table.arrangement), SetCount(identity)
+    sets, everything = identity.count_sets(words, pose, table.arrangement), SetCounter(identity)
     for rotation in identity.rotations:
         turned = carried(table, rotation.angle)
         everything.add(turned)
@@ -78,7 +78,7 @@ def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> 
 def test_half_a_turn_of_everything_makes_a_fixture_of_opposed_clamps_the_same() -> None:
     """Pegs, part and travels turned by 180 degrees, and locators and clamps listed in their order once more."""
     query = Query(polygon(5), TOOLKITS["opposed"], listing="all")
-    table, identity = answer(query).table, Identity(query.toolkit, query.workpiece)
+    table, identity = answer(query).table, FixtureIdentity(query.toolkit, query.workpiece)
     table = table.take(np.flatnonzero(table.arrangement == 0))
     turned, order = (
         rotate_vectors(table.position[:, 0], table.position[:, 1], np.full(len(table), pi)),
@@ -103,7 +103,7 @@ def test_the_best_of_a_seat_are_named_without_their_clamps() -> None:
     query = Query(polygon(6), TOOLKITS["wall-two"])
     table = answer(query).table
     moved = evolve(table, column=table.column + np.array([0, 0, 0, 1, 0], np.int32))
-    seats, every = (Identity(query.toolkit, query.workpiece, every) for every in (False, True))
+    seats, every = (FixtureIdentity(query.toolkit, query.workpiece, every) for every in (False, True))
     for identity, differs in ((seats, False), (every, True)):
         (words, pose), (others, other) = (
             identity.find_smallest_images(table),
@@ -120,7 +120,7 @@ def test_what_is_equal_in_holes_and_faces_is_ordered_by_its_place() -> None:
     query = Query(polygon(5), TOOLKITS["wall"])
     one = answer(query).table.take(np.zeros(1, np.int64))
     moved = [evolve(one, position=one.position + np.array([step, 0.0])) for step in (2.0, 0.0, 1.0)]
-    table = FixtureTable.joined(moved)
+    table = FixtureTable.concatenate(moved)
     assert order_by_identity(table).tolist() == [1, 2, 0]
 
 
@@ -141,7 +141,7 @@ VISE = Vise(pitch=10, columns=2, peg_radius=3)
 def test_rotations_and_mirror_images_are_found(loop: list[list[float]], count: int) -> None:
     """Of a square 8, of a rectangle and a slot 4, of an equal-sided trapezium 2, of a lopsided one 1; each a permutation."""
     part = Workpiece.from_loops("part", [loop])
-    found = symmetries([face.segment for face in part.faces])
+    found = find_symmetries([face.segment for face in part.faces])
     assert len({tuple(image) for image in found}) == len(found) == count
     assert all(sorted(image) == list(range(len(image))) for image in found)
     assert found[0].tolist() == sorted(found[0])
@@ -194,7 +194,7 @@ def test_the_first_image_is_the_first_of_all(corners: int) -> None:
     keys[:, 2:] = np.take_along_axis(keys[:, 2:], np.lexsort((keys[:, 2:], carriers), axis=-1), axis=1)
     for key, first in zip(keys.tolist(), find_smallest_images(keys, part, VISE).tolist(), strict=True):
         images = []
-        for image in symmetries([face.segment for face in part.faces]):
+        for image in find_symmetries([face.segment for face in part.faces]):
             a, b, c, d = (int(image[face]) for face in key[2:])
             images += [sorted([a, b]) + sorted([c, d]), sorted([c, d]) + sorted([a, b])]
             if key[0] == 1:
@@ -207,7 +207,7 @@ def test_entries_count_every_fixture_once() -> None:
     result = design(load("widget"), Vise(pitch=8, columns=2, peg_radius=3))
     shown = make_entries(result)
     assert len(shown.index) + shown.like.sum() + shown.unfit == len(result)
-    assert shown.unfit == unfit(result.table.quality, result.query.tolerance).sum() > 0
+    assert shown.unfit == are_unfit(result.table.quality, result.query.tolerance).sum() > 0
     assert (np.diff(shown.index) > 0).all()
     everything = make_entries(result, with_unfit=True)
     assert everything.unfit == 0 and len(everything.index) + everything.like.sum() == len(result)

@@ -13,7 +13,7 @@ from candidate_examples import candidates
 from toolkit_results import NOTCHED, part
 from workhold import Fence, Plate, Result, Vise, design
 from workhold import Plate as AnyPlate
-from workhold.contact.problem import Frame
+from workhold.contact.problem import SearchFrame
 from workhold.listing.placing import list_outward_moves, place_as_is
 
 
@@ -24,7 +24,7 @@ def test_pegs_move_outward_no_farther_than_the_largest_opening_demands_and_left_
     """Pegs in two columns on the left and one on the right, in jaws of four columns 10 mm apart: one column more between
     the jaws takes a pitch off the separation. The left pegs have two columns to move, then the right ones three."""
     vise = Vise(pitch=10, columns=4, peg_radius=3, min_gap=7.0, max_opening=12.0)
-    frame = Frame.of(vise, 100.0)
+    frame = SearchFrame.from_toolkit(vise, 100.0)
     found = place_as_is(evolve(candidates(1), gap=np.array([opening])), frame)
     moves = max(ceil((opening - 12.0) / 10), 0)
     assert found.fits[0] == (opening - 10 * moves >= 7.0)
@@ -71,8 +71,10 @@ def holes(result: Result) -> set[tuple[Any, ...]]:
 )
 def test_a_longer_stroke_leaves_clamps_where_a_shorter_one_has_them(toolkit: AnyPlate) -> None:
     """And some have several holes within the longer one."""
-    short, long = (design(part(NOTCHED), toolkit.changed({"travel": (4.0, most)})) for most in (12.0, 44.0))
+    short, long = (
+        design(part(NOTCHED), toolkit.with_fields({"travel": (4.0, most)})) for most in (12.0, 44.0)
+    )
     assert holes(short) <= holes(long) and len(short) > 20
-    without = design(part(NOTCHED), toolkit.changed({"travel": (14.0, 44.0)}))
+    without = design(part(NOTCHED), toolkit.with_fields({"travel": (14.0, 44.0)}))
     farther = {key[:-3] for key in holes(without)}
     assert any(key[:-3] in farther for key in holes(short))

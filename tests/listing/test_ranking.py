@@ -54,7 +54,7 @@ def keys(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance, angl
 def rank(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance) -> np.ndarray:
     """The order of fixtures, best first."""
     found = keys(quality, ranking, tolerance)
-    return found.order(found.least)
+    return found.sort(found.least_error)
 
 
 def test_the_next_figure_decides_among_those_about_as_good() -> None:
@@ -186,8 +186,8 @@ def test_a_warning_counts_before_steps_and_steps_before_the_angle() -> None:
         penalty=[0, 0, 0, 5, 0, 7],
     )
     found = keys(quality, DEFAULT_RANKING, LOOSE, np.array([0, 1, 0, 2, 0, 2]))
-    assert found.least == 39_900_000
-    assert found.order(found.least).tolist() == [2, 1, 3, 5, 4, 0]
+    assert found.least_error == 39_900_000
+    assert found.sort(found.least_error).tolist() == [2, 1, 3, 5, 4, 0]
 
 
 class Drawn:
@@ -214,8 +214,8 @@ def test_what_is_kept_holds_the_best_whatever_comes_later(data: st.DataObject, m
     rest = np.arange(min(cut, len(whole)), len(whole))
     some = np.concatenate([first, rest])
     kept = some[whole.take(some).are_among_best(most)]
-    assert set(whole.order(whole.least)[:most].tolist()) <= set(kept.tolist())
-    assert whole.take(kept).least == whole.least
+    assert set(whole.sort(whole.least_error)[:most].tolist()) <= set(kept.tolist())
+    assert whole.take(kept).least_error == whole.least_error
 
 
 @pytest.mark.thorough
@@ -224,16 +224,16 @@ def test_what_is_beaten_is_not_among_the_best(data: st.DataObject, most: int) ->
     """With an error known to be the least of all, and without; and a bound is never beaten by itself."""
     found, others = Drawn(data).keys, Drawn(data).keys
     kept = found.take(found.are_among_best(most))
-    for floor in (0, others.lowest):
-        beaten = others.are_beaten(kept, most, min(floor, others.lowest))
+    for floor in (0, others.lowest_error):
+        beaten = others.are_beaten(kept, most, min(floor, others.lowest_error))
         whole = kept.concatenate(others)
-        best = whole.order(whole.least)[:most] - len(kept)
+        best = whole.sort(whole.least_error)[:most] - len(kept)
         assert not beaten[best[best >= 0]].any()
         assert (
-            not beaten[others.error == (whole.least or 0)][
-                others.first[others.error == (whole.least or 0)].max(axis=1) == 0
+            not beaten[others.error == (whole.least_error or 0)][
+                others.first[others.error == (whole.least_error or 0)].max(axis=1) == 0
             ].any()
-            or kept.least == whole.least
+            or kept.least_error == whole.least_error
         )
 
 

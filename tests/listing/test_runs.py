@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from workhold.listing import runs
-from workhold.listing.runs import Runs, SortedRun, make_keys, map_in_order, order_of
+from workhold.listing.runs import ExternalSort, SortedRun, make_keys, map_in_order, sort_keys
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_the_order_of_keys_is_that_of_their_bytes(monkeypatch: pytest.MonkeyPatc
                 np.where(random.random(count) < 0.3, np.nan, random.normal(size=count)),
             )
             keys = make_keys(*(some[k] for k in random.permutation(4)[:kinds]))
-            np.testing.assert_array_equal(order_of(keys), np.argsort(keys, kind="stable"))
+            np.testing.assert_array_equal(sort_keys(keys), np.argsort(keys, kind="stable"))
 
 
 @pytest.mark.parametrize("rows", [0, 1, 59, 1000])
@@ -58,11 +58,11 @@ def test_rows_are_sorted_and_equal_keys_stay_in_order(
     random = np.random.default_rng(rows)
     numbers = random.integers(0, values, rows)
     columns = (np.arange(rows), random.random((rows, 2)), np.arange(rows).astype(np.int8))
-    kept = Runs(tmp_path if on_disk else None)
-    kept.add(SortedRun.from_columns(make_keys(numbers[:0]), tuple(column[:0] for column in columns)))
+    kept = ExternalSort(tmp_path if on_disk else None)
+    kept.add_run(SortedRun.from_columns(make_keys(numbers[:0]), tuple(column[:0] for column in columns)))
     for start in range(0, rows, 33):
         block = slice(start, start + 33)
-        kept.add(
+        kept.add_run(
             SortedRun.from_columns(make_keys(numbers[block]), tuple(column[block] for column in columns))
         )
     assert len(kept) == rows
@@ -80,7 +80,7 @@ def test_rows_are_sorted_and_equal_keys_stay_in_order(
 
 
 def test_what_is_written_after_a_look_at_it_is_at_the_end(tmp_path: Path) -> None:
-    scratch = runs.Scratch(tmp_path)
+    scratch = runs.ScratchFile(tmp_path)
     places = [scratch.write(np.arange(9))]
     assert scratch.read(places[0], 8) == np.arange(1).tobytes()
     places.append(scratch.write(np.arange(5)))
@@ -96,9 +96,9 @@ def test_a_full_disk_is_an_error(small: None, tmp_path: Path, monkeypatch: pytes
             raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(runs, "TemporaryFile", lambda **_: Full())
-    kept = Runs(tmp_path)
+    kept = ExternalSort(tmp_path)
     with pytest.raises(OSError, match="No space left"):
-        kept.add(SortedRun.from_columns(make_keys(np.arange(200)), (np.arange(200),)))
+        kept.add_run(SortedRun.from_columns(make_keys(np.arange(200)), (np.arange(200),)))
 
 
 @pytest.mark.parametrize("threads", [1, 3])

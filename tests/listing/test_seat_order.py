@@ -24,7 +24,7 @@ from workhold.kernels.contact import record
 from workhold.kernels.contact.seats import ASIDE
 from workhold.listing import seat_order
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
-from workhold.listing.ranking import is_worse, order_keys
+from workhold.listing.ranking import is_worse, make_table_keys
 from workhold.model.notes import BestOnly
 from workhold.model.quality import FIGURES, JAW_FORCE_NEEDED, LOAD_REACTION
 from workhold.search import design, lattice_shares, shares
@@ -165,7 +165,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(
                     bound = groups.select_groups_between(np.array([number])).bounds
                 yield np.sort(groups.select_contacts(np.array([number]))[0])
                 table, query = kept.concatenate(), kept.query
-                keys = order_keys(table, query, kept.effective)
+                keys = make_table_keys(table, query, kept.effective)
                 for rows, least in ((keys.first, bound.first), (keys.rest, bound.rest)):
                     assert not any(is_worse(least, row)[0] for row in rows)
                 assert keys.error is None or (keys.error >= bound.error).all()
@@ -292,8 +292,8 @@ def test_numbers_of_seats_are_those_of_their_definition(monkeypatch: pytest.Monk
     query = Query(cad_part(9), Plate(pitch=(25, 20), peg_radius=3, clamps=2), best=5)
     triples: dict[int, Any] = {}
     for records, problem in zip(*contacts_of(query, monkeypatch), strict=True):
-        holes, theta, turn, place, *_ = seat_order.seat_numbers(records, problem)
-        columns, rows = problem.frame.step_back(
+        holes, theta, turn, place, *_ = seat_order.number_seats(records, problem)
+        columns, rows = problem.frame.map_step_to_toolkit(
             *(records[:, k : k + 3].astype(np.int64) for k in (record.COLUMNS, record.ROWS))
         )
         both = np.stack([columns - columns.min(axis=1)[:, None], rows - rows.min(axis=1)[:, None]], axis=2)

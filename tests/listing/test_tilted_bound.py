@@ -16,7 +16,7 @@ from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
 from workhold.listing.bounds import bound_keys_when_tilted, list_preferred_angles
-from workhold.listing.ranking import find_usual_errors, is_worse, order_keys
+from workhold.listing.ranking import find_usual_errors, is_worse, make_table_keys
 from workhold.model.quality import LOCATION_ERROR, PREFERENCES, TILT
 
 TOLERANCES = [Tolerance(), Tolerance(peg=0.03, face=0.0), Tolerance(peg=0.0, face=0.02)]
@@ -69,8 +69,8 @@ def test_no_tilted_fixture_ranks_before_the_bound(toolkit: Toolkit, ranking: str
     tilts = 0
     for part in PARTS:
         query = Query(part, toolkit, **RANKINGS[ranking])
-        bound, result = bound_keys_when_tilted(query, Problem.of(one_way(query))), answer(query)
-        keys = order_keys(result.table, query, find_usual_errors(query))
+        bound, result = bound_keys_when_tilted(query, Problem.from_query(one_way(query))), answer(query)
+        keys = make_table_keys(result.table, query, find_usual_errors(query))
         # In the usual order the angle as written counts, else how the part's main direction lies.
         tilted = result.table.quality[:, TILT] > 0.0
         if query.has_house_order:
@@ -101,7 +101,7 @@ def test_the_points_of_a_tilted_part_are_those_of_the_theorem() -> None:
     points = []
     for part in (square, small, large):
         query = Query(part, vise, rank_by=["penalty"])
-        bound = bound_keys_when_tilted(query, Problem.of(query))
+        bound = bound_keys_when_tilted(query, Problem.from_query(query))
         assert bound is not None
         points.append(float(bound.first[0, 1]))
     assert points == [13.0, 12.0, 10.0]
@@ -112,13 +112,13 @@ def test_where_tilt_has_no_say_there_is_no_bound() -> None:
     part, vise = load("widget"), Vise(pitch=8, columns=1, peg_radius=3)
     for ranking in (["closure-margin"], ["clamp-amplification", "location-error"]):
         query = Query(part, vise, rank_by=ranking)
-        assert bound_keys_when_tilted(query, Problem.of(query)) is None
+        assert bound_keys_when_tilted(query, Problem.from_query(query)) is None
     flat = Query(part, Vise(pitch=8, columns=1, peg_radius=3, flat=(2.5, 1.5)))
-    assert bound_keys_when_tilted(flat, Problem.of(flat)) is None
+    assert bound_keys_when_tilted(flat, Problem.from_query(flat)) is None
 
 
 def test_a_bound_never_counts_as_worse_than_itself() -> None:
     """What ranks exactly as the bound is looked at."""
     query = Query(PARTS[Random(1).randrange(len(PARTS))], TOOLKITS[0])
-    bound = bound_keys_when_tilted(query, Problem.of(query))
-    assert bound is not None and not bound.are_beaten(bound, 1, bound.lowest)[0]
+    bound = bound_keys_when_tilted(query, Problem.from_query(query))
+    assert bound is not None and not bound.are_beaten(bound, 1, bound.lowest_error)[0]

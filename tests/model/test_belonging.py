@@ -13,8 +13,8 @@ from workhold import Fixture, Load, Workpiece
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.seating.closing_simulation import simulate_closing
-from workhold.seating.solver import Solver
-from workhold.statics.loads import load_cases
+from workhold.seating.solver import SeatingSolver
+from workhold.statics.loads import compute_load_cases
 
 CORNERS = [[0.0, 0, 0], [80, 0, 0], [80, 60, 0], [0, 50, 0]]
 PLATE = Workpiece.from_loops("plate", [CORNERS])
@@ -26,10 +26,12 @@ HELD = workhold.design(PLATE, VISE, best=2)
 
 Ask = Callable[[Fixture, Workpiece, Toolkit], object]
 WAYS: dict[str, Ask] = {
-    "loads": lambda held, part, toolkit: load_cases(held, part, toolkit, [Load(((1.0, 1.0),), 10.0)]),
-    "seating": lambda held, part, toolkit: Solver(part, toolkit).of(held, with_cage=False),
-    "seatings": lambda held, part, toolkit: Solver(part, toolkit).of_all([held], with_cage=False),
-    "closing": lambda held, part, toolkit: simulate_closing(Solver(part, toolkit), held, (), held.pose, 0.0),
+    "loads": lambda held, part, toolkit: compute_load_cases(held, part, toolkit, [Load(((1.0, 1.0),), 10.0)]),
+    "seating": lambda held, part, toolkit: SeatingSolver(part, toolkit).solve(held, with_cage=False),
+    "seatings": lambda held, part, toolkit: SeatingSolver(part, toolkit).solve_all([held], with_cage=False),
+    "closing": lambda held, part, toolkit: simulate_closing(
+        SeatingSolver(part, toolkit), held, (), held.pose, 0.0
+    ),
 }
 
 
@@ -51,12 +53,12 @@ def test_the_same_part_by_another_name_is_its_own() -> None:
 
 def test_a_fixture_put_together_otherwise_touches_faces_that_there_are() -> None:
     alone = evolve(HELD[0], listed=None)
-    load_cases(alone, PLATE, VISE, [])
+    compute_load_cases(alone, PLATE, VISE, [])
     pegs = (evolve(alone.pegs[0], face=7), *alone.pegs[1:])
     with pytest.raises(InputError, match="of another part"):
-        load_cases(evolve(alone, pegs=pegs), PLATE, VISE, [])
+        compute_load_cases(evolve(alone, pegs=pegs), PLATE, VISE, [])
     with pytest.raises(InputError, match="of another toolkit"):
-        load_cases(alone, PLATE, workhold.Plate(pitch=10, peg_radius=3), [])
+        compute_load_cases(alone, PLATE, workhold.Plate(pitch=10, peg_radius=3), [])
 
 
 def test_seatings_are_of_the_result_that_is_asked() -> None:

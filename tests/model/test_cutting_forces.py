@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from workhold import InputError, Program
-from workhold.model.cutting_forces import CuttingForces, forces_on, teeth_together
+from workhold.model.cutting_forces import CuttingForces, compute_cutting_forces, compute_engaged_tooth_sum
 from workhold.model.cutting_tool import MATERIALS, SOURCE, CuttingData, Cylinder, Tool, find_material
 from workhold.model.moves import Moves
 
@@ -23,13 +23,13 @@ def moves_of(feed: float = 600.0, spindle: float = 3000.0) -> Moves:
     """Moves of one tool."""
     pairs = pairwise(PLACES)
     rows = [(k, 1, k > 1, a, b, 0.0, feed * (k > 1), spindle) for k, (a, b) in enumerate(pairs, 1)]
-    return Moves.of_rows(rows)
+    return Moves.from_rows(rows)
 
 
 def solve_contact_forces(own: dict[str, Any], job: dict[str, Any] | None = None, **how: Any) -> CuttingForces:
     """The forces of a tool of 10 mm, called a drill so that it drills straight down."""
     tool = Tool(1, [Cylinder(0, 40, 5)], 10, cutting=CuttingData(**own), kind="drill")
-    found = forces_on(moves_of(**how), {1: tool}, CuttingData(**(job or {})))
+    found = compute_cutting_forces(moves_of(**how), {1: tool}, CuttingData(**(job or {})))
     assert found is not None
     return found
 
@@ -72,15 +72,18 @@ def test_teeth_add_up_to_most_where_a_walk_says(teeth: int, angle: float) -> Non
     for k in range(20_000):
         at = pitch * k / 20_000
         best = max(best, sum(sin(a) ** 0.75 for i in range(teeth) if 0 <= (a := at + i * pitch) <= angle))
-    assert teeth_together(teeth, angle, 0.75) == pytest.approx(best, rel=2e-3)
-    assert teeth_together(teeth, angle, 0.75) >= best - 2e-4
+    assert compute_engaged_tooth_sum(teeth, angle, 0.75) == pytest.approx(best, rel=2e-3)
+    assert compute_engaged_tooth_sum(teeth, angle, 0.75) >= best - 2e-4
 
 
 def test_what_a_tool_says_goes_before_what_the_job_says() -> None:
     found = solve_contact_forces({"cutting_force": 80}, {"material": "steel"})
     assert found.force[1] == 80
     assert found.reasons[1] == "as given."
-    assert forces_on(moves_of(), {1: Tool(1, [Cylinder(0, 9, 5)], 10)}, CuttingData(teeth=3)) is None
+    assert (
+        compute_cutting_forces(moves_of(), {1: Tool(1, [Cylinder(0, 9, 5)], 10)}, CuttingData(teeth=3))
+        is None
+    )
 
 
 @pytest.mark.parametrize(
@@ -112,7 +115,7 @@ def test_a_tool_without_any_is_named() -> None:
     tools = {1: Tool(1, [Cylinder(0, 9, 5)], 10), 2: Tool(2, [Cylinder(0, 9, 5)], 10)}
     tools[2] = Tool(2, [Cylinder(0, 9, 5)], 10, cutting=CuttingData(cutting_force=9))
     with pytest.raises(InputError, match="T1 has no cutting force: give its cutting_force"):
-        forces_on(moves_of(), tools, CuttingData())
+        compute_cutting_forces(moves_of(), tools, CuttingData())
 
 
 def test_every_material_has_its_source_and_a_name_of_its_own() -> None:
@@ -141,7 +144,7 @@ def test_a_table_in_inches_and_a_program_come_back_from_their_entries(tmp_path: 
     # 20 in/min at 2000/min with 4 teeth: 0.0635 mm a tooth, 2.54 mm deep, two teeth at 45 degrees.
     by_hand = 2 * 800 * (0.0635 * sqrt(0.5)) ** 0.75 * 2.54
     assert program.forces.force[-1] == pytest.approx(by_hand, rel=1e-9)
-    back = Program.of_entries(program.to_dict())
+    back = Program.from_entries(program.to_dict())
     assert back.forces == program.forces and back.to_dict() == program.to_dict()
     with pytest.raises(InputError, match=r"p\.nc: T1 lacks its depth of cut"):
         Program.read(tmp_path / "p.nc", {1: {"diameter": 9, "teeth": 2}}, z_zero=1, cutting=asked)

@@ -56,7 +56,7 @@ def test_a_drilled_hole(tmp_path: Path) -> None:
     assert lines[move] == 5
     assert forces.torque[move] == pytest.approx(3716.6, abs=1.0) and forces.force[move] == 0.0
     assert forces.axial[move].tolist() == pytest.approx([0.0, 1224.3], abs=0.5)
-    assert forces.stretches.of_move(move) == [[pytest.approx(0.1, abs=1e-6), 1.0]]
+    assert forces.stretches.list_shares(move) == [[pytest.approx(0.1, abs=1e-6), 1.0]]
 
 
 @pytest.mark.thorough
@@ -75,7 +75,7 @@ def test_a_face_mill_that_comes_down_in_air(tmp_path: Path) -> None:
     (move,) = set(forces.stretches.move.tolist())
     assert forces.force[move] == pytest.approx(1230.0, abs=1.5)
     assert forces.torque[move] == pytest.approx(1230.0 * 20, abs=30)
-    assert forces.stretches.of_move(move) == [
+    assert forces.stretches.list_shares(move) == [
         [pytest.approx(5 / 180, abs=1e-6), pytest.approx(175 / 180, abs=1e-6)]
     ]
     # Nothing presses down with more than the helix pulls: the plunge is in air.

@@ -5,17 +5,22 @@ from __future__ import annotations
 import pytest
 
 from workhold.conventions import DOWEL_DEPTH
-from workhold.model.dowel_lengths import find_shortest_dowel, lengths_of, sold, standouts
+from workhold.model.dowel_lengths import (
+    find_dowel_lengths,
+    find_shortest_dowel,
+    list_sold_dowels,
+    list_standouts,
+)
 
 
 def test_lengths_are_those_of_the_standards() -> None:
     """ISO 8734, table 1, and ASME B18.8.2."""
-    six, quarter = lengths_of(6.0), lengths_of(6.35)
+    six, quarter = find_dowel_lengths(6.0), find_dowel_lengths(6.35)
     assert six is not None and quarter is not None
     assert (six.standard, six.lengths[0], six.lengths[-1], len(six.lengths)) == ("ISO 8734", 14, 60, 16)
     assert (quarter.standard, quarter.lengths[0], quarter.lengths[-1]) == ("ASME B18.8.2", 12.7, 63.5)
-    assert lengths_of(7.0) is None and standouts(7.0) == ()
-    for one in sold():
+    assert find_dowel_lengths(7.0) is None and list_standouts(7.0) == ()
+    for one in list_sold_dowels():
         assert list(one.lengths) == sorted(set(one.lengths)) and one.lengths
 
 
@@ -39,7 +44,7 @@ def test_the_shortest_that_sits_deep_enough(
     assert (dowel.name, dowel.standout) == (name, standout)
     assert dowel.depth == pytest.approx(depth)
     assert dowel.depth >= DOWEL_DEPTH * diameter - 1e-5
-    known = lengths_of(diameter)
+    known = find_dowel_lengths(diameter)
     assert known is not None
     shorter = [one for one in known.lengths if one < dowel.length]
     assert all(one - standout < DOWEL_DEPTH * diameter for one in shorter)
@@ -49,4 +54,4 @@ def test_what_is_not_sold_has_none() -> None:
     """A diameter between two, and more than the longest stands out."""
     assert find_shortest_dowel(7.0, 5.0) is None
     assert find_shortest_dowel(6.0, 51.1) is None
-    assert standouts(6.0)[-1] == 51.0
+    assert list_standouts(6.0)[-1] == 51.0

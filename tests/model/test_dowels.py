@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from workhold import Plate, Vise
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes
+from workhold.fixels.carrier import HoleSelection
 from workhold.model.dowels import Bolts, compute_peg_error, list_jaw_plates, refuse_limits
 from workhold.units import INCH
 
@@ -21,14 +21,16 @@ VISE = Vise(pitch=(10, 12), columns=3, peg_radius=3, rows=4, row_offset=5.0)
 
 def test_holes_are_those_of_the_jaws() -> None:
     """Every hole's name and its place from the jaw's own A1; what is blocked is missing from its jaw alone."""
-    left, right = list_jaw_plates(evolve(VISE, blocked=(Holes("left", 1), Holes("right", 0, 0))))
+    left, right = list_jaw_plates(
+        evolve(VISE, blocked=(HoleSelection("left", 1), HoleSelection("right", 0, 0)))
+    )
     assert [len(left.holes), len(right.holes)] == [8, 11]
     vise = list_jaw_plates(VISE)
     for plate, carrier in zip(vise, VISE.carriers, strict=True):
-        zero = carrier.place(0, 0)
+        zero = carrier.compute_hole_center(0, 0)
         for name, (x, y) in plate.holes:
             column, row = "ABC".index(name[2]), int(name[3:]) - 1
-            assert carrier.place(column, row) == pytest.approx((x + zero[0], y + zero[1]))
+            assert carrier.compute_hole_center(column, row) == pytest.approx((x + zero[0], y + zero[1]))
     assert {name for name, _ in vise[0].holes} - {name for name, _ in left.holes} == {
         "L-B1",
         "L-B2",

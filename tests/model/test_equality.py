@@ -62,7 +62,7 @@ def test_results_differ_by_any_number_of_the_last_fixture(name: str) -> None:
 
 def test_results_differ_by_length_and_by_what_is_said_of_them() -> None:
     result = fake_result(3)
-    assert FixtureTable.empty() != result.table != FixtureTable.empty()
+    assert FixtureTable.make_empty() != result.table != FixtureTable.make_empty()
     assert attrs.evolve(result, table=result.table.take(slice(2))) != result
     for change in (
         {"complete": False},

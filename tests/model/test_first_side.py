@@ -10,7 +10,7 @@ from attrs import evolve
 
 from workhold import Plate, Restrictions, Workpiece, design
 from workhold.errors import InputError
-from workhold.model.first_side import compute_standing_rotation, first_side, turn_words
+from workhold.model.first_side import compare_with_first_side, compute_standing_rotation, describe_turn
 from workhold.model.solid import AXES, SolidOutline
 
 CORNERS = [(0.0, 0.0), (80.0, 4.0), (76.0, 50.0), (6.0, 44.0)]
@@ -48,7 +48,7 @@ def test_words_describe_the_turn(before: str, now: str) -> None:
     """Half turns are told about the axis that they leave; every standing is a turn, none a mirror image."""
     turn = compute_standing_rotation(now) @ compute_standing_rotation(before).T
     assert np.linalg.det(turn) == pytest.approx(1.0)
-    words = turn_words(before, now)
+    words = describe_turn(before, now)
     for k, name in enumerate("xyz"):
         fixed = np.allclose(turn @ np.eye(3)[k], np.eye(3)[k])
         if not np.allclose(turn, np.eye(3)):
@@ -62,10 +62,10 @@ def test_other_side_up_is_turned_over_like_a_page() -> None:
     """Minus an axis is half a turn about the plan's y, whichever axis it is."""
     for axis in "xyz":
         assert (
-            turn_words(axis, f"-{axis}")
+            describe_turn(axis, f"-{axis}")
             == "turned over about the y axis of the first drawing, by half a turn"
         )
-        assert turn_words(f"-{axis}", axis) == turn_words(axis, f"-{axis}")
+        assert describe_turn(f"-{axis}", axis) == describe_turn(axis, f"-{axis}")
 
 
 def test_faces_are_found_again_by_their_numbers_in_the_solid() -> None:
@@ -74,13 +74,13 @@ def test_faces_are_found_again_by_their_numbers_in_the_solid() -> None:
     second = design(SECOND, PLATE, best=40, restrictions=Restrictions(avoid=(0,)))
     for located in list(first)[::9]:
         for fixture in list(second)[::9]:
-            shared = first_side(fixture, second.query, first.query, located)
+            shared = compare_with_first_side(fixture, second.query, first.query, located)
             assert (shared.up, shared.up_before) == ("-z", "z")
             assert shared.cut_of_solid == (3,) and shared.cut == (0,)
             here = {(3, 2, 1, 4)[peg.face] for peg in fixture.pegs}
             there = {peg.face + 1 for peg in located.pegs}
             assert shared.shared == tuple(sorted(here & there))
-    alone = first_side(second[0], second.query, first.query, None)
+    alone = compare_with_first_side(second[0], second.query, first.query, None)
     assert alone.shared == ()
 
 
@@ -90,8 +90,8 @@ def test_parts_of_no_solid_are_refused() -> None:
     result = design(drawing, PLATE, best=1)
     first = design(FIRST, PLATE, best=1)
     with pytest.raises(InputError, match="drawing has no faces of a solid"):
-        first_side(result[0], result.query, first.query, None)
+        compare_with_first_side(result[0], result.query, first.query, None)
     assert FIRST.solid is not None
     bare = evolve(FIRST, solid=evolve(FIRST.solid, faces=()))
     with pytest.raises(InputError, match="prism has no faces of a solid"):
-        first_side(first[0], first.query, evolve(first.query, workpiece=bare), None)
+        compare_with_first_side(first[0], first.query, evolve(first.query, workpiece=bare), None)

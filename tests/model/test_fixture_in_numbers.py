@@ -69,7 +69,7 @@ def test_names_offered_are_those_for_users() -> None:
     for thing, hidden in (
         (fixture, "refuse_others"),
         (PART, "numbered"),
-        (fixture.listing.result, "cut_short"),
+        (fixture.listing.result, "mark_cut_short"),
     ):
         assert hidden not in dir(thing) and hasattr(thing, hidden)
 

@@ -15,9 +15,9 @@ from workhold.model.moved_setup import (
     count_spare_holes,
     describe_overhang,
     find_move_to_middle,
+    find_overhangs,
     move_fixture_by_holes,
     move_to,
-    overhangs,
 )
 from workhold.model.shown import bound_placed_part
 from workhold.web.answers import describe_fixture
@@ -56,7 +56,7 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
             assert (other.x - one.x, other.y - one.y) == pytest.approx(by)
             carrier = toolkit.find_carrier(one.carrier)
             if carrier.has_lattice:
-                assert carrier.place(other.column, other.row, placed.travel) == pytest.approx(
+                assert carrier.compute_hole_center(other.column, other.row, placed.travel) == pytest.approx(
                     (other.x, other.y)
                 )
                 assert 0 <= other.column < (toolkit.plates[0].columns or 99)
@@ -83,7 +83,7 @@ def middle_off(fixture: Fixture, result: Result, axis: int) -> float:
     for peg in fixture.pegs:
         carrier = result.toolkit.find_carrier(peg.carrier)
         if carrier.has_body_behind:
-            ends.append(carrier.place(peg.column, peg.row)[axis])
+            ends.append(carrier.compute_hole_center(peg.column, peg.row)[axis])
     count = (plate.columns, plate.rows)[axis] or 1
     return (min(ends) + max(ends)) / 2 - plate.offset[axis] - (count - 1) * plate.pitch[axis] / 2
 
@@ -129,13 +129,13 @@ def test_a_hole_that_is_asked_for_takes_the_lowest_column_and_row() -> None:
 
 def test_what_hangs_over_is_told() -> None:
     """Beyond half a pitch outside the last holes, or beyond the ends of a jaw; nothing of plates without ends."""
-    plate = KINDS["plate"].changed({"columns": 6, "rows": 5})
+    plate = KINDS["plate"].with_fields({"columns": 6, "rows": 5})
     result = held(plate)
     assert len(result)
     fixture = move_fixture_by_holes(result[0], plate, find_move_to_middle(result[0], plate, result.workpiece))
     box = bound_placed_part(result.workpiece, fixture.pose)
     wanted = {"left": -10 - box.x0, "right": box.x1 - 110, "lower": -10 - box.y0, "upper": box.y1 - 90}
-    found = {one.side: one.length for one in overhangs(fixture, plate, result.workpiece)}
+    found = {one.side: one.length for one in find_overhangs(fixture, plate, result.workpiece)}
     assert found == pytest.approx({side: by for side, by in wanted.items() if by > 1e-6})
     jaw = FlatJaw(pitch=12, peg_radius=3, columns=4, jaw_width=30)
     kite = workhold.design(part(KITE), jaw)

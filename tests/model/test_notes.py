@@ -46,7 +46,7 @@ def test_texts_become_remarks() -> None:
 
 def test_who_cuts_again_says_so_once() -> None:
     result = fake_result(5, notes=(BestOnly(9),))
-    assert result.cut_short(4).cut_short(2).notes == (Cut(5, 2), BestOnly(9))
+    assert result.mark_cut_short(4).mark_cut_short(2).notes == (Cut(5, 2), BestOnly(9))
 
 
 def test_what_things_are_called_makes_no_difference() -> None:

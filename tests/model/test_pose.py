@@ -17,10 +17,10 @@ def test_the_hull_edge_nearest_to_the_wall_is_told_of_any_orientation(turned: fl
     part = Workpiece.from_loops("part", [[(30 * cos(a), 30 * sin(a), 0) for a in angles]])
     theta, numbers = part.flush.theta, np.arange(6)
     for laps in (-2, -1, 0, 1):
-        assert (part.flush.number(theta + laps * 2 * pi) == numbers).all()
+        assert (part.flush.find_nearest_edges(theta + laps * 2 * pi) == numbers).all()
     some = np.linspace(-7.0, 7.0, 500)
     off = np.abs((some[:, None] - theta + pi) % (2 * pi) - pi)
-    told = part.flush.number(some)
+    told = part.flush.find_nearest_edges(some)
     assert (off[np.arange(500), told] <= off.min(axis=1) + 1e-12).all()
     assert set(told.tolist()) == set(range(6))
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from workhold import Program
 from workhold.errors import InputError
 from workhold.model.cutting_tool import Cylinder, Tool
-from workhold.model.moves import Moves, along
+from workhold.model.moves import Moves, compute_path_points
 from workhold.model.program import SweptPiece
 from workhold.model.program_figures import bound_tip, measure_tools
 
@@ -29,13 +29,13 @@ def program_of(*rows: tuple[Any, ...], **options: Any) -> Program:
         for k, (cutting, start, end, bulge) in enumerate(rows)
     ]
     options.setdefault("tools", {1: TOOL})
-    return Program("a.nc", "0" * 64, "mm", (0.0, 0.0), 0.0, moves=Moves.of_rows(moves), **options)
+    return Program("a.nc", "0" * 64, "mm", (0.0, 0.0), 0.0, moves=Moves.from_rows(moves), **options)
 
 
 def test_a_ramp_is_cut_where_its_cylinders_reach_the_heights() -> None:
     """A tip from 50 to 10 over 40 mm: the flute, up to tip + 20, is at 35 to 38 from tip 38 to 15; the holder from 18."""
     ramp = program_of((True, (0, 0, 50), (40, 0, 10), 0.0))
-    flute, holder = ramp.swept(35.0, 38.0)
+    flute, holder = ramp.list_swept_pieces(35.0, 38.0)
     assert flute == SweptPiece(
         10, 1, "cut", ((12.0, 0.0, 0.0), (35.0, 0.0, 0.0)), (38.0, 15.0), 3.0, (0.0, 20.0)
     )
@@ -48,13 +48,18 @@ def test_a_ramp_is_cut_where_its_cylinders_reach_the_heights() -> None:
 def test_the_interval_is_closed() -> None:
     """A cylinder that only touches the heights counts, at one moment or all along; beyond it, nothing does."""
     level = program_of((True, (0, 0, 5), (10, 0, 5), 0.0), tools={1: Tool(1, [Cylinder(0, 20, 3)], 6.0)})
-    assert [len(level.swept(*ends)) for ends in ((0, 5), (25, 30), (0, 4.999), (25.001, 30))] == [1, 1, 0, 0]
+    assert [len(level.list_swept_pieces(*ends)) for ends in ((0, 5), (25, 30), (0, 4.999), (25.001, 30))] == [
+        1,
+        1,
+        0,
+        0,
+    ]
     falling = program_of((True, (0, 0, 9), (10, 0, 5), 0.0), tools={1: Tool(1, [Cylinder(0, 20, 3)], 6.0)})
-    (touch,) = falling.swept(-3, 5)
+    (touch,) = falling.list_swept_pieces(-3, 5)
     assert touch.path == ((10.0, 0.0, 0.0),) and touch.tip == (5.0, 5.0)
-    (above,) = falling.swept(29, 40)
+    (above,) = falling.list_swept_pieces(29, 40)
     assert above.path == ((0.0, 0.0, 0.0),) and above.tip == (9.0, 9.0)
-    assert falling.swept(-3, 4.99) == falling.swept(29.01, 40) == ()
+    assert falling.list_swept_pieces(-3, 4.99) == falling.list_swept_pieces(29.01, 40) == ()
 
 
 def test_a_helix_is_cut_at_equal_shares_of_its_sweep() -> None:
@@ -62,7 +67,7 @@ def test_a_helix_is_cut_at_equal_shares_of_its_sweep() -> None:
     helix = program_of(
         (True, (10, 0, 8), (0, 10, 0), tan(pi / 8)), tools={1: Tool(1, [Cylinder(0, 20, 3)], 6.0)}
     )
-    (piece,) = helix.swept(1.0, 4.0)
+    (piece,) = helix.list_swept_pieces(1.0, 4.0)
     (x, y, bulge), (to_x, to_y, _) = piece.path
     assert (x, y) == pytest.approx((10 * 2**-0.5, 10 * 2**-0.5)) and (to_x, to_y) == (0.0, 10.0)
     assert bulge == pytest.approx(tan(pi / 16)) and piece.tip == pytest.approx((4.0, 0.0))
@@ -70,7 +75,7 @@ def test_a_helix_is_cut_at_equal_shares_of_its_sweep() -> None:
 
 def test_upright_moves_are_points_and_tips_change() -> None:
     """A plunge has one vertex, and its tip is cut."""
-    (flute, holder) = program_of((True, (4, 5, 30), (4, 5, -10), 0.0)).swept(0.0, 12.0)
+    (flute, holder) = program_of((True, (4, 5, 30), (4, 5, -10), 0.0)).list_swept_pieces(0.0, 12.0)
     assert flute.path == holder.path == ((4.0, 5.0, 0.0),)
     assert flute.tip == (12.0, -10.0) and holder.tip == pytest.approx((-8.0, -10.0))
 
@@ -93,13 +98,13 @@ def test_cutting_is_the_walk_of_all_moments(
     high = low + room
     shares = np.linspace(0, 1, 101)
     many = len(shares)
-    where = along(
+    where = compute_path_points(
         *(np.repeat(np.array([one[:2]], dtype=float), many, axis=0) for one in (start, end)),
         np.full(many, bulge),
         shares,
     )
     tips = start[2] + shares * (end[2] - start[2])
-    found = {piece.radius: piece for piece in program.swept(low, high)}
+    found = {piece.radius: piece for piece in program.list_swept_pieces(low, high)}
     for cylinder in TOOL.cylinders:
         meets = (tips + cylinder.low <= high) & (tips + cylinder.high >= low)
         clearly = (tips + cylinder.low <= high - 1e-9) & (tips + cylinder.high >= low + 1e-9)
@@ -118,7 +123,7 @@ def test_cutting_is_the_walk_of_all_moments(
                 ).any()
             )
             at = [(tip - start[2]) / (end[2] - start[2]) for tip in piece.tip]
-            two = along(
+            two = compute_path_points(
                 np.array([start[:2]] * 2, dtype=float),
                 np.array([end[:2]] * 2, dtype=float),
                 np.full(2, bulge),
@@ -136,7 +141,7 @@ def test_cutting_is_the_walk_of_all_moments(
 def test_points_along_an_arc_are_at_its_radius_and_turn_evenly() -> None:
     """A third of 270° from the right of the centre is the top of the circle."""
     start, end = np.array([[7.0, 3.0]]), np.array([[2.0, -2.0]])
-    point = along(start, end, np.array([tan(3 * pi / 8)]), np.array([1 / 3]))
+    point = compute_path_points(start, end, np.array([tan(3 * pi / 8)]), np.array([1 / 3]))
     assert np.allclose(point, [[2.0, 8.0]])
 
 
@@ -150,11 +155,11 @@ BOX = (
 def test_a_rapid_move_in_a_box_is_filled_and_not_cut() -> None:
     """Whatever way a control goes, it stays in the box; cutting moves and moves along one axis are as they are."""
     program = program_of(*BOX, rapid="box", tools={1: Tool(1, [Cylinder(0, 20, 3)], 6.0)})
-    box, cut, up = program.swept(5.0, 6.0)
+    box, cut, up = program.list_swept_pieces(5.0, 6.0)
     assert [(x, y) for x, y, _ in box.path] == [(0, 0), (10, 0), (10, 5), (0, 5), (0, 0)]
     assert box.filled and box.tip == (30.0, 5.0) and not cut.filled and len(cut.path) == 2
     assert not up.filled and up.tip == (5.0, 6.0)
-    assert len(program.swept(-2.0, 4.0)) == 0
+    assert len(program.list_swept_pieces(-2.0, 4.0)) == 0
     side = program_of((False, (0, 0, 30), (10, 0, 5), 0.0), rapid="box").pieces[0]
     assert side.filled and [(x, y) for x, y, _ in side.path] == [(0, 0), (10, 0), (0, 0)]
     assert not program_of(*BOX).pieces[0].filled
@@ -177,7 +182,7 @@ def test_a_file_has_all_of_a_program(rapid: str) -> None:
         *("pieces", "skipped", "notes"),
     }
     assert set(data["pieces"][0]) == {"line", "tool", "kind", "path", "z", "radius", "heights"}
-    again = Program.of_entries(data)
+    again = Program.from_entries(data)
     bare = evolve(program.moves, feed=np.zeros(4), spindle=np.zeros(4))
     assert again == evolve(program, moves=bare, stock=None) and again.pieces == program.pieces
     assert again != evolve(program, moves=evolve(bare, end=bare.end + 1e-9))
@@ -203,7 +208,7 @@ def test_a_file_that_contradicts_itself_is_refused(change: Any, words: str) -> N
     data = json.loads(json.dumps(program_of(*BOX).to_dict()))
     change(data)
     with pytest.raises(InputError, match=words):
-        Program.of_entries(data)
+        Program.from_entries(data)
 
 
 @pytest.mark.parametrize(

@@ -16,13 +16,13 @@ from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import (
     FARTHEST,
     ChosenSupports,
-    Recounted,
+    RecountedSupports,
     SupportPad,
     Triple,
-    moves,
-    recounted,
+    iterate_moves,
+    recount_holes,
 )
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 
 REQUEST = SupportRequest(12, pad_radius=2.0, tip_radius=2.5)
 CASES: dict[str, Toolkit] = {
@@ -35,7 +35,7 @@ CASES: dict[str, Toolkit] = {
 }
 
 
-def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Recounted) -> None:
+def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: RecountedSupports) -> None:
     """Checks that everything stands in a hole of its carrier, and relative to the part where it stood."""
     new = found.fixture
     for old, peg in zip(fixture.pegs, new.pegs, strict=True):
@@ -49,8 +49,10 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
             assert peg.y == pytest.approx(0.0, abs=1e-9)
             continue
         travelled = next(travels) if carrier.on is not None else new.travel
-        assert carrier.place(peg.column, peg.row, travelled) == pytest.approx((peg.x, peg.y), abs=1e-9)
-        assert peg.place in (None, carrier.place_name(peg.column, peg.row))
+        assert carrier.compute_hole_center(peg.column, peg.row, travelled) == pytest.approx(
+            (peg.x, peg.y), abs=1e-9
+        )
+        assert peg.place in (None, carrier.name_place(peg.column, peg.row))
         home = toolkit.find_carrier(carrier.stands_on)
         in_column, in_row = carrier.counted
         assert not in_column or 0 <= peg.column < (home.columns or 10**9)
@@ -59,7 +61,7 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
     for old, pad in zip(triple.supports, found.supports, strict=True):
         plate = toolkit.find_carrier(pad.carrier)
         assert (pad.x, pad.y) == (old.x, old.y)
-        assert plate.place(pad.column, pad.row, new.travel) == pytest.approx(
+        assert plate.compute_hole_center(pad.column, pad.row, new.travel) == pytest.approx(
             new.pose.apply(pad.x, pad.y), abs=1e-9
         )
         assert 0 <= pad.column < (plate.columns or 10**9) and 0 <= pad.row < (plate.rows or 10**9)
@@ -74,9 +76,9 @@ def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
     toolkit, moved, count = CASES[name], 0, 0
     result = design(BLOCK, toolkit, best=2)
     for fixture in result:
-        found = supports_of(fixture, result.query, REQUEST)
+        found = find_supports(fixture, result.query, REQUEST)
         for triple in found.triples[:20]:
-            again = recounted(fixture, toolkit, triple)
+            again = recount_holes(fixture, toolkit, triple)
             refuse_moved(fixture, toolkit, triple, again)
             count += 1
             moved += again.move != (0, 0) or again.fixture.travel != fixture.travel
@@ -92,13 +94,13 @@ def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
 def test_a_clamp_on_a_line_moves_along(way: str) -> None:
     """Where only the clamp's line is known, the tip is measured from the new first column or row."""
     fixture, _, plate = on_plate(way, bolted=False, endless=True)
-    corner = fixture.pose.inverse.apply(*plate.carriers[0].place(-2, -1))
+    corner = fixture.pose.inverse.apply(*plate.carriers[0].compute_hole_center(-2, -1))
     pads = [SupportPad("plate", -2, -1, *map(float, corner))]
     for cell in ((3, 2), (4, 1)):
-        x, y = fixture.pose.inverse.apply(*plate.carriers[0].place(*cell))
+        x, y = fixture.pose.inverse.apply(*plate.carriers[0].compute_hole_center(*cell))
         pads.append(SupportPad("plate", *cell, float(x), float(y)))
     triple = evolve(any_triple(), supports=tuple(pads))
-    again = recounted(fixture, plate, triple)
+    again = recount_holes(fixture, plate, triple)
     assert (again.columns, again.rows) == (2, 1)
     refuse_moved(fixture, plate, triple, again)
 
@@ -106,15 +108,15 @@ def test_a_clamp_on_a_line_moves_along(way: str) -> None:
 def any_triple() -> Triple:
     """A triple of the block on the endless plate."""
     result = design(BLOCK, CASES["endless plate"], best=1)
-    return supports_of(result[0], result.query, REQUEST, best=1).triples[0]
+    return find_supports(result[0], result.query, REQUEST, best=1).triples[0]
 
 
 def test_a_set_that_stands_as_listed_is_not_moved() -> None:
     """Nothing has another name where every support has one."""
     fixture, _, plate = on_plate(endless=True)
-    x, y = fixture.pose.inverse.apply(*plate.carriers[0].place(3, 2))
+    x, y = fixture.pose.inverse.apply(*plate.carriers[0].compute_hole_center(3, 2))
     pads = (SupportPad("plate", 3, 2, float(x), float(y)),) * 3
-    again = recounted(fixture, plate, evolve(any_triple(), supports=pads))
+    again = recount_holes(fixture, plate, evolve(any_triple(), supports=pads))
     assert again.move == (0, 0) and again.fixture == fixture and again.supports == pads
 
 
@@ -123,19 +125,19 @@ def test_sets_that_there_are_not_are_refused() -> None:
     """A number beyond the list, and supports that fit nowhere, are sentences."""
     toolkit = CASES["endless plate"]
     result = design(BLOCK, toolkit, best=1)
-    found = supports_of(result[0], result.query, REQUEST, best=2)
-    assert ChosenSupports.of(found, 2).triple == found.triples[1]
+    found = find_supports(result[0], result.query, REQUEST, best=2)
+    assert ChosenSupports.from_supports(found, 2).triple == found.triples[1]
     for number in (0, 3):
         with pytest.raises(InputError, match=f"there is no set {number} of supports: 2 are listed"):
-            ChosenSupports.of(found, number)
+            ChosenSupports.from_supports(found, number)
     with pytest.raises(InputError, match="there is no set of three"):
-        ChosenSupports.of(evolve(found, triples=()))
+        ChosenSupports.from_supports(evolve(found, triples=()))
     far = evolve(
         found.triples[0],
         supports=tuple(evolve(pad, column=pad.column + 9) for pad in found.triples[0].supports),
     )
     with pytest.raises(InputError, match="have no holes"):
-        recounted(result[0], evolve(toolkit, columns=5, rows=5), far)
+        recount_holes(result[0], evolve(toolkit, columns=5, rows=5), far)
     assert isinstance(found.query, Query)
 
 
@@ -143,4 +145,4 @@ def test_moves_are_those_with_the_fewest_steps_first() -> None:
     """All columns and rows up to the farthest, in order of steps, and of columns and rows among equal ones."""
     ways = range(-FARTHEST, FARTHEST + 1)
     every = sorted(product(ways, ways), key=lambda move: (abs(move[0]) + abs(move[1]), move))
-    assert list(moves(CASES["endless plate"], (0, 0))) == every
+    assert list(iterate_moves(CASES["endless plate"], (0, 0))) == every

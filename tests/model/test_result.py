@@ -82,7 +82,7 @@ def test_fixtures_repeat_their_row_of_the_table():
         for m, peg in enumerate(fixture.pegs):
             left, right = result.toolkit.carriers
             carrier = left if peg.carrier == "left" else right
-            assert (peg.x, peg.y) == carrier.place(peg.column, peg.row, fixture.travel)
+            assert (peg.x, peg.y) == carrier.compute_hole_center(peg.column, peg.row, fixture.travel)
             assert peg.face == result.table.face[k, m] and peg.force == result.table.force[k, m]
         assert np.radians(fixture.pose.theta_deg) == pytest.approx(result.table.theta[k])
         assert fixture.quality["closure_margin"] == pytest.approx(result.table.null_vector[k].min())
@@ -92,7 +92,7 @@ def test_an_empty_result():
     """No fixtures: length 0, falsy, nothing to iterate, counts of 0."""
     result = fake_result(0)
     assert len(result) == 0 and not result and list(result) == [] and result.counts == {"I": 0, "II": 0}
-    assert len(FixtureTable.empty()) == 0
+    assert len(FixtureTable.make_empty()) == 0
 
 
 def test_tables_are_read_only_and_can_be_reordered():

@@ -6,7 +6,7 @@ import pytest
 
 from workhold import Workpiece
 from workhold.errors import InputError
-from workhold.model.setup import part_zero
+from workhold.model.setup import choose_part_zero
 from workhold.units import INCH
 
 
@@ -37,7 +37,7 @@ def test_named_points_go_with_the_part(
     place: tuple[float, float], asked: str, wanted: tuple[float, float]
 ) -> None:
     """Wherever the part is drawn, each point is at the same place of it."""
-    x, y = part_zero(plate(*place), asked).point
+    x, y = choose_part_zero(plate(*place), asked).point
     assert (x - place[0], y - place[1]) == pytest.approx(wanted, abs=1e-9)
 
 
@@ -57,14 +57,14 @@ def test_without_a_wish_it_is_the_origin_on_the_part_and_else_the_corner(
     place: tuple[float, float], wanted: tuple[float, float]
 ) -> None:
     """A drawing's origin counts where it is on the part; a drawing two metres off has its corner."""
-    assert part_zero(plate(*place)).point == wanted
+    assert choose_part_zero(plate(*place)).point == wanted
 
 
 def test_points_of_the_drawing_are_in_the_unit_told() -> None:
     """1,-2 inch are 25.4, -50.8 mm, in words or as numbers."""
     assert (
-        part_zero(plate(0, 0), "1,-2", INCH).point
-        == part_zero(plate(0, 0), (1, -2), INCH).point
+        choose_part_zero(plate(0, 0), "1,-2", INCH).point
+        == choose_part_zero(plate(0, 0), (1, -2), INCH).point
         == (25.4, -50.8)
     )
 
@@ -75,4 +75,4 @@ def test_points_of_the_drawing_are_in_the_unit_told() -> None:
 def test_anything_else_is_one_sentence(asked: str) -> None:
     """It names what can be given."""
     with pytest.raises(InputError, match="give corner, centre, hole and its number, or a point"):
-        part_zero(plate(0, 0), asked)
+        choose_part_zero(plate(0, 0), asked)

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 import workhold
 from workhold import Fixture, Load, OpeningVise, Peg, Pose, StrapPlate, Vise, Workpiece
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes
+from workhold.fixels.carrier import HoleSelection
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.geometry.segment import Box
-from workhold.model.shown import Shown, bound_placed_parts, find_shown_beside, shown
+from workhold.model.shown import ShownSetUp, bound_placed_parts, find_shown, find_shown_beside
 
 WAYS = {"+x": 0.0, "+y": pi / 2, "-x": pi, "-y": -pi / 2}
 
@@ -44,7 +44,7 @@ def pegs_in(toolkit: Toolkit, travelled: float, *holes: tuple[str, int, int]) ->
     """A fixture with pegs in holes, on no part."""
     carriers = {carrier.name: carrier for carrier in toolkit.carriers}
     pegs = [
-        Peg(name, column, row, *carriers[name].place(column, row, travelled), 0, 0.5)  # type: ignore[arg-type]
+        Peg(name, column, row, *carriers[name].compute_hole_center(column, row, travelled), 0, 0.5)  # type: ignore[arg-type]
         for name, column, row in holes
     ]
     return Fixture("I", tuple(pegs), Pose(0.0, 0.0, 0.0), travelled, {})  # type: ignore[arg-type]
@@ -61,15 +61,15 @@ def two_plates(way: str) -> Plates:
 
 def apart(one: Box, other: Box) -> bool:
     """Whether two boxes share no area."""
-    return one.overlap(other) == 0
+    return one.compute_overlap_area(other) == 0
 
 
-def check(seen: Shown) -> None:
+def check(seen: ShownSetUp) -> None:
     """Every hole lies on its plate's side of the gap, every peg in a hole that is marked as used, and plates are apart."""
     for one, other in combinations(seen.carriers, 2):
         assert apart(one.plate, other.plate)
     for each in seen.carriers:
-        holes = {hole.center: hole for hole in each.holes()}
+        holes = {hole.center: hole for hole in each.list_holes()}
         assert len(holes) == len(each.columns) * len(each.rows)
         assert all(each.plate.contains(Box(*center, *center)) for center in holes)
         assert {(hole.column, hole.row) for hole in holes.values() if hole.used} == {
@@ -129,7 +129,11 @@ def test_holes_show_a_pitch_around_what_is_held_or_a_fourteenth_of_it(
 def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tuple[float, float]) -> None:
     """A vise clamps towards less separation, an opening vise towards more; holes are those of its jaws."""
     vise = kind(
-        pitch=10, columns=3, peg_radius=3, row_offset=2.0, blocked=(Holes("left", 2, 1), Holes("right", 0))
+        pitch=10,
+        columns=3,
+        peg_radius=3,
+        row_offset=2.0,
+        blocked=(HoleSelection("left", 2, 1), HoleSelection("right", 0)),
     )
     fixture = pegs_in(vise, 36.0, ("left", 2, 0), ("left", 1, 4), ("right", 1, 1), ("right", 1, 3))
     seen = find_shown_beside(Box(21.0, 0.0, 55.0, 40.0), fixture, vise)
@@ -138,8 +142,8 @@ def test_the_clamping_direction_is_the_toolkits(kind: type[Vise], clamping: tupl
     assert (left.clamping, right.clamping) == (None, clamping)
     (measured,) = seen.measured
     assert (measured.setting.start, measured.setting.end) == ((20.0, 2.0), (56.0, 2.0))
-    assert [(hole.column, hole.row) for hole in left.holes() if hole.blocked] == [(2, 1)]
-    assert {hole.column for hole in right.holes() if hole.blocked} == {0}
+    assert [(hole.column, hole.row) for hole in left.list_holes() if hole.blocked] == [(2, 1)]
+    assert {hole.column for hole in right.list_holes() if hole.blocked} == {0}
     assert left.columns[-1] == 2 and right.columns[0] == 0
 
 
@@ -148,8 +152,8 @@ def test_of_many_holes_those_near_the_pegs_are_left() -> None:
     fine = Vise(pitch=0.5, columns=200, peg_radius=0.2)
     fixture = pegs_in(fine, 50.0, ("left", 199, 0), ("left", 150, 60), ("right", 0, 0), ("right", 60, 80))
     for each in find_shown_beside(Box(100.0, 0.0, 149.0, 40.0), fixture, fine).carriers:
-        near = each.holes(2000)
-        assert len(near) <= 49 * len(each.pegs) < len(each.holes())
+        near = each.list_holes(2000)
+        assert len(near) <= 49 * len(each.pegs) < len(each.list_holes())
         for hole in near:
             away = [max(abs(hole.column - peg.column), abs(hole.row - peg.row)) for peg in each.pegs]
             assert min(away) <= 3
@@ -165,7 +169,7 @@ def test_extents_are_those_of_the_placed_part(theta: float, x: float, y: float) 
     ((x0, y0, x1, y1),) = bound_placed_parts(part, *np.array([[theta], [x], [y]]))
     points = np.array(
         [
-            segment.at(segment.half_extent * share)
+            segment.compute_point(segment.half_extent * share)
             for segment in part.segments
             for share in np.linspace(-1, 1, 1001)
         ]
@@ -174,7 +178,7 @@ def test_extents_are_those_of_the_placed_part(theta: float, x: float, y: float) 
     assert (*placed.min(axis=0), *placed.max(axis=0)) == pytest.approx((x0, y0, x1, y1), abs=2e-4)
     assert x0 <= placed[:, 0].min() + 1e-9 and y1 >= placed[:, 1].max() - 1e-9
     fixture = evolve(pegs_in(Vise(pitch=9, columns=1, peg_radius=1), 30.0), pose=Pose(theta * 180 / pi, x, y))
-    assert shown(fixture, Vise(pitch=9, columns=1, peg_radius=1), part).part.x0 == pytest.approx(x0)
+    assert find_shown(fixture, Vise(pitch=9, columns=1, peg_radius=1), part).part.x0 == pytest.approx(x0)
 
 
 @given(theta=st.floats(-400.0, 400.0), x=st.floats(-50.0, 50.0), y=st.floats(-50.0, 50.0))
@@ -239,7 +243,7 @@ def test_bolts_of_straps_and_supports_show(over: str) -> None:
     block = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
     load = Load(points=(50, 30), force=300, directions=20)
     fixture = workhold.design(block, plate, loads=[load], thickness=25, strapped=1, best=1)[0]
-    (seen,) = shown(fixture, plate, block).carriers
+    (seen,) = find_shown(fixture, plate, block).carriers
     holes = {one.hole for one in fixture.hold.straps} | set(fixture.hold.supports)
     assert holes and holes < seen.used
     assert holes <= {(column, row) for column in seen.columns for row in seen.rows}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from workhold import InputError, Program, Query, Vise, Workpiece
 from workhold.model.cutting_tool import Cylinder, Tool
-from workhold.model.moves import Moves, along
+from workhold.model.moves import Moves, compute_path_points
 from workhold.model.stock import Stock, find_stretches_in_stock
 
 Array = NDArray[np.float64]
@@ -33,14 +33,14 @@ def moves_of(*rows: tuple[Any, ...], tool: int = 2, cycle: bool = False) -> Move
         (k, tool, True, (*a, 3.0)[:3], (*b, 3.0)[:3], bulge, 0.0, 0.0, cycle)
         for k, (a, b, bulge) in enumerate(rows, 1)
     ]
-    return Moves.of_rows(full)
+    return Moves.from_rows(full)
 
 
 def found(moves: Moves, loops: list[Array], **how: Any) -> list[list[float]]:
     """The stretches of the first move."""
-    stock = Stock.of(how, 10.0)
-    border = stock.border(loops)
-    return find_stretches_in_stock(moves, TOOLS, stock, border, np.ones(len(moves), np.bool_)).of_move(0)
+    stock = Stock.from_value(how, 10.0)
+    border = stock.make_border(loops)
+    return find_stretches_in_stock(moves, TOOLS, stock, border, np.ones(len(moves), np.bool_)).list_shares(0)
 
 
 def sampled(loop: Array, step: float = 0.5) -> Array:
@@ -50,7 +50,7 @@ def sampled(loop: Array, step: float = 0.5) -> Array:
         end = loop[(k + 1) % len(loop), :2]
         count = int(2 + 2.2 * hypot(end[0] - x, end[1] - y) / step)
         ends = (np.repeat([one], count, axis=0) for one in ((x, y), end))
-        points.append(along(*ends, np.full(count, bulge), np.linspace(0, 1, count)))
+        points.append(compute_path_points(*ends, np.full(count, bulge), np.linspace(0, 1, count)))
     return np.concatenate(points)
 
 
@@ -75,7 +75,7 @@ def test_stretches_are_those_of_a_walk(
     moves = moves_of((start, end, bulge))
     share = np.linspace(0.0, 1.0, 31)
     ends = (np.repeat(one[:, :2], len(share), axis=0) for one in (moves.start, moves.end))
-    points = along(*ends, np.full(len(share), bulge), share)
+    points = compute_path_points(*ends, np.full(len(share), bulge), share)
     loop = np.roll(loop, 1, axis=0) if loop[0, 2] > 1 else loop
     got = found(moves, [loop], side=side)
     inside = np.zeros(len(share), np.bool_)
@@ -86,7 +86,9 @@ def test_stretches_are_those_of_a_walk(
     assert not (inside & ~wide).any() and not (~inside & narrow).any(), (got, want)
     # Every end that is not one of the move's own is where the edge of the tool just touches.
     for at in {one for pair in got for one in pair} - {0.0, 1.0}:
-        place = along(*(one[:, :2] for one in (moves.start, moves.end)), np.array([bulge]), np.array([at]))
+        place = compute_path_points(
+            *(one[:, :2] for one in (moves.start, moves.end)), np.array([bulge]), np.array([at])
+        )
         assert np.hypot(*(sampled(loop, 0.05) - place[0]).T).min() == pytest.approx(6 + side, abs=2e-4)
 
 
@@ -141,12 +143,15 @@ def test_heights_count_from_the_tip_to_the_end_of_the_flute() -> None:
     assert found(ramp, [PLATE]) == [pytest.approx([0.1, 1.0])]
     short = {2: Tool(2, [Cylinder(0, 40, 6)], 12, flute_length=10)}
     stock, every = Stock(height=10), np.ones(1, np.bool_)
-    got = find_stretches_in_stock(ramp, short, stock, stock.border([PLATE]), every).of_move(0)
+    got = find_stretches_in_stock(ramp, short, stock, stock.make_border([PLATE]), every).list_shares(0)
     # Where the tip is 10 below the plane, the flute has left the stock.
     assert got == [pytest.approx([0.1, 0.6])]
     # Nobody knows how high the part is: then the stock has no top.
     stock = Stock()
-    assert find_stretches_in_stock(ramp, short, stock, stock.border([PLATE]), every).of_move(0)[0][0] == 0.0
+    assert (
+        find_stretches_in_stock(ramp, short, stock, stock.make_border([PLATE]), every).list_shares(0)[0][0]
+        == 0.0
+    )
 
 
 def test_holes_are_filled_and_pieces_count_each() -> None:
@@ -196,16 +201,16 @@ def test_only_the_stretch_within_the_stock_presses(tmp_path: Path) -> None:
     # In from 30 before the plate, out 30 behind it, of 200 mm from -40.
     assert line.tolist() == [7]
     assert [shares.first[0], shares.last[0]] == pytest.approx([10 / 200, 190 / 200], abs=1e-7)
-    assert program.pressing_on([PLATE]) is program
+    assert program.keep_forces_on([PLATE]) is program
     entries = [one for one in program.to_dict()["pieces"] if "cutting" in one]
     assert [one["line"] for one in entries] == [7] and entries[0]["cutting"]["kind"] == "milling"
     assert entries[0]["cutting"]["stretches"] == [[shares.first[0], shares.last[0]]]
     assert program.to_dict()["stock"] == {"side": 5.0, "top": 5.0, "shape": "outline", "height": 15.0}
-    back = Program.of_entries(program.to_dict())
+    back = Program.from_entries(program.to_dict())
     assert (
         back.forces == program.forces and back.stock == program.stock and back.to_dict() == program.to_dict()
     )
-    assert back.pressing_on([PLATE]) is back
+    assert back.keep_forces_on([PLATE]) is back
     # A finished top, and none of the force at the finished height.
     bare = asked(path, stock={"top": 0, "side": 0})
     assert bare.program is not None and bare.program.forces is not None

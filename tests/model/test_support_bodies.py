@@ -13,8 +13,8 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc
 from workhold.model.bodies import SUPPORT_HEIGHT, BodyKind, BodySizes, FixtureBody, make_part_slabs
-from workhold.model.support_bodies import list_bodies_with_supports, size_supported_bodies, with_room
-from workhold.model.support_triples import ChosenSupports, Recounted, Supports, Triple, recounted
+from workhold.model.support_bodies import cut_room, list_bodies_with_supports, size_supported_bodies
+from workhold.model.support_triples import ChosenSupports, RecountedSupports, Supports, Triple, recount_holes
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
 
@@ -28,9 +28,9 @@ def found_in(toolkit: Toolkit, part: Workpiece = KITE) -> Supports:
     return next(one for one in every if one.triples)
 
 
-def written_out(found: Supports, triple: Triple) -> Recounted:
+def written_out(found: Supports, triple: Triple) -> RecountedSupports:
     """A set in holes that the plates have."""
-    return recounted(found.fixture, found.query.toolkit, triple)
+    return recount_holes(found.fixture, found.query.toolkit, triple)
 
 
 CASES = [*((KITE, toolkit) for toolkit in TOOLKITS), (PLATE, Vise(pitch=20, columns=5, peg_radius=3))]
@@ -61,7 +61,7 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
         carriers = {one.name: one for one in toolkit.carriers}
         for pad, before in zip(pads, triple.supports, strict=True):
             carrier = carriers[pad.carrier]
-            place = carrier.place(pad.column, pad.row, fixture.travel)
+            place = carrier.compute_hole_center(pad.column, pad.row, fixture.travel)
             assert place == pytest.approx(fixture.pose.apply(pad.x, pad.y), abs=1e-9)
             assert (pad.x, pad.y) == (before.x, before.y)
         for peg, old in zip(fixture.pegs, found.fixture.pegs, strict=True):
@@ -69,7 +69,7 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
                 found.fixture.pose.inverse.apply(old.x, old.y), abs=1e-9
             )
             if len(toolkit.plates) == 2:
-                place = carriers[peg.carrier].place(peg.column, peg.row, fixture.travel)
+                place = carriers[peg.carrier].compute_hole_center(peg.column, peg.row, fixture.travel)
                 assert place == pytest.approx((peg.x, peg.y), abs=1e-9)
         if len(toolkit.plates) == 2:
             assert fixture.travel == triple.travel
@@ -83,9 +83,9 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
 def test_heights_and_radii_of_the_bodies() -> None:
     """The part lies at 0 on pads; plates lie below, their holes around the pins; the screw presses on top."""
     found = found_in(Vise(pitch=15, columns=4, peg_radius=2.5))
-    chosen = ChosenSupports.of(found)
+    chosen = ChosenSupports.from_supports(found)
     triple, fixture, pads = chosen.triple, chosen.recounted.fixture, chosen.pads
-    sizes = BodySizes.of(KITE, 15, plate_thickness=8, support_height=5)
+    sizes = BodySizes.from_workpiece(KITE, 15, plate_thickness=8, support_height=5)
     bodies = list_bodies_with_supports(chosen, sizes)
     kinds = {kind: [body for body in bodies if body.kind is kind] for kind in BodyKind}
     assert [(slab.low, slab.high) for slab in kinds[BodyKind.PART][0].slabs] == [(0, 15)]
@@ -127,14 +127,14 @@ def test_room_for_the_clamp_is_a_well_or_all_above(
     (slab,) = make_part_slabs(
         Workpiece.from_loops("holed", [*PLATE.loops, [[74, 30, -1], [66, 30, -1]]]), 30.0
     )
-    pieces = list(with_room(slab, center, 5.0, 12.0))
+    pieces = list(cut_room(slab, center, 5.0, 12.0))
     if holes is None:
         assert pieces == [slab]
         return
     assert [len(piece.holes) for piece in pieces] == holes
     assert [piece.low for piece in pieces] == [0.0, 12.0][: len(holes)]
     assert pieces[-1].high == (30.0 if len(holes) == 2 else 12.0)
-    assert list(with_room(slab, center, 5.0, 30.0)) == [slab]
+    assert list(cut_room(slab, center, 5.0, 30.0)) == [slab]
 
 
 def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path) -> None:
@@ -142,15 +142,15 @@ def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path
     found = found_in(TOOLKITS[0])
     with pytest.raises(InputError, match="pads of radius 0 have no body"):
         list_bodies_with_supports(
-            ChosenSupports.of(evolve(found, request=evolve(found.request, pad_radius=0)))
+            ChosenSupports.from_supports(evolve(found, request=evolve(found.request, pad_radius=0)))
         )
     with pytest.raises(InputError, match="there is no set 41 of supports: 40 are listed"):
-        ChosenSupports.of(found, 41)
+        ChosenSupports.from_supports(found, 41)
     with pytest.raises(InputError, match="support height -1 is not a length"):
-        BodySizes.of(KITE, 15, support_height=-1)
+        BodySizes.from_workpiece(KITE, 15, support_height=-1)
     path = tmp_path / "kite.glb"
     found.fixture.save_glb(path, supports=found, best=2)
-    pads = ChosenSupports.of(found, 2).pads
+    pads = ChosenSupports.from_supports(found, 2).pads
     assert all(f"support {pad.hole}".encode() in path.read_bytes() for pad in pads)
     found.fixture.save_glb(path)
     assert b"support" not in path.read_bytes()

@@ -20,11 +20,11 @@ SOLID = Workpiece.from_loops(
 
 def test_a_solid_says_how_thick_it_is_and_where_it_is_level() -> None:
     """A drawing says neither: then its thickness has to be given, and the outline is level."""
-    request = SupportRequest.of(SOLID)
+    request = SupportRequest.from_workpiece(SOLID)
     assert (request.thickness, request.pad_radius, request.tip_radius, request.inside) == (25, 4, 5, 5)
     assert request.bottom is not None and request.top is not None
     assert [len(request.bottom[0]), len(request.top[0])] == [4, 3]
-    plain = SupportRequest.of(FLAT, 12, pad_radius=3, tip_radius=2)
+    plain = SupportRequest.from_workpiece(FLAT, 12, pad_radius=3, tip_radius=2)
     assert (plain.thickness, plain.pad_radius, plain.inside, plain.bottom, plain.top) == (
         12,
         3,
@@ -33,17 +33,25 @@ def test_a_solid_says_how_thick_it_is_and_where_it_is_level() -> None:
         None,
     )
     with pytest.raises(InputError, match="the thickness of the part is not known: give it in mm"):
-        SupportRequest.of(FLAT)
+        SupportRequest.from_workpiece(FLAT)
 
 
 def test_the_usual_pad_is_as_small_as_the_holes_ask_for() -> None:
     """Half of the smallest pitch or gap; where that is next to nothing, the pad is refused in the search."""
-    assert SupportRequest.of(FLAT, 12, toolkit=Vise(pitch=6, columns=4, peg_radius=2)).pad_radius == 3
-    assert SupportRequest.of(FLAT, 12, toolkit=Vise(pitch=(20, 7), columns=4, peg_radius=2)).pad_radius == 3.5
-    assert SupportRequest.of(FLAT, 12, toolkit=Plate(pitch=20, peg_radius=3)).pad_radius == 4
+    assert (
+        SupportRequest.from_workpiece(FLAT, 12, toolkit=Vise(pitch=6, columns=4, peg_radius=2)).pad_radius
+        == 3
+    )
+    assert (
+        SupportRequest.from_workpiece(
+            FLAT, 12, toolkit=Vise(pitch=(20, 7), columns=4, peg_radius=2)
+        ).pad_radius
+        == 3.5
+    )
+    assert SupportRequest.from_workpiece(FLAT, 12, toolkit=Plate(pitch=20, peg_radius=3)).pad_radius == 4
     tight = Vise(pitch=1, columns=9, peg_radius=0.4)
     with pytest.raises(InputError, match="would overlap 1 mm apart"):
-        SupportRequest.of(FLAT, 12, toolkit=tight).refuse_fat_pads(tight)
+        SupportRequest.from_workpiece(FLAT, 12, toolkit=tight).refuse_fat_pads(tight)
 
 
 def test_each_peg_has_the_band_of_its_face_cut_at_the_thickness() -> None:
@@ -53,13 +61,13 @@ def test_each_peg_has_the_band_of_its_face_cut_at_the_thickness() -> None:
     pegs = [evolve(fixture.pegs[0], face=face, beside=beside) for face, beside in ((0, None), (3, None))]
     pegs += [evolve(fixture.pegs[0], face=1, beside=0), evolve(fixture.pegs[0], face=2)]
     held = evolve(fixture, pegs=tuple(pegs))
-    own = SupportRequest.of(SOLID, 20).for_fixture(held, solid)
+    own = SupportRequest.from_workpiece(SOLID, 20).adapt_to_fixture(held, solid)
     assert own.bands == ((1, 9), (0, 20), (1, 9), None) and own.band == (0, 20)
-    assert own.peg_bands(4).tolist() == [[1, 9], [0, 20], [1, 9], [0, 20]]
-    given = evolve(SupportRequest.of(SOLID, 20), band=(3, 4)).for_fixture(held, solid)
-    assert given.bands is None and given.peg_bands(4).tolist() == [[3, 4]] * 4
-    assert SupportRequest.of(FLAT, 20).for_fixture(held, None).band == (0, 20)
-    assert SupportRequest.of(FLAT, 20).for_fixture(held, None, 6).band == (0, 6)
+    assert own.list_peg_bands(4).tolist() == [[1, 9], [0, 20], [1, 9], [0, 20]]
+    given = evolve(SupportRequest.from_workpiece(SOLID, 20), band=(3, 4)).adapt_to_fixture(held, solid)
+    assert given.bands is None and given.list_peg_bands(4).tolist() == [[3, 4]] * 4
+    assert SupportRequest.from_workpiece(FLAT, 20).adapt_to_fixture(held, None).band == (0, 20)
+    assert SupportRequest.from_workpiece(FLAT, 20).adapt_to_fixture(held, None, 6).band == (0, 6)
 
 
 def test_the_engine_takes_the_bands_of_the_solid() -> None:

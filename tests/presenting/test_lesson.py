@@ -16,7 +16,7 @@ import workhold
 from workhold import Fixture, Workpiece
 from workhold.errors import InputError
 from workhold.geometry.segment import Line
-from workhold.kernels.chord.evaluation import chord, distance_to_end, parameter_on
+from workhold.kernels.chord.evaluation import compute_chord, find_parameter, measure_end_distance
 from workhold.presenting.lesson import MOST_FACES, compute_lesson
 
 ROOT = Path(__file__).parents[2]
@@ -77,7 +77,7 @@ def test_pegs_stand_on_their_chords(taught: Any) -> None:
             pegs = one["pegs"][2 * number : 2 * number + 2]
             first, second = pegs[::-1] if swapped else pegs
             assert [made["faces"][tail], made["faces"][head]] == [first[4], second[4]]
-            ux, uy = chord(
+            ux, uy = compute_chord(
                 row_of(made["features"][tail]), row_of(made["features"][head]), length, psi + shift, branch
             )[:2]
             ends = (ux, uy), (ux + length * cos(psi + shift), uy + length * sin(psi + shift))
@@ -97,10 +97,10 @@ def test_chords_exist_just_between_their_ends(taught: Any) -> None:
             def fits(psi: float, a: Any = a, b: Any = b, given: Any = (shift, length, branch)) -> bool:
                 shift, length, branch = given
                 w = length * cos(psi + shift), length * sin(psi + shift)
-                ux, uy, *_ = chord(a, b, length, psi + shift, branch)
+                ux, uy, *_ = compute_chord(a, b, length, psi + shift, branch)
                 ends = (
-                    distance_to_end(a, parameter_on(a, ux, uy)),
-                    distance_to_end(b, parameter_on(b, ux + w[0], uy + w[1])),
+                    measure_end_distance(a, find_parameter(a, ux, uy)),
+                    measure_end_distance(b, find_parameter(b, ux + w[0], uy + w[1])),
                 )
                 return bool(
                     min(ends) >= -1e-5 and abs(off(a, ux, uy)) + abs(off(b, ux + w[0], uy + w[1])) < 1e-6

@@ -12,7 +12,7 @@ from workhold import Load
 from workhold.errors import InputError
 from workhold.presenting.closing_shown import show_closing
 from workhold.presenting.live_picture import USUAL, LivePicture, TriedForce
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 
 WEDGE = workhold.Workpiece.from_loops("wedge", [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]])
 VISE = workhold.design(WEDGE, workhold.Vise(pitch=15, columns=1, peg_radius=2))
@@ -47,7 +47,7 @@ def test_contact_forces_are_those_of_the_statics(result: workhold.Result) -> Non
     """With as much force as is needed, and with too little, when the peg that lets go is named."""
     picture, push = live(result), TriedForce(12.0, 9.0, 150.0, 240.0)
     load = Load(points=[(12.0, 9.0)], force=150.0, directions=(240.0, 240.0))
-    (case,) = load_cases(picture.fixture, WEDGE, result.toolkit, [load])
+    (case,) = compute_load_cases(picture.fixture, WEDGE, result.toolkit, [load])
     answer = picture.answer(push, None, "screw")
     assert answer["holds"] is True and "Forces are for that" in answer["words"]
     # 200 N are 100 units, unless the largest would be longer than 170.

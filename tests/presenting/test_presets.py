@@ -35,9 +35,12 @@ def test_a_preset_brings_its_tolerance_to_a_query() -> None:
     part = workhold.Workpiece.from_points("plate", [(0, 0), (300, 0), (300, 200), (0, 210)])
     table, own = workhold.Vise.preset("table-50mm"), load_toolkit("table-50mm").tolerance
     assert own.peg > 0.1
-    for toolkit in (table, load_toolkit("table-50mm").toolkit, table.changed({"columns": 3})):
+    for toolkit in (table, load_toolkit("table-50mm").toolkit, table.with_fields({"columns": 3})):
         assert Query(part, toolkit).tolerance == own
-    for toolkit in (table.changed({"peg_radius": 7.0}), workhold.Vise.preset("table-50mm", peg_radius=7.0)):
+    for toolkit in (
+        table.with_fields({"peg_radius": 7.0}),
+        workhold.Vise.preset("table-50mm", peg_radius=7.0),
+    ):
         assert Query(part, toolkit).tolerance == workhold.Tolerance()
     assert Query(part, table, tolerance=workhold.Tolerance(0.02)).tolerance.peg == 0.02
 

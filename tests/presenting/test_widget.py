@@ -75,7 +75,7 @@ def test_supports_show_in_the_holes_that_the_sheet_names() -> None:
     five = workhold.Workpiece.from_points("five", corners)
     result = workhold.design(five, workhold.Vise(pitch=20, columns=2, peg_radius=3), best=3)
     widget = result.widget(supports={"thickness": 12, "best": 2})
-    chosen = ChosenSupports.of(result[0].supports(12, best=2))
+    chosen = ChosenSupports.from_supports(result[0].supports(12, best=2))
     holes = [pad.hole for pad in chosen.pads]
     assert f"Supports in {', '.join(holes)}; the clamp on top presses at (" in widget.picture["title"]
     picture = widget.picture["svg"]
@@ -154,6 +154,6 @@ def test_without_the_library_there_is_a_picture(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_result_without_fixtures_has_no_widget() -> None:
-    none = RESULT.part(slice(0, 0))
+    none = RESULT.slice_rows(slice(0, 0))
     with pytest.raises(InputError, match="no fixture"):
         none.widget()

@@ -20,11 +20,17 @@ from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK
 from workhold.kernels.contact import record
 from workhold.listing import collector as finish_module
-from workhold.listing.results import Work, list_result
+from workhold.listing.results import SearchWork, list_result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
-from workhold.proof.ball_contacts import end_slacks
-from workhold.proof.deciding import Course, bound_box, decide_by_interval_newton, decided, merged
+from workhold.proof.ball_contacts import compute_end_slacks
+from workhold.proof.deciding import (
+    DecidingProgress,
+    bound_box,
+    decide_by_interval_newton,
+    decide_records,
+    merge_overlapping_records,
+)
 from workhold.search import design as design_module
 
 
@@ -33,7 +39,9 @@ def found() -> tuple[Problem, list[NDArray[np.float64]], Result]:
     """The oblong part with many nearly double contacts: problem, records and result."""
     kept: list[tuple[Problem, list[NDArray[np.float64]]]] = []
 
-    def keep(problem: Problem, records: list[NDArray[np.float64]], work: Work, **options: object) -> Result:
+    def keep(
+        problem: Problem, records: list[NDArray[np.float64]], work: SearchWork, **options: object
+    ) -> Result:
         kept.append((problem, records))
         return list_result(problem, records, work, **options)  # type: ignore[arg-type]
 
@@ -50,8 +58,8 @@ def test_progress_of_the_listing_rises_to_its_end(
     problem, records, _ = found
     seen: list[tuple[float, int]] = []
     together = np.concatenate(records)
-    course = Course(len(together), lambda fraction, kept: seen.append((fraction, kept)))
-    proven, _ = decided(together, problem, course)
+    course = DecidingProgress(len(together), lambda fraction, kept: seen.append((fraction, kept)))
+    proven, _ = decide_records(together, problem, course)
     assert seen == sorted(seen)
     assert course.done == len(together)
     assert seen[-1] == (1.0, len(proven))
@@ -63,7 +71,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     problem, records, result = found
     cancel = Event()
     cancel.set()
-    part = list_result(problem, records, Work(True, {}), cancel=cancel)
+    part = list_result(problem, records, SearchWork(True, {}), cancel=cancel)
     assert not part.complete
     assert part.proof is not None and result.proof is not None
     assert part.proof.undecided == ()
@@ -72,7 +80,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     assert part.proof.escalated < result.proof.escalated
     proof = part.proof
     assert proof.candidates == proof.discarded_by_bound + proof.verified
-    everything = list_result(problem, records, Work(True, {}), cancel=Event())
+    everything = list_result(problem, records, SearchWork(True, {}), cancel=Event())
     assert everything.complete
     assert len(everything) == len(result)
 
@@ -86,7 +94,7 @@ def test_a_cancel_on_the_way_stops_ball_arithmetic(
     monkeypatch.setattr(deciding, "hold_nothing", lambda records, _: np.zeros(len(records), np.bool_))
     cancel = Event()
     looked_at = []
-    original = deciding.record_in_balls
+    original = deciding.decide_record_in_balls
 
     def one(*arguments: object) -> object:
         looked_at.append(arguments)
@@ -94,9 +102,9 @@ def test_a_cancel_on_the_way_stops_ball_arithmetic(
             cancel.set()
         return original(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(deciding, "record_in_balls", one)
+    monkeypatch.setattr(deciding, "decide_record_in_balls", one)
     together = np.concatenate(records)
-    _, account = decided(together, problem, Course(len(together), cancel=cancel))
+    _, account = decide_records(together, problem, DecidingProgress(len(together), cancel=cancel))
     assert len(looked_at) == 3
     assert account.left > 0
     assert account.records + account.left == len(together)
@@ -126,12 +134,12 @@ def test_more_open_records_are_looked_at_together_as_long_as_that_is_quick(
         blocks.append(block)
         return block[:1], block[:0]
 
-    monkeypatch.setattr(deciding, "sifted", lambda records, *_: (records[:0], records))
-    monkeypatch.setattr(deciding, "merged", lambda records, _: records)
+    monkeypatch.setattr(deciding, "sift_records", lambda records, *_: (records[:0], records))
+    monkeypatch.setattr(deciding, "merge_overlapping_records", lambda records, _: records)
     monkeypatch.setattr(deciding, "decide_by_interval_newton", look)
     monkeypatch.setattr(deciding, "perf_counter", lambda: clock[0])
-    course = Course(len(records))
-    proven, reasons, left = deciding.escalated(records, found[0], course)
+    course = DecidingProgress(len(records))
+    proven, reasons, left = deciding.escalate_records(records, found[0], course)
     assert [len(block) for block in blocks] == sizes[: len(blocks)]
     assert len(blocks) == len(sizes)
     assert np.array_equal(np.concatenate(blocks), records)
@@ -150,11 +158,11 @@ def test_a_stop_between_blocks_leaves_the_others(
             cancel.set()
         return block, block[:0]
 
-    monkeypatch.setattr(deciding, "sifted", lambda records, *_: (records[:0], records))
-    monkeypatch.setattr(deciding, "merged", lambda records, _: records)
+    monkeypatch.setattr(deciding, "sift_records", lambda records, *_: (records[:0], records))
+    monkeypatch.setattr(deciding, "merge_overlapping_records", lambda records, _: records)
     monkeypatch.setattr(deciding, "decide_by_interval_newton", look)
     monkeypatch.setattr(deciding, "QUICK", 1e9)
-    proven, _, left = deciding.escalated(records, found[0], Course(100, cancel=cancel))
+    proven, _, left = deciding.escalate_records(records, found[0], DecidingProgress(100, cancel=cancel))
     assert (len(proven), left) == (48, 52)
 
 
@@ -164,7 +172,7 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
     """With everything open sent to ball arithmetic the same records are proven."""
     problem, records, result = found
     monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
-    other = list_result(problem, records, Work(True, {}))
+    other = list_result(problem, records, SearchWork(True, {}))
     assert np.array_equal(other.table.column, result.table.column)
     assert np.array_equal(other.table.row, result.table.row)
     assert np.abs(other.table.theta - result.table.theta).max() < 1e-12
@@ -185,7 +193,7 @@ def test_overlapping_boxes_of_the_same_pegs_are_one(
     near[14] += 1e-6
     far[14] += 1.0
     other[1] += 1
-    rows = merged(np.array([first, near, far, other]), problem)
+    rows = merge_overlapping_records(np.array([first, near, far, other]), problem)
     assert len(rows) == 3
     together = rows[(rows[:, 1] == first[1]) & (rows[:, 14] < first[14] + 0.5)][0]
     assert together[14] - together[18] <= first[14] - 1e-6
@@ -197,7 +205,7 @@ def test_one_thread_at_a_time_works_with_balls(monkeypatch: pytest.MonkeyPatch) 
     """The precision of ball arithmetic belongs to the whole process: with every open record sent there, from small blocks
     on many threads, no two boxes are decided at the same time, and the outcome is the same as on one thread."""
     inside, most = [0], [0]
-    solutions_in = settling.solutions_in
+    solutions_in = settling.find_solutions
 
     def watched(*arguments: object) -> object:
         inside[0] += 1
@@ -208,7 +216,7 @@ def test_one_thread_at_a_time_works_with_balls(monkeypatch: pytest.MonkeyPatch) 
         finally:
             inside[0] -= 1
 
-    monkeypatch.setattr(settling, "solutions_in", watched)
+    monkeypatch.setattr(settling, "find_solutions", watched)
     monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
     monkeypatch.setattr(finish_module, "BLOCK", 8)
     part, vise = load("oblongPart"), Vise(pitch=8, columns=2, peg_radius=3)
@@ -238,22 +246,23 @@ def test_a_contact_past_an_end_counts_at_a_tangent_joint_alone(row: np.ndarray, 
     for smooth in (-1, 1):
         ends = [-END_SLACK, -END_SLACK]
         ends[(side + 1) // 2] *= -smooth
-        slacks = end_slacks([*row, *ends], (arb(place[0]), arb(place[1])), 0.0)
+        slacks = compute_end_slacks([*row, *ends], (arb(place[0]), arb(place[1])), 0.0)
         nearest = min(slacks, key=lambda slack: float(slack.mid()))
         assert (nearest > 0) == (smooth == 1) and (nearest < 0) == (smooth == -1)
         assert (
             min(
-                float(slack.mid()) for slack in end_slacks([*row, *ends], (arb(place[0]), arb(place[1])), 1.0)
+                float(slack.mid())
+                for slack in compute_end_slacks([*row, *ends], (arb(place[0]), arb(place[1])), 1.0)
             )
             < -0.9
         )
-    assert end_slacks([*arc_row(0, 0, 5.0, 0.0, pi), 0.0, 0.0], (arb(5), arb(0)), 9.0) == []
+    assert compute_end_slacks([*arc_row(0, 0, 5.0, 0.0, pi), 0.0, 0.0], (arb(5), arb(0)), 9.0) == []
 
 
 def test_a_wide_box_is_decided_in_doubles() -> None:
     """Three pegs whose curves touch, and a fourth whose row grazes its face: where it stands is known to some 9 mm only.
     Balls take 1.5 s for it and give it up; doubles take as many parts as it needs, and find that no fixture is there."""
-    problem = Problem.of(Query(load("widget"), Vise(pitch=2, columns=5, peg_radius=0.75)))
+    problem = Problem.from_query(Query(load("widget"), Vise(pitch=2, columns=5, peg_radius=0.75)))
     row = np.zeros((1, record.RECORD_LENGTH))
     row[0, : record.PSI] = 3, 12, 14, 13, 2, 0, -4, -1, 0, 0, -4, -1, -2
     row[0, record.PSI :] = -0.4988108, -15.43876, 4.146501, 47.99848, 4.116907e-4, 8.815414

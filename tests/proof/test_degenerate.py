@@ -26,16 +26,16 @@ from workhold.kernels.contact.record import (
     TAIL_X,
     TAIL_Y,
 )
-from workhold.kernels.proof.interval_newton import jacobians
+from workhold.kernels.proof.interval_newton import compute_jacobians
 from workhold.listing import collector
 from workhold.proof import deciding
 from workhold.proof.degenerate import (
     TouchedFeatures,
-    antipodal,
+    are_antipodal,
+    are_lined_up,
+    are_sliding,
+    are_turning,
     hold_nothing,
-    lined_up,
-    sliding,
-    turning,
 )
 
 Array = NDArray[np.float64]
@@ -78,7 +78,7 @@ def test_a_pair_as_far_apart_or_as_near_as_two_arcs_allow_is_antipodal(
     for length in (ends.min(), ends.max()):
         # A least of 0 is taken at no angle tried, and by no two pegs.
         if length > 0.5:
-            found = antipodal(arc(0, one, 3), arc(1j * apart, two, 3 + (length + off) * 1j))
+            found = are_antipodal(arc(0, one, 3), arc(1j * apart, two, 3 + (length + off) * 1j))
             assert bool(found[0]) == (abs(off) <= ROUNDED)
 
 
@@ -93,9 +93,9 @@ def test_a_pair_as_near_as_a_line_and_an_arc_allow_is_antipodal(off: float) -> N
             line(2 + 7 * (1j - 1), 1 + 1j, 7 * sqrt(2) + off),
         ),
     ):
-        assert bool(antipodal(*pair)[0]) == bool(antipodal(*pair[::-1])[0]) == exact
-    assert not antipodal(line(0, 1, 0), line(20, 1, 20))[0]
-    assert not antipodal(line(0, 1, 0), line(20, 1 + 1j, 20))[0]
+        assert bool(are_antipodal(*pair)[0]) == bool(are_antipodal(*pair[::-1])[0]) == exact
+    assert not are_antipodal(line(0, 1, 0), line(20, 1, 20))[0]
+    assert not are_antipodal(line(0, 1, 0), line(20, 1 + 1j, 20))[0]
 
 
 def turned(third: TouchedFeatures) -> bool:
@@ -104,7 +104,7 @@ def turned(third: TouchedFeatures) -> bool:
     seen = complex(cos(PSI_OF_ALL), sin(PSI_OF_ALL)) * (3 + 4j)
     one, two = arc(7 - 2j, 5.0, 0), arc(7 - 2j, 20.0, 3 + 24j)
     record = near(7 - 2j - seen)
-    found = {bool(turning(record, *pair, third, LENGTH)[0]) for pair in ((one, two), (two, one))}
+    found = {bool(are_turning(record, *pair, third, LENGTH)[0]) for pair in ((one, two), (two, one))}
     assert len(found) == 1
     return found.pop()
 
@@ -140,7 +140,7 @@ def test_a_third_peg_that_slides_past_an_arc_has_a_parallel_normal(
     one, two = line(4 * axis, axis, 0), line((9 - 1j * gap) * axis, -axis, 10)
     for psi, expected in ((np.angle(turn), abs(off) <= ROUNDED), (np.angle(turn) + 0.1, False)):
         found = {
-            bool(sliding(near(0, float(psi)), *pair, arc(center, radius, 3 + 20j))[0])
+            bool(are_sliding(near(0, float(psi)), *pair, arc(center, radius, 3 + 20j))[0])
             for pair in ((one, two), (two, one))
         }
         assert found == {expected}
@@ -157,7 +157,7 @@ def lined(
     one, two = arc(BORE, BORES, 0), arc(BORE + apart * TURN, other, 20)
     record = near(tail, psi)
     record[0, REACH:] = 1e-6
-    found = {bool(lined_up(record, *pair, third, LENGTH)[0]) for pair in ((one, two), (two, one))}
+    found = {bool(are_lined_up(record, *pair, third, LENGTH)[0]) for pair in ((one, two), (two, one))}
     assert len(found) == 1
     return found.pop()
 
@@ -287,17 +287,17 @@ def test_no_proven_fixture_is_of_such_a_family(toolkit: Toolkit, monkeypatch: py
         counts[:] += hold_nothing(proven, problem).sum(), hold_nothing(left, problem).sum()
         return proven, left
 
-    sifted = deciding.sifted
-    monkeypatch.setattr(deciding, "sifted", both)
+    sifted = deciding.sift_records
+    monkeypatch.setattr(deciding, "sift_records", both)
     design(GRAZED, toolkit, best=1)
     assert counts[0] == 0
 
 
 def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
     """A peg in the centre of an arc has no normal, so that nothing is known of the place; what is around it stays."""
-    problem = Problem.of(Query(rod(16, 6, 70, 3.25), Vise(pitch=20, columns=3, peg_radius=3)))
+    problem = Problem.from_query(Query(rod(16, 6, 70, 3.25), Vise(pitch=20, columns=3, peg_radius=3)))
     found: list[Array] = []
-    original, rows = deciding.decided, problem.rows
+    original, rows = deciding.decide_records, problem.rows
 
     def kept_as_well(*given: Any) -> Any:
         outcome = original(*given)
@@ -306,7 +306,7 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
 
     small = np.flatnonzero((rows[:, IS_ARC] != 0.0) & (rows[:, RADIUS] < 0.5))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(collector, "decided", kept_as_well)
+        patch.setattr(collector, "decide_records", kept_as_well)
         answer(problem.query)
     proven = np.concatenate(found)
     numbers, pegs = np.nonzero(np.isin(proven[:, FEATURES : FEATURES + 2], small))
@@ -316,7 +316,7 @@ def test_a_box_about_the_centre_of_an_arc_keeps_its_solution() -> None:
         box = solution[None].copy()
         box[0, TAIL_X : TAIL_Y + 1] = rows[int(solution[FEATURES]), [X, Y]]
         box[0, REACH], box[0, LARGEST_RADIUS] = 1e-9, 0.3
-        assert np.isfinite(jacobians(box, rows, problem.setting)).all()
+        assert np.isfinite(compute_jacobians(box, rows, problem.setting)).all()
         kept, left = deciding.decide_by_interval_newton(box, problem, problem.setting)
         distances = [np.abs(one[PSI:REACH] - solution[PSI:REACH]).max() for one in kept]
         assert len(left) or min(distances, default=1.0) < 1e-9
@@ -337,7 +337,7 @@ def solved_from(row: Array, peg: int, pitch: float) -> Array:
 
 def test_only_pegs_of_one_carrier_are_a_fixed_length_apart() -> None:
     """Holes of 16 mm, 140 mm apart, allow pegs of 6 mm to be 150 mm apart, five columns: of one jaw, not of two."""
-    problem = Problem.of(Query(GRAZED, Vise(pitch=30, columns=6, peg_radius=3)))
+    problem = Problem.from_query(Query(GRAZED, Vise(pitch=30, columns=6, peg_radius=3)))
     holes = np.flatnonzero((problem.rows[:, IS_ARC] != 0.0) & (problem.rows[:, RADIUS] < 6.0)).tolist()
     sides = np.flatnonzero(problem.rows[:, IS_ARC] == 0.0).tolist()
     for pegs, expected in ((0, 1), True), ((0, 2), False):

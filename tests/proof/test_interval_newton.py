@@ -11,7 +11,7 @@ from exact_chords import exactly
 from workhold.kernels.base.tables import Limits
 from workhold.proof import interval_newton as settling
 from workhold.proof.ball_contacts import CandidateBox
-from workhold.proof.interval_newton import BoxOutcome, solutions_in
+from workhold.proof.interval_newton import BoxOutcome, find_solutions
 from workhold.proof.singular_frame import cut_in_thirds
 
 # The ladders' moving pegs stand among the standing ones: any gap will do here.
@@ -47,14 +47,14 @@ def test_of_two_solutions_in_a_box_the_one_that_clamps_is_found(rest: float) -> 
     """Both solutions touch and close, and closing the vise clamps one and frees the other."""
     height = -2.5 + rest
     low, high = solutions(height)
-    outcome = solutions_in(box(height, 0.0, 2.0 * (high - low)), LIMITS)
+    outcome = find_solutions(box(height, 0.0, 2.0 * (high - low)), LIMITS)
     assert outcome.reason == ""
     assert len(outcome.fixtures) == 1
     psi = outcome.fixtures[0][0]
     assert min(abs(psi - low), abs(psi - high)) < 1e-13
     # With the materials on the other sides it is the other one.
     turned = [[*row[:3], -row[3], -row[4], *row[5:]] for row in ladders.FEATURES]
-    other = solutions_in(box(height, 0.0, 2.0 * (high - low), turned), LIMITS)
+    other = find_solutions(box(height, 0.0, 2.0 * (high - low), turned), LIMITS)
     assert len(other.fixtures) == 1
     assert abs(psi + other.fixtures[0][0] - np.pi / 2) < 1e-13
     assert abs(psi - other.fixtures[0][0]) > 0.9 * (high - low)
@@ -67,7 +67,9 @@ def test_a_box_with_one_solution(rest: float) -> None:
     low, high = solutions(height)
     found = []
     for psi in (low, high):
-        outcome = solutions_in(box(height, psi - np.pi / 4 + 0.1 * (high - low), 0.3 * (high - low)), LIMITS)
+        outcome = find_solutions(
+            box(height, psi - np.pi / 4 + 0.1 * (high - low), 0.3 * (high - low)), LIMITS
+        )
         assert outcome.reason == ""
         found += outcome.fixtures
     assert len(found) == 1
@@ -80,13 +82,13 @@ def test_a_box_with_one_solution(rest: float) -> None:
 @pytest.mark.parametrize(("rest", "turn"), [(-1e-3, 0.0), (-1e-9, 0.0), (1e-4, 0.2), (1e-4, -0.2)])
 def test_a_box_without_solutions_is_discarded(rest: float, turn: float) -> None:
     """Below the fold, or away from the solutions, nothing touches."""
-    assert solutions_in(box(-2.5 + rest, turn, 1e-3), LIMITS) == BoxOutcome((), "")
+    assert find_solutions(box(-2.5 + rest, turn, 1e-3), LIMITS) == BoxOutcome((), "")
 
 
 @pytest.mark.parametrize("reach", [1e-8, 1e-6, 1e-4])
 def test_an_exact_double_root_is_discarded(reach: float) -> None:
     """Its clamping force is 0: it is no fixture, and nothing is left undecided."""
-    assert solutions_in(box(-2.5, 0.0, reach), LIMITS) == BoxOutcome((), "")
+    assert find_solutions(box(-2.5, 0.0, reach), LIMITS) == BoxOutcome((), "")
 
 
 def test_four_parallel_normals_take_few_boxes(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,7 +100,7 @@ def test_four_parallel_normals_take_few_boxes(monkeypatch: pytest.MonkeyPatch) -
     middle, reach = (np.pi / 2, -60.0, -43.0, 22.0), (1e-3, 1e-2, 1e-2, 2e-2)
     double = CandidateBox([floor, eye, ceiling, bore], places, 2, middle, reach)
     monkeypatch.setattr(settling, "MOST_BOXES", 75)
-    assert solutions_in(double, LIMITS) == BoxOutcome((), "")
+    assert find_solutions(double, LIMITS) == BoxOutcome((), "")
 
 
 @pytest.mark.parametrize("center", [0.0, 3.0])
@@ -123,19 +125,19 @@ def large(half: float) -> CandidateBox:
 
 def test_a_rule_met_exactly_at_its_edge_is_undecided() -> None:
     """A contact exactly at the end of its face is neither inside nor outside, whatever the precision; a hair decides."""
-    (fixture,) = solutions_in(large(90.0), LIMITS).fixtures
+    (fixture,) = find_solutions(large(90.0), LIMITS).fixtures
     tail = round(-fixture[2])
     assert tail in (15, 20)
     assert abs(fixture[2] + tail) < 1e-13
-    assert solutions_in(large(float(tail)), LIMITS) == BoxOutcome((), "a rule is met exactly at its edge")
-    assert solutions_in(large(tail - 1e-14), LIMITS) == BoxOutcome((), "")
-    assert len(solutions_in(large(tail + 1e-14), LIMITS).fixtures) == 1
+    assert find_solutions(large(float(tail)), LIMITS) == BoxOutcome((), "a rule is met exactly at its edge")
+    assert find_solutions(large(tail - 1e-14), LIMITS) == BoxOutcome((), "")
+    assert len(find_solutions(large(tail + 1e-14), LIMITS).fixtures) == 1
 
 
 def test_what_takes_too_many_boxes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(settling, "MOST_BOXES", 1)
     monkeypatch.setattr(settling, "find_roots_on_curve", lambda *_: None)
-    outcome = solutions_in(box(-2.5 + 1e-6, 0.0, 1e-2), LIMITS)
+    outcome = find_solutions(box(-2.5 + 1e-6, 0.0, 1e-2), LIMITS)
     assert outcome.fixtures == ()
     assert outcome.reason
 
@@ -145,7 +147,7 @@ def test_what_takes_too_many_boxes_is_named(monkeypatch: pytest.MonkeyPatch) -> 
 def test_a_simple_solution_next_to_a_double_one_is_found_off_the_middle(rest: float, turn: float) -> None:
     """Where the Jacobian at the middle of the box does not separate the directions at the solutions, the one there does."""
     low, high = solutions(-2.5 + rest)
-    outcome = solutions_in(box(-2.5 + rest, turn, 4e-3), LIMITS)
+    outcome = find_solutions(box(-2.5 + rest, turn, 4e-3), LIMITS)
     assert outcome is not None and outcome.reason == ""
     found = [fixture[0] for fixture in outcome.fixtures]
     assert len(found) == 1

@@ -14,8 +14,8 @@ from cad_parts import cad_part
 from workhold import design
 from workhold.files.toolkit_file import load_toolkit
 from workhold.kernels.base.tables import Limits
-from workhold.proof.ball_contacts import CandidateBox, narrowed
-from workhold.proof.interval_newton import PRECISIONS, BoxOutcome, located, solutions_in
+from workhold.proof.ball_contacts import CandidateBox, narrow_box
+from workhold.proof.interval_newton import PRECISIONS, BoxOutcome, find_solutions, narrow_to_contacts
 
 GAP = 25.0
 LIMITS = Limits(GAP, 0.0, 45.0, 2.0, 1.0, 0.0, 0.0)
@@ -54,7 +54,7 @@ def features(angle: float = 0.0) -> list[list[float]]:
 
 def test_the_gap_rule_bounds_the_separation() -> None:
     """The least separation keeps the nearest pegs of both jaws the gap apart: the first moving one stands 25 mm back."""
-    found = narrowed(far_box(features(), ROW), LIMITS)
+    found = narrow_box(far_box(features(), ROW), LIMITS)
     assert found is not None
     low = found.middle[3] - found.reach[3]
     assert low == pytest.approx(25.0 + GAP, abs=1e-5) and low < 25.0 + GAP
@@ -66,7 +66,7 @@ def test_the_gap_rule_bounds_the_separation() -> None:
 
 def test_two_pegs_in_one_row_on_one_line_leave_one_angle() -> None:
     """Beyond the gap two pegs of one row touch one line at its own angle alone, whatever the separation."""
-    found = narrowed(far_box(features(), ROW), LIMITS)
+    found = narrow_box(far_box(features(), ROW), LIMITS)
     assert found is not None
     assert abs(found.middle[0] - pi) < 1e-15 and found.reach[0] < 1e-15
 
@@ -74,7 +74,7 @@ def test_two_pegs_in_one_row_on_one_line_leave_one_angle() -> None:
 def test_the_other_unknowns_stay() -> None:
     """Where the part is remains as it was, and so does what a box is of."""
     box = far_box(features(), ROW)
-    found = narrowed(box, LIMITS)
+    found = narrow_box(box, LIMITS)
     assert found is not None
     assert found.middle[1:3] == box.middle[1:3] and found.reach[1:3] == box.reach[1:3]
     assert evolve(found, middle=box.middle, reach=box.reach) == box
@@ -84,18 +84,18 @@ def test_a_box_without_gap_or_parallel_lines_stays_as_it_is() -> None:
     """Nothing is known of it."""
     apart = [line(0.0, 25.0, k) for k in (0.0, 1.0, 2.0, 2.5)]
     box = far_box(apart, ROW)
-    assert narrowed(box, LIMITS._replace(gap=-inf)) is box
+    assert narrow_box(box, LIMITS._replace(gap=-inf)) is box
 
 
 def test_a_box_that_breaks_the_gap_rule_or_meets_no_angle_is_empty() -> None:
     """Separations that are too small everywhere; and a turn at which one line is not met twice."""
     box = far_box(features(), ROW)
     near = evolve(box, middle=(*box.middle[:3], 20.0), reach=(*box.reach[:3], 29.0))
-    assert narrowed(near, LIMITS) is None
-    assert narrowed(evolve(near, reach=(*box.reach[:3], 30.1)), LIMITS) is not None
+    assert narrow_box(near, LIMITS) is None
+    assert narrow_box(evolve(near, reach=(*box.reach[:3], 30.1)), LIMITS) is not None
     turned = evolve(box, middle=(pi + 1e-4, *box.middle[1:]))
-    assert narrowed(turned, LIMITS) is None
-    assert narrowed(turned, LIMITS._replace(gap=-inf)) is not None
+    assert narrow_box(turned, LIMITS) is None
+    assert narrow_box(turned, LIMITS._replace(gap=-inf)) is not None
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -136,7 +136,7 @@ def test_no_contact_is_lost(seed: int) -> None:
     off = [random.uniform(-1, 1) for _ in range(4)]
     middle = (psi + 0.9 * reach * off[0], x, y, separation + 20.0 * off[3])
     box = CandidateBox(rows, offsets, 2, middle, (reach, 50.0, 50.0, 20.0))
-    found = narrowed(box, LIMITS._replace(gap=random.choice([-inf, 5.0])))
+    found = narrow_box(box, LIMITS._replace(gap=random.choice([-inf, 5.0])))
     assert found is not None
     # Places are rounded to doubles, which turns pegs 25 mm apart by so much.
     assert abs(found.middle[0] - psi) <= found.reach[0] + 1e-13
@@ -174,7 +174,7 @@ def test_standing_pegs_lose_no_contact(seed: int) -> None:
     """The place at which three locators and a clamp touch stays in the box, which mostly shrinks to it."""
     random = Random(seed)
     box, true, asked = bound_placed_part(random, 10.0 ** random.uniform(-7, -2.5))
-    found = located(box, asked)
+    found = narrow_to_contacts(box, asked)
     assert found is not None
     for one, middle, reach in zip(true, found.middle, found.reach, strict=True):
         assert abs(one - middle) <= reach + 1e-11
@@ -187,7 +187,7 @@ def test_standing_pegs_make_most_boxes_small() -> None:
         random = Random(seed)
         box, true, asked = bound_placed_part(random, 1e-4)
         away = evolve(box, middle=(*box.middle[:3], true[3]), reach=(*box.reach[:3], 30.0))
-        found = located(away, asked)
+        found = narrow_to_contacts(away, asked)
         assert found is not None
         small += max(found.reach[:3]) < 1e-9
     assert small >= 50
@@ -210,7 +210,7 @@ def test_a_clamp_that_grazes_a_corner_beside_three_locators_is_decided(
     offsets = [(0.0, 0.0), (-120.0, -440.0), (-720.0, 0.0), (0.0, row)]
     middle = (pi, -223.0, -303.0, -720.0 if end[0] > 0 else 274.0)
     box = CandidateBox(rows, offsets, 3, middle, (6.65e-4, 21.8, 21.8, 45.0))
-    assert solutions_in(box, LIMITS._replace(gap=-inf)) == BoxOutcome((), "")
+    assert find_solutions(box, LIMITS._replace(gap=-inf)) == BoxOutcome((), "")
 
 
 def test_an_end_of_a_slot_whose_arc_and_line_are_tangent_is_decided() -> None:

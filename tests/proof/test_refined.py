@@ -7,7 +7,7 @@ from typing import cast
 import pytest
 from flint import arb, ctx
 
-from workhold.proof.interval_newton import SHARP, refined
+from workhold.proof.interval_newton import SHARP, refine_solution
 from workhold.proof.singular_frame import SingularFrame
 
 # A solution whose place is known to a hundredth of a mm in one direction, and better in the others.
@@ -21,11 +21,13 @@ class Steps:
         self.share, self.regular = share, regular
         self.taken = list[bool]()
 
-    def places(self, place: list[arb]) -> list[arb]:
+    def compute_contacts(self, place: list[arb]) -> list[arb]:
         """The place itself."""
         return place
 
-    def step(self, place: list[arb], here: list[arb], regular: bool = False) -> tuple[list[arb] | None, bool]:
+    def narrow(
+        self, place: list[arb], here: list[arb], regular: bool = False
+    ) -> tuple[list[arb] | None, bool]:
         """What a step leaves of a place."""
         assert here is place
         self.taken.append(regular)
@@ -35,7 +37,7 @@ class Steps:
 
 def sharp(steps: Steps, root: list[arb] = ROOT) -> float:
     """The largest radius of a solution after the steps."""
-    made = refined(cast(SingularFrame, steps), root)
+    made = refine_solution(cast(SingularFrame, steps), root)
     assert all(one.mid() == p.mid() for one, p in zip(made, root, strict=True))
     return max(float(p.rad()) for p in made)
 

@@ -39,7 +39,7 @@ def folded(rest: float, reach: float, turn: float = 0.0) -> SingularFrame:
     """The ladders a little above their fold, in a box about it."""
     middle = ladders.near(np.pi / 4 + turn, -2.5 + rest)
     wide = (reach, 10 * reach, 10 * reach, 20 * reach)
-    return SingularFrame.of(
+    return SingularFrame.from_box(
         CandidateBox(ladders.FEATURES, ladders.offsets(-2.5 + rest), 2, middle, wide), LIMITS
     )
 
@@ -54,7 +54,7 @@ def triple(turned: float = 0.0) -> SingularFrame:
     corner = [1.0, 30.0, 0.0, 1.0, 0.0, 1.0472, 11.0, 1.0, *REST]
     places = [(0.0, 0.0), (20.0, -20.0), (0.0, -20.0), (-40.0, -20.0 + turned)]
     middle, reach = (0.0, -41.0, 20.0, 82.0), (4.4e-11, 6e-5, 6e-5, 1.2e-4)
-    return SingularFrame.of(CandidateBox([side, bore, corner, bore], places, 2, middle, reach), LIMITS)
+    return SingularFrame.from_box(CandidateBox([side, bore, corner, bore], places, 2, middle, reach), LIMITS)
 
 
 def point(frame: SingularFrame, t: float) -> tuple[list[arb], arb]:
@@ -62,17 +62,17 @@ def point(frame: SingularFrame, t: float) -> tuple[list[arb], arb]:
     known = [arb(0), arb(0), arb(0)]
     with ctx.workprec(400):
         for _ in range(9):
-            here = frame.places([*known, arb(t)])
-            values, slopes = frame.values([*known, arb(t)]), frame.slopes(here)
+            here = frame.compute_contacts([*known, arb(t)])
+            values, slopes = frame.evaluate_equations([*known, arb(t)]), frame.evaluate_jacobian(here)
             inverse = arb_mat([row[:3] for row in slopes[:3]]).mid().inv().mid()
             step = inverse * arb_mat(3, 1, values[:3])
             known = [arb((v - s).mid()) for v, s in zip(known, step.entries(), strict=True)]
-        return known, frame.values([*known, arb(t)])[3]
+        return known, frame.evaluate_equations([*known, arb(t)])[3]
 
 
 def curve_of(frame: SingularFrame) -> SolutionCurve:
     """The curve in the whole box."""
-    *well, t = frame.start()
+    *well, t = frame.make_start_box()
     well, is_curve = bound_along_curve(frame, well, t)
     curve = find_curve_about(frame, well, t)
     assert is_curve and curve is not None
@@ -90,24 +90,27 @@ def is_near(ball: arb, number: arb, hair: float = 1e-60) -> bool:
 )
 def test_every_point_of_the_curve_is_in_its_taylor_forms(frame: SingularFrame, share: float) -> None:
     """At a point Newton's method finds the same, and the enclosure is sharp to what the remainder leaves."""
-    curve, whole = curve_of(frame), frame.start()[3]
+    curve, whole = curve_of(frame), frame.make_start_box()[3]
     t = share * float(whole.rad())
     known, rest = point(frame, t)
     for form, value in zip(curve.unknowns, known, strict=True):
-        assert is_near(form.at(arb(t)), value)
-    *well, along = frame.start()
+        assert is_near(form.evaluate(arb(t)), value)
+    *well, along = frame.make_start_box()
     assert all(
         is_near(part, value)
         for part, value in zip(bound_along_curve(frame, well, along)[0], known, strict=True)
     )
-    assert is_near(curve.value(arb(t)), rest)
-    assert float(curve.value(arb(t)).rad()) <= float(abs(curve.rest.last).upper()) * abs(t) ** 5 + 1e-30
+    assert is_near(curve.evaluate_equation(arb(t)), rest)
+    assert (
+        float(curve.evaluate_equation(arb(t)).rad())
+        <= float(abs(curve.rest.last).upper()) * abs(t) ** 5 + 1e-30
+    )
     beside = t * (1.0 + 1e-3)
-    assert is_near(curve.value(arb(t).union(arb(beside))), rest)
+    assert is_near(curve.evaluate_equation(arb(t).union(arb(beside))), rest)
     # Between two points the slope is somewhere that of their chord.
     further = point(frame, beside)[1]
     chord = (further - rest) / (arb(beside) - t)
-    assert curve.slope(arb(t).union(arb(beside))).overlaps(chord)
+    assert curve.evaluate_slope(arb(t).union(arb(beside))).overlaps(chord)
 
 
 @pytest.mark.thinned(2)
@@ -123,7 +126,9 @@ def test_both_roots_of_a_fold_are_found_once(
     assert roots is not None and len(roots) == 2
     with exactly():
         exact = [ladders.unknowns(psi, -2.5 + rest) for psi in ladders.orientations(-2.5 + rest)]
-    found = sorted((frame.unknowns(root) for root in roots), key=lambda unknowns: float(unknowns[0].mid()))
+    found = sorted(
+        (frame.compute_unknowns(root) for root in roots), key=lambda unknowns: float(unknowns[0].mid())
+    )
     for unknowns, solution in zip(found, exact, strict=True):
         assert all(abs(float((u - v).mid())) < 1e-15 for u, v in zip(unknowns, solution, strict=True))
         assert all(float(u.rad()) < 1e-18 for u in unknowns)
@@ -148,7 +153,7 @@ def test_a_triple_root_that_is_not_quite_is_found(monkeypatch: pytest.MonkeyPatc
     roots = find_roots_on_curve(triple(1e-12), LIMITS)
     assert roots is not None and len(roots) in (1, 3)
     for root in roots:
-        values = triple(1e-12).places(root).values
+        values = triple(1e-12).compute_contacts(root).values
         assert all(value.contains(0) for value in values)
 
 
@@ -157,7 +162,7 @@ def test_a_box_with_two_open_directions_has_no_curve() -> None:
     lines = [[0.0, 0.0, float(y), 1.0, 0.0, 60.0, 0.0, 1.0, *REST] for y in (0, 0, 20, 20)]
     places = [(0.0, 0.0), (30.0, 0.0), (0.0, 20.0), (30.0, 20.0)]
     box = CandidateBox(lines, places, 2, (0.0, 0.0, 0.0, 5.0), (1e-3, 1.0, 1.0, 1.0))
-    assert find_roots_on_curve(SingularFrame.of(box, LIMITS), LIMITS) is None
+    assert find_roots_on_curve(SingularFrame.from_box(box, LIMITS), LIMITS) is None
 
 
 def test_what_takes_too_many_parts_has_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,7 +196,7 @@ def test_a_root_in_two_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solution_curve, "bound_along_curve", lambda frame, well, t: (well, True))
     monkeypatch.setattr(solution_curve, "find_curve_about", lambda *_: curve)
     monkeypatch.setattr(solution_curve, "is_empty", lambda *_: False)
-    monkeypatch.setattr(SingularFrame, "start", lambda _: [arb(0), arb(0), arb(0), arb(0, 1)])
+    monkeypatch.setattr(SingularFrame, "make_start_box", lambda _: [arb(0), arb(0), arb(0), arb(0, 1)])
     roots = find_roots_on_curve(triple(), LIMITS)
     assert roots is not None
     assert sorted(round(float(root[3]), 12) for root in roots) == [-0.5, 0.125]
@@ -200,13 +205,13 @@ def test_a_root_in_two_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_slope_of_a_form_counts_its_remainder() -> None:
     """That of 2 + 3 t + 5 t^2 + 7 t^3 is 3 + 10 t + 21 t^2."""
     form = TaylorForm([arb(2), arb(3), arb(5)], arb(7))
-    assert form.at(arb(2)) == 84 and form.slope(arb(2)) == 107
+    assert form.evaluate(arb(2)) == 84 and form.evaluate_slope(arb(2)) == 107
 
 
 def test_a_part_that_the_curve_leaves_has_none() -> None:
     """The curve bends out of too narrow a part; one that is wide enough it passes from end to end."""
     frame = folded(1e-6, 1e-3)
-    *well, t = frame.start()
+    *well, t = frame.make_start_box()
     kept, is_curve = bound_along_curve(frame, well, t)
     assert is_curve
     assert not bound_along_curve(frame, [arb(part.mid(), 0.1 * part.rad()) for part in kept], t)[1]

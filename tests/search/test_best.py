@@ -11,7 +11,7 @@ import pytest
 
 from workhold import Query, Vise, Workpiece, count_contacts, design, load, save
 from workhold.contact.problem import Problem
-from workhold.listing.collector import BestFixtures, Needed
+from workhold.listing.collector import BestFixtures, InterestLimits
 from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable
 from workhold.search.toolkit_search import ToolkitSearch
@@ -85,13 +85,13 @@ def test_work_is_left_out() -> None:
 def test_the_margin_to_reach_never_exceeds_that_of_the_last_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the kernels are told rises, and stays below the margin of the last fixture listed in the end."""
     told: list[float] = []
-    limits_from = ToolkitSearch.limits_from
+    limits_from = ToolkitSearch.make_limits
 
     def watched(self: ToolkitSearch, margin: float, most: float) -> np.ndarray:
         told.append(margin)
         return limits_from(self, margin, most)
 
-    monkeypatch.setattr(ToolkitSearch, "limits_from", watched)
+    monkeypatch.setattr(ToolkitSearch, "make_limits", watched)
     best = design(
         load("oblongPart"), Vise(pitch=8, columns=4, peg_radius=3), rank_by=MARGIN, best=25, threads=1
     )
@@ -128,9 +128,11 @@ def test_a_cancelled_search_keeps_the_best_so_far() -> None:
 
 def waiting_records(part: str, vise: Vise) -> tuple[Problem, list[np.ndarray]]:
     """A problem of the best five, and what its search hands over, in two shares."""
-    problem = Problem.of(Query(load(part), vise, best=5))
-    search = ToolkitSearch.of(problem, threads=1)
-    records = np.concatenate([block.work(Needed()) for block in search.blocks(problem.query.types)])
+    problem = Problem.from_query(Query(load(part), vise, best=5))
+    search = ToolkitSearch.from_problem(problem, threads=1)
+    records = np.concatenate(
+        [block.work(InterestLimits()) for block in search.make_blocks(problem.query.types)]
+    )
     return problem, np.array_split(records, 2)
 
 

@@ -19,7 +19,7 @@ import workhold
 from toolkit_results import MOUTH, NOTCHED, check_and_read_back, checked, part, rectangle
 from workhold import InputError, Plate, Query, Restrictions, Result, Workpiece, answer, design
 from workhold.kernels.contact import clamp_pairs
-from workhold.model.clamps import compute_working_forces, ratios
+from workhold.model.clamps import compute_force_ratios, compute_working_forces
 from workhold.search import lattice_shares
 from workhold.statics.quality import measure_quality
 
@@ -230,7 +230,7 @@ def test_forces_at_the_ends_of_the_ratio_have_a_zero_and_none_between() -> None:
     """The open interval in which all locators are pressed."""
     result = design(part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2), listing="all")
     assert len(result) > 100
-    low, high = ratios(result.table.force)
+    low, high = compute_force_ratios(result.table.force)
     locators = result.table.force[:, :3]
     for ratio in (low, np.where(np.isinf(high), 1e15, high)):
         at_end = locators[..., 0] / (1 + ratio[:, None]) + locators[..., 1] * (ratio / (1 + ratio))[:, None]
@@ -440,7 +440,7 @@ def test_ranges_of_orientation_do_not_show(limit: dict[str, float], monkeypatch:
     whole = answer(query, threads=1)
     for name, value in limit.items():
         monkeypatch.setattr(lattice_shares, name, value)
-    with lattice_shares.LatticeShares.of(query, 1, None) as ranges:
+    with lattice_shares.LatticeShares.open_for_query(query, 1, None) as ranges:
         assert ranges.shares > 3
     again = answer(query, threads=1)
     assert again.table == whole.table and again.distinct == whole.distinct
@@ -457,7 +457,7 @@ def test_a_part_far_too_large_for_the_pitch_is_refused_with_one_that_does() -> N
     for apart, is_refused in ((pitch, False), (pitch / 2, True)):
         refusal = pytest.raises(InputError, match="too large for two clamps") if is_refused else nullcontext()
         query = Query(large, Plate(apart, 3, clamps=2))
-        with refusal, lattice_shares.LatticeShares.of(query, 1, None) as ranges:
+        with refusal, lattice_shares.LatticeShares.open_for_query(query, 1, None) as ranges:
             assert ranges.shares >= 1
 
 
@@ -472,7 +472,9 @@ def test_the_pitch_that_a_refusal_names_is_counted(pitch: float | tuple[float, f
     with pytest.raises(InputError, match=r"use a pitch of (\d+) mm or more") as told:
         design(panel, Plate(pitch, 3, clamps=2))
     named = float(str(told.value).split("pitch of ")[1].split(" mm")[0])
-    with lattice_shares.LatticeShares.of(Query(panel, Plate(named, 3, clamps=2)), 1, None) as ranges:
+    with lattice_shares.LatticeShares.open_for_query(
+        Query(panel, Plate(named, 3, clamps=2)), 1, None
+    ) as ranges:
         assert ranges.shares >= 1
 
 
@@ -504,9 +506,9 @@ def test_closure_margin_and_ratio_of_a_square_seat() -> None:
     clamps[0, 0, :4] = [0.5, 0.5, 0.0, 1.0]
     clamps[0, 1, :4] = [0.0, 0.0, 1.0, 1.0]
     out = np.empty((1, 2))
-    clamp_pairs.closures_of(clamps, out)
+    clamp_pairs.write_closures(clamps, out)
     assert out[0] == pytest.approx([1 / 6, 90.0])
-    low, high = ratios(np.array([[[1.0, 0.0], [-0.5, 1.0], [0.5, 0.0]]]))
+    low, high = compute_force_ratios(np.array([[[1.0, 0.0], [-0.5, 1.0], [0.5, 0.0]]]))
     assert (low[0], high[0]) == (0.5, inf)
     assert degrees_between(low, high)[0] == pytest.approx(degrees(pi / 2 - atan(0.5)))
 

@@ -9,7 +9,7 @@ import pytest
 
 from fixture_sets import Judge, listed
 from workhold import InputError, Result, Vise, design, load
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
 
 def keys(result: Result) -> list[object]:
@@ -103,7 +103,7 @@ def test_ranked_by_closure_margin(free: Result) -> None:
     ranked = design(free.workpiece, free.toolkit, rank_by=["closure margin"])
     margins, last = (
         np.round(ranked.table.null_vector.min(axis=1), 9),
-        unfit(ranked.table.quality, ranked.query.tolerance),
+        are_unfit(ranked.table.quality, ranked.query.tolerance),
     )
     assert not last.all() and (np.diff(last.astype(int)) >= 0).all()
     for part in (margins[~last], margins[last]):

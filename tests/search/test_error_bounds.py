@@ -10,7 +10,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.kernels.base.tables import Precision
-from workhold.kernels.contact.location_bounds import CONTACT_LENGTH, least_error_of_four
+from workhold.kernels.contact.location_bounds import CONTACT_LENGTH, bound_least_error_of_four
 
 Array = NDArray[np.float64]
 PEG, FACE, LENGTH = 0.015, 0.01, 50.0
@@ -93,7 +93,7 @@ def bound(contacts: list[Contact], psi: float, half: float, sizes: list[float]) 
     given = Precision(np.arange(count), np.ones(count), np.ones(count), probes, PEG, FACE, np.inf, np.inf)
     extra = (2.0 * swings[2] / larger, 2.0 * swings[3] / larger)
     along = (normals[2], normals[3])
-    return least_error_of_four(*spots, along, extra, given, np.empty((8, 3)), np.empty(4), np.inf)
+    return bound_least_error_of_four(*spots, along, extra, given, np.empty((8, 3)), np.empty(4), np.inf)
 
 
 @pytest.mark.parametrize("seed", range(4))

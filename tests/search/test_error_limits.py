@@ -18,10 +18,10 @@ from workhold.geometry.hull import compute_convex_hull
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, X, Y
 from workhold.listing.bounds import list_preferred_angles
 from workhold.listing.canonical_form import list_each_once
-from workhold.listing.collector import Needed, decide_and_list
+from workhold.listing.collector import InterestLimits, decide_and_list
 from workhold.listing.placing import place_candidates
-from workhold.listing.ranking import PER_MM, find_usual_errors, measure_table, order_keys
-from workhold.proof.deciding import Course
+from workhold.listing.ranking import PER_MM, find_usual_errors, make_table_keys, measure_table
+from workhold.proof.deciding import DecidingProgress
 from workhold.search import design as designing
 from workhold.search import shares
 from workhold.search.error_limits import (
@@ -31,9 +31,9 @@ from workhold.search.error_limits import (
     can_limit_errors,
     choose_next_limit,
     compute_contact_allowances,
+    find_outermost_points,
     is_enough,
     measure_distance_from_hull,
-    outermost,
 )
 from workhold.search.lattice_shares import LatticeShares
 from workhold.search.shares import select_one_clamp
@@ -91,14 +91,14 @@ def listed(result: Result, count: int) -> list[Any]:
 def limited(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Has every part count as a large one; the limits that are tried."""
     tried: list[float] = []
-    plain = LocatorSpots.limit
+    plain = LocatorSpots.make_error_limit
 
     def limit(self: LocatorSpots, most: float) -> Any:
         tried.append(most)
         return plain(self, most)
 
     monkeypatch.setattr(designing, "LIMITED_FROM", 0.0)
-    monkeypatch.setattr(LocatorSpots, "limit", limit)
+    monkeypatch.setattr(LocatorSpots, "make_error_limit", limit)
     return tried
 
 
@@ -135,16 +135,18 @@ def test_a_contact_at_a_joint_is_on_the_face_of_the_lowest_number(clamps: int) -
 def test_what_is_known_beforehand_does_not_show(part: str, kit: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """In vises some chord curves tell which error is to be reached; the best are the first of all."""
     asked = list[float]()
-    plain = ToolkitSearch.run
+    plain = ToolkitSearch.run_kernel
 
-    def run(self: ToolkitSearch, kernel: Any, low: float, high: float, stats: Any, needed: Needed) -> Any:
+    def run(
+        self: ToolkitSearch, kernel: Any, low: float, high: float, stats: Any, needed: InterestLimits
+    ) -> Any:
         asked.append(needed.error if self.every == 1 else inf)
         return plain(self, kernel, low, high, stats, needed)
 
     everything = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE))
     monkeypatch.setattr(shares, "SCOUTED_FROM", 0.0)
     monkeypatch.setattr(shares, "SCOUTED", 2)
-    monkeypatch.setattr(ToolkitSearch, "run", run)
+    monkeypatch.setattr(ToolkitSearch, "run_kernel", run)
     for count in (1, 5, 20):
         asked.clear()
         best = answer(Query(PARTS[part], KITS[kit], tolerance=TOLERANCE, best=count), threads=1)
@@ -171,10 +173,10 @@ def test_what_limits_save_is_told(limited: list[float]) -> None:
 def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """Effective errors in mm of the fixtures that a search finds, and which are fit and without a warning."""
     problem = search.problem
-    blocks = search.blocks(problem.query.types, **asked)
-    records = np.concatenate([np.zeros((0, 19)), *(block.work(Needed()) for block in blocks)])
-    candidates = list_each_once(decide_and_list(records, problem, Course(len(records)))[0])
-    keys = order_keys(
+    blocks = search.make_blocks(problem.query.types, **asked)
+    records = np.concatenate([np.zeros((0, 19)), *(block.work(InterestLimits()) for block in blocks)])
+    candidates = list_each_once(decide_and_list(records, problem, DecidingProgress(len(records)))[0])
+    keys = make_table_keys(
         measure_table(place_candidates(candidates, problem), problem),
         problem.query,
         find_usual_errors(problem.query),
@@ -189,7 +191,7 @@ def test_what_lies_aslant_is_bounded_while_square_seats_are_looked_at(
 ) -> None:
     """So most contacts of square seats are not even proven, though others may be found up to the limit."""
     floors, looked = list[int](), list[int]()
-    plain, proven = LatticeShares.floor, LatticeShares.seats_among
+    plain, proven = LatticeShares.bound_later_errors, LatticeShares.find_seats
 
     def floor(self: LatticeShares, share: int) -> int:
         floors.append(plain(self, share))
@@ -199,8 +201,8 @@ def test_what_lies_aslant_is_bounded_while_square_seats_are_looked_at(
         looked.append(sum(map(len, records)))
         return proven(self, records, within)
 
-    monkeypatch.setattr(LatticeShares, "floor", floor)
-    monkeypatch.setattr(LatticeShares, "seats_among", seats_among)
+    monkeypatch.setattr(LatticeShares, "bound_later_errors", floor)
+    monkeypatch.setattr(LatticeShares, "find_seats", seats_among)
     query = Query(rounded(300.0, 200.0, 3.0), Plate(pitch=20, peg_radius=3, clamps=2), best=20)
     best = answer(query)
     least = best.least_effective_error
@@ -215,20 +217,22 @@ def test_what_lies_aslant_is_bounded_while_square_seats_are_looked_at(
 def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> None:
     """Each fixture without a warning that is up to the limit is found, square or aslant, and not all beyond are."""
     query = Query(PARTS[part], KITS[kit], tolerance=TOLERANCE, best=5)
-    problem = Problem.of(one_way(query))
-    errors, fine = found_errors(ToolkitSearch.of(problem))
+    problem = Problem.from_query(one_way(query))
+    errors, fine = found_errors(ToolkitSearch.from_problem(problem))
     if not fine.any():
         pytest.skip("nothing holds it")
     most = times * float(errors[fine].min())
-    search = ToolkitSearch.of(problem, precision=limit_precision(bound_location_errors(problem), most))
+    search = ToolkitSearch.from_problem(
+        problem, precision=limit_precision(bound_location_errors(problem), most)
+    )
     some, good = found_errors(search)
     assert (some[good] <= most).sum() == (errors[fine] <= most).sum() > 0
     assert len(some) <= len(errors)
     if kit == "plate":
-        limit = LocatorSpots.of(problem).limit(most)
+        limit = LocatorSpots.from_problem(problem).make_error_limit(most)
         parts = [
             found_errors(
-                ToolkitSearch.of(problem, near=near, precision=limit.precision, only=only),
+                ToolkitSearch.from_problem(problem, near=near, precision=limit.precision, only=only),
                 first=list_preferred_angles(query),
                 rest=not only,
             )
@@ -248,14 +252,15 @@ def one_way(query: Query) -> Query:
 def test_spots_join_what_fixtures_touch() -> None:
     """The three spots that locators of a fixture touch are marked at its own error, and hardly any far below."""
     query = Query(PARTS["bores"], KITS["plate"], tolerance=TOLERANCE, best=5)
-    problem = Problem.of(query)
-    spots = LocatorSpots.of(problem)
+    problem = Problem.from_query(query)
+    spots = LocatorSpots.from_problem(problem)
     assert spots.least > 0.0
     shares = [
-        spots.limit(most).square.joined.mean() for most in (0.5 * spots.least, spots.least, 4.0 * spots.least)
+        spots.make_error_limit(most).square.joined.mean()
+        for most in (0.5 * spots.least, spots.least, 4.0 * spots.least)
     ]
     assert shares[0] < shares[1] < shares[2]
-    near = spots.limit(spots.least).square
+    near = spots.make_error_limit(spots.least).square
     # Whole circles count as one stretch, which is joined where any of its arcs is.
     rows = problem.rows[slice(*problem.standing)]
     circles = (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] >= np.pi)
@@ -269,8 +274,8 @@ def test_spots_join_what_fixtures_touch() -> None:
 @pytest.mark.parametrize("part", ["bores", "arcs", "flange"])
 def test_no_centre_moves_farther_than_its_give_says(part: str) -> None:
     """Where no point of the silhouette moves by more than 1, no centre of an arc does by more than that."""
-    problem = Problem.of(Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5))
-    points, rows = outermost(problem), problem.rows[problem.rows[:, IS_ARC] != 0.0]
+    problem = Problem.from_query(Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5))
+    points, rows = find_outermost_points(problem), problem.rows[problem.rows[:, IS_ARC] != 0.0]
     gives, nearest = compute_contact_allowances(rows, points), np.zeros(len(rows))
     for seed in range(2000):
         x, y, turn = np.random.default_rng(seed).normal(size=3) * (1.0, 1.0, 1.0 / problem.wrench_length)
@@ -297,11 +302,13 @@ def test_the_distance_from_a_hull_is_that_of_its_nearest_point(
 @pytest.mark.parametrize("part", ["flange", "arcs", "bores"])
 def test_what_lies_square_is_found_with_the_curves_that_come_there(part: str) -> None:
     query = Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5)
-    problem, first = Problem.of(query), list_preferred_angles(query)
-    whole, some = (ToolkitSearch.of(problem, only=only) for only in ((), first))
+    problem, first = Problem.from_query(query), list_preferred_angles(query)
+    whole, some = (ToolkitSearch.from_problem(problem, only=only) for only in ((), first))
     assert len(some.table) < len(whole.table)
     one, other = (
-        np.concatenate([block.work(Needed()) for block in search.blocks(query.types, first=first)])
+        np.concatenate(
+            [block.work(InterestLimits()) for block in search.make_blocks(query.types, first=first)]
+        )
         for search in (whole, some)
     )
     assert len(one) == len(other) and (one == other).all()
@@ -312,7 +319,7 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
     """A tenth above the last one that is asked for is enough; without enough found it grows, at last without end."""
     query = Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE, best=5)
     table = answer(Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE)).table
-    keys = order_keys(table, query, find_usual_errors(query))
+    keys = make_table_keys(table, query, find_usual_errors(query))
     assert keys.error is not None and keys.is_fine.sum() > 5
     last = float(np.sort(keys.error[keys.is_fine])[4]) / PER_MM
     least = float(keys.error.min()) / PER_MM

@@ -187,11 +187,11 @@ def test_another_number_of_clamps_helps() -> None:
     one = Plate(pitch=20, peg_radius=3)
     helps = {item.change: item for item in explain(Query(RECTANGLE, one, restrictions=square)).helps}
     two = helps["with a second clamp"]
-    assert two.fixtures == len(design(RECTANGLE, one.changed(two.fields or {}), restrictions=square)) > 0
+    assert two.fixtures == len(design(RECTANGLE, one.with_fields(two.fields or {}), restrictions=square)) > 0
     pairs = Query(
         RECTANGLE, evolve(one, clamps=2, directions=None, rows=2), rank_by="clamp-freedom", listing="all"
     )
-    changed = [item for item in explaining.changes(pairs, MILLIMETRE) if item[0] == "with one clamp"]
+    changed = [item for item in explaining.list_changes(pairs, MILLIMETRE) if item[0] == "with one clamp"]
     assert [item[1]().toolkit for item in changed] == [evolve(one, rows=2, directions=None)]
 
 

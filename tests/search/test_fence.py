@@ -17,7 +17,7 @@ from slow_fence import slow_fence
 from toolkit_results import NOTCHED, check_and_read_back, checked, part
 from workhold import Fence, InputError, Query, Restrictions, Result, Workpiece, answer, circle_zone, design
 from workhold.listing import results
-from workhold.listing.ranking import find_usual_errors, order_keys
+from workhold.listing.ranking import find_usual_errors, make_table_keys
 from workhold.search import wall_search
 from workhold.verification import verify
 
@@ -280,8 +280,8 @@ def test_those_equally_good_stand_in_the_order_of_directions() -> None:
     """As those of a part that is its own mirror image do, which the clamp presses from either side."""
     triangle = part([(0, 0, 0), (60, 0, 0), (30, 30 * sqrt(3), 0)])
     result = design(triangle, Fence(pitch=10, peg_radius=0, wall_offset=5, directions=["+x", "-x"]))
-    found = order_keys(result.table, result.query, find_usual_errors(result.query))
-    tied = (np.diff(found.make_order_numbers(found.least), axis=0) == 0.0).all(axis=1)
+    found = make_table_keys(result.table, result.query, find_usual_errors(result.query))
+    tied = (np.diff(found.make_order_numbers(found.least_error), axis=0) == 0.0).all(axis=1)
     steps = np.diff(result.table.arrangement.astype(int))[tied]
     assert (steps >= 0).all() and (steps > 0).any()
 

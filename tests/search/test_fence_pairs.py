@@ -160,7 +160,7 @@ def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(
     """What was found on the edge before is listed, and the result says that it is incomplete."""
     query = Query(part(NOTCHED), Fence((16, 12), 3, wall_offset=6, clamps=2, columns=4, rows=5))
     whole, stop, looked_at = answer(query), Event(), 0
-    closing = wall_search.WallSearch.closing
+    closing = wall_search.WallSearch.find_closing_pairs
 
     def stopping(*given: Any) -> Any:
         nonlocal looked_at
@@ -169,7 +169,7 @@ def test_a_search_that_is_stopped_within_a_hull_edge_looks_at_no_further_pairs(
             stop.set()
         return closing(*given)
 
-    monkeypatch.setattr(wall_search.WallSearch, "closing", stopping)
+    monkeypatch.setattr(wall_search.WallSearch, "find_closing_pairs", stopping)
     monkeypatch.setattr(wall_search, "TOGETHER", 40)
     stopped = answer(query, cancel=stop)
     assert looked_at == 12 and not stopped.complete and not stopped.notes

@@ -168,7 +168,7 @@ def test_a_lower_jaw_meets_its_own_outline() -> None:
     """The part lies flush with one outline, and pegs touch another, as the slow search says."""
     vise = FlatJaw(pitch=(13, 11), peg_radius=2.5, wall_heights=(0, 4), jaw_heights=(10, 18))
     workpiece = stepped({"wall": ((0.0, 4.0), FOOT), "jaw": ((10.0, 18.0), STEM)})
-    wall, pegs = (workpiece.outline_of(role)[0] for role in ("wall", "jaw"))
+    wall, pegs = (workpiece.find_outline(role)[0] for role in ("wall", "jaw"))
     assert_alike(slow_search(wall, vise, 6, pegs), places(workhold.design(workpiece, vise)))
 
 
@@ -355,7 +355,7 @@ def test_restrictions_and_margins_hold() -> None:
 def seen_where(result: Result, keeps: object) -> set[Identity]:
     """What tells those fixtures apart that a rule keeps."""
     rows = [k for k, fixture in enumerate(result) if keeps(fixture)]  # type: ignore[operator]
-    every = [next(iter(seen(result.part(slice(k, k + 1))))) for k in rows]
+    every = [next(iter(seen(result.slice_rows(slice(k, k + 1))))) for k in rows]
     return set(every)
 
 

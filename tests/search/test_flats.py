@@ -19,11 +19,11 @@ from workhold import Fence, Fixture, InputError, Load, Plate, Query, Vise, desig
 from workhold.algebra import find_fixtures_by_algebra
 from workhold.contact.features import list_contact_features
 from workhold.files.toolkit_file import load_toolkit
-from workhold.fixels.pegs import Flat, compute_standoff, convert_flat
+from workhold.fixels.pegs import PegFlat, compute_standoff, convert_flat
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.offset import list_trimmed_offsets
 from workhold.geometry.segment import Arc, Line
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.verification import verify_file, verify_fixture
 
 TRIANGLE = [[0, 0, 0], [60, 0, 0], [20, 45, 0]]
@@ -141,7 +141,7 @@ def test_everything_listed_is_proven_and_written(toolkit: Toolkit, tmp_path: Pat
         face = {one.number: one.segment for one in result.workpiece.faces}[peg.face]
         assert (angle is None) == (not isinstance(face, Line) or peg.carrier.startswith("clamp"))
         if angle is not None:
-            normal = np.array(result[0].pose.turn(*face.normal()))
+            normal = np.array(result[0].pose.turn(*face.compute_normal()))
             assert np.allclose([np.cos(np.radians(angle)), np.sin(np.radians(angle))], -normal, atol=1e-9)
             # So far from the face as the flat is from the centre.
             start = np.array(result[0].pose.apply(*face.start))
@@ -175,12 +175,14 @@ def test_features_of_flats_end_where_the_body_meets_another_face() -> None:
     """On a square block: at a corner the round body would touch the next face, sqrt(rho^2 - distance^2) along."""
     block = part([[0, 0, 0], [40, 0, 0], [40, 30, 0], [0, 30, 0]])
     reach = sqrt(RADIUS**2 - DISTANCE**2)
-    for feature in list_contact_features(block, RADIUS, Flat(DISTANCE)):
+    for feature in list_contact_features(block, RADIUS, PegFlat(DISTANCE)):
         face = block.faces[feature.face].segment
         assert isinstance(face, Line) and isinstance(feature.segment, Line)
         assert feature.segment.length == pytest.approx(face.length - 2 * reach)
     arcs = [
-        f for f in list_contact_features(part(EAR), RADIUS, Flat(DISTANCE)) if not isinstance(f.segment, Line)
+        f
+        for f in list_contact_features(part(EAR), RADIUS, PegFlat(DISTANCE))
+        if not isinstance(f.segment, Line)
     ]
     (arc,) = arcs
     assert arc.segment.radius == pytest.approx(25 + RADIUS)
@@ -191,8 +193,10 @@ def test_features_of_flats_end_where_the_body_meets_another_face() -> None:
 def test_keeping_their_place() -> None:
     """A vise's and a plate's flat, in what way it is given; and what is refused."""
     wide = Vise(9, 2, 3, flat=1.5)
-    assert wide.flat == Flat(1.5, sqrt(9 - 2.25)) and Vise(9, 2, 3, flat=(1.5, 1)).flat == Flat(1.5, 1.0)
-    assert convert_flat({"distance": 2, "half_width": 1}) == Flat(2.0, 1.0) and convert_flat(None) is None
+    assert wide.flat == PegFlat(1.5, sqrt(9 - 2.25)) and Vise(9, 2, 3, flat=(1.5, 1)).flat == PegFlat(
+        1.5, 1.0
+    )
+    assert convert_flat({"distance": 2, "half_width": 1}) == PegFlat(2.0, 1.0) and convert_flat(None) is None
     assert evolve(wide, columns=3).flat == wide.flat
     for value, words in (
         (3.5, "a peg of radius 3 mm cannot have a flat 3.5 mm from its centre"),
@@ -215,7 +219,7 @@ def test_the_widest_flat_that_is_named_can_be_made(distance: float) -> None:
     with pytest.raises(InputError, match=r"give up to ([\d.]+)\.$") as told:
         Vise(9, 2, 4, flat=(distance, 4.5))
     named = float(str(told.value).split("give up to ")[1][:-1])
-    assert Vise(9, 2, 4, flat=(distance, named)).flat == Flat(distance, named)
+    assert Vise(9, 2, 4, flat=(distance, named)).flat == PegFlat(distance, named)
 
 
 def test_a_toolkit_file_and_a_table(tmp_path: Path) -> None:
@@ -226,7 +230,7 @@ def test_a_toolkit_file_and_a_table(tmp_path: Path) -> None:
     )
     fields = load_toolkit(path).fields
     toolkit = Plate(**fields, columns=4, rows=4)
-    assert toolkit.flat == Flat(2.54, 1.27)
+    assert toolkit.flat == PegFlat(2.54, 1.27)
     result = design(part(NOTCHED), toolkit, best=3)
     workhold.save(result, tmp_path / "r.csv")
     rows = list(csv.DictReader((tmp_path / "r.csv").open()))
@@ -267,8 +271,8 @@ def test_forces_act_where_the_flat_lies() -> None:
         next(f.segment for f in part(EAR).faces if isinstance(f.segment, kind)) for kind in (Line, Arc)
     )
     assert (
-        compute_standoff(3.0, Flat(1.5), line),
-        compute_standoff(3.0, Flat(1.5), arc),
+        compute_standoff(3.0, PegFlat(1.5), line),
+        compute_standoff(3.0, PegFlat(1.5), arc),
         compute_standoff(3.0, None, line),
     ) == (
         1.5,
@@ -278,5 +282,5 @@ def test_forces_act_where_the_flat_lies() -> None:
     thick, thin = (Vise(9, 2, radius, min_gap=9, flat=DISTANCE) for radius in (RADIUS, DISTANCE))
     fixture = evolve(design(part(TRIANGLE), thick, best=1)[0], listed=None)
     loads = [Load(((20.0, 10.0),), 100.0)]
-    told = [load_cases(fixture, part(TRIANGLE), vise, loads, None, 0.2)[0] for vise in (thick, thin)]
+    told = [compute_load_cases(fixture, part(TRIANGLE), vise, loads, None, 0.2)[0] for vise in (thick, thin)]
     assert told[0].needed_with_friction == pytest.approx(told[1].needed_with_friction)

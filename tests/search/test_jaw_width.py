@@ -23,7 +23,7 @@ from strategies import outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fixture, FlatJaw, InputError, Load, Query, Result, Workpiece
 from workhold.fixels.kinds import make_toolkit
-from workhold.search.design import Explored, explore, first_choice
+from workhold.search.design import ToolkitOutcome, choose_first_toolkit, explore
 from workhold.search.explaining import explain
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallPose
@@ -129,7 +129,7 @@ def known(fixture: Fixture) -> tuple[Any, ...]:
 
 def compare(workpiece: Workpiece, endless: FlatJaw, width: float) -> tuple[int, int, Result]:
     """Holds every fixture of a jaw of a width against what is expected; how many stayed and went."""
-    vise = endless.changed({"jaw_width": width})
+    vise = endless.with_fields({"jaw_width": width})
     result = workhold.design(workpiece, vise)
     found, stayed, went = {known(fixture): fixture for fixture in result}, 0, 0
     assert len(found) == len(result)
@@ -191,7 +191,7 @@ def test_a_jaw_wider_than_every_part_changes_columns_alone() -> None:
     """Faces, forces and figures are those of the endless wall, and so is the order."""
     endless = FlatJaw(pitch=10, peg_radius=3, columns=5)
     free, wide = (
-        workhold.design(part(ROCKER), one) for one in (endless, endless.changed({"jaw_width": 900}))
+        workhold.design(part(ROCKER), one) for one in (endless, endless.with_fields({"jaw_width": 900}))
     )
     assert [known(one) for one in free] == [known(one) for one in wide] and len(free) > 10
     for one, other in zip(free, wide, strict=True):
@@ -214,7 +214,7 @@ def test_the_best_are_the_first_of_all_and_may_be_ranked_by_what_the_jaw_holds()
     ]
     assert contact == sorted(contact, reverse=True) and contact[0] > contact[-1]
     with pytest.raises(InputError, match="there is no jaw contact to rank by"):
-        workhold.design(part(ROCKER), vise.changed({"jaw_width": None}), rank_by="jaw-contact")
+        workhold.design(part(ROCKER), vise.with_fields({"jaw_width": None}), rank_by="jaw-contact")
 
 
 def test_a_width_asks_for_columns_and_a_length() -> None:
@@ -273,7 +273,7 @@ def test_verify_refutes_what_the_jaw_does_not_reach_and_other_columns(tmp_path: 
     reason = said(lambda content: moved(content, 1))
     assert "its pegs would stand better from column" in reason or "of the flat jaw at its" in reason
     wall = data["fixtures"][0]["wall"]
-    wide = workhold.design(part(ROCKER), vise.changed({"jaw_width": 58.0}))
+    wide = workhold.design(part(ROCKER), vise.with_fields({"jaw_width": 58.0}))
     number = next(
         k for k, one in enumerate(wide) if one.quality["jaw_contact"] > 57.9 and one.pegs[2].column > 0
     )
@@ -317,7 +317,7 @@ def test_loads_are_borne_at_the_ends_that_the_jaw_reaches(tmp_path: Path) -> Non
     endless = FlatJaw(pitch=(11, 9), peg_radius=2.5, columns=7)
     results = [
         workhold.design(part(ROCKER), one, loads=[load])
-        for one in (endless, endless.changed({"jaw_width": 23}))
+        for one in (endless, endless.with_fields({"jaw_width": 23}))
     ]
     free, held = ({known(one): one.quality["jaw_force_needed"] for one in result} for result in results)
     both = free.keys() & held.keys()
@@ -350,15 +350,15 @@ def test_the_first_choice_holds_the_part_over_its_length_and_not_the_first_name(
         "edge_distance": 3.0,
     }
     ranking = ("warnings", "penalty", "clamp_amplification", "closure_margin", "edge_distance")
-    short = Explored("a 4-inch vise", {"flat": 1}, figures, fit=True, held=0.25)
-    better = Explored("b 4-inch vise", {"flat": 1}, figures | {"penalty": 2.0}, fit=True, held=0.29)
-    long = Explored("c 6-inch vise", {"flat": 1}, figures, fit=True, held=0.38)
-    warned = Explored("d plate", {"clamp": 1}, figures | {"warnings": 1.0}, fit=True, held=1.0)
-    assert first_choice([short, better, warned], ranking) is better
-    assert first_choice([short, better, long, warned], ranking) is long
-    assert first_choice([short, long, better], ("penalty",)) is better
-    assert first_choice([short, long], ("penalty",)) is long
-    assert first_choice([short, long], ranking, lambda name: name == short.name) is short
+    short = ToolkitOutcome("a 4-inch vise", {"flat": 1}, figures, fit=True, held=0.25)
+    better = ToolkitOutcome("b 4-inch vise", {"flat": 1}, figures | {"penalty": 2.0}, fit=True, held=0.29)
+    long = ToolkitOutcome("c 6-inch vise", {"flat": 1}, figures, fit=True, held=0.38)
+    warned = ToolkitOutcome("d plate", {"clamp": 1}, figures | {"warnings": 1.0}, fit=True, held=1.0)
+    assert choose_first_toolkit([short, better, warned], ranking) is better
+    assert choose_first_toolkit([short, better, long, warned], ranking) is long
+    assert choose_first_toolkit([short, long, better], ("penalty",)) is better
+    assert choose_first_toolkit([short, long], ("penalty",)) is long
+    assert choose_first_toolkit([short, long], ranking, lambda name: name == short.name) is short
 
 
 def test_a_bar_is_held_over_more_of_its_length_by_wider_jaws() -> None:

@@ -12,7 +12,7 @@ from toolkit_results import NOTCHED, part
 from workhold import FlatJaw, Query, Workpiece
 from workhold.contact.problem import Problem
 from workhold.proof.flush import decide_pair
-from workhold.search.flush_search import part_on_wall
+from workhold.search.flush_search import lay_part_on_wall
 from workhold.search.lattice_pairs import compute_pair_closure, find_pairs_on_edge, select_pressed_pairs
 from workhold.search.wall_shares import LatticePairSearch, WallShares
 
@@ -24,7 +24,7 @@ BOSSES = [(0, 0, 0), (60, 0, 0), (60, 20, 0), (50, 20, 1), (30, 20, 0), (20, 20,
 
 def problem_of(workpiece: Workpiece, margin: float = 0.0, pitch: float = 8.0) -> Problem:
     """The search of a part in a flat-jaw vise."""
-    return Problem.of(Query(workpiece, FlatJaw(pitch=pitch, peg_radius=2), contact_margin=margin))
+    return Problem.from_query(Query(workpiece, FlatJaw(pitch=pitch, peg_radius=2), contact_margin=margin))
 
 
 @pytest.mark.parametrize("margin", [0.0, 3.0])
@@ -34,11 +34,11 @@ def test_balls_find_the_same_places_forces_and_verdicts(loop: list[tuple[float, 
     problem = problem_of(part(loop), margin)
     looked = sharp_ones = 0
     for edge in range(len(problem.workpiece.hull_edges)):
-        lying = part_on_wall(problem, edge)
+        lying = lay_part_on_wall(problem, edge)
         for pairs in find_pairs_on_edge(lying, (8.0, 8.0), (inf, inf), margin):
             closed, held, open_ = compute_pair_closure(pairs, lying, problem)
             for k in range(0, len(pairs), 3):
-                verdict, sharp = decide_pair(pairs.candidate(k, edge), problem)
+                verdict, sharp = decide_pair(pairs.make_candidate(k, edge), problem)
                 looked += 1
                 if not open_[k]:
                     assert verdict is bool(held[k])
@@ -54,7 +54,7 @@ def test_where_curves_only_graze_no_bound_is_known_and_balls_decide() -> None:
     problem = problem_of(part(BOSSES), pitch=15.0)
     unknown = 0
     for edge in range(len(problem.workpiece.hull_edges)):
-        lying = part_on_wall(problem, edge)
+        lying = lay_part_on_wall(problem, edge)
         for pairs in find_pairs_on_edge(lying, (15.0, 15.0), (inf, inf), 0.0):
             unknown += int(np.isinf(pairs.reach).sum())
             good, undecided, sharpened = select_pressed_pairs(pairs, edge, lying, problem)
@@ -68,7 +68,7 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
     """Forced to be coarse: every pair is decided again, and the same fixtures are found."""
     search = LatticePairSearch(problem_of(part(ROCKER)))
     for edge in search.edges:
-        lying = part_on_wall(search.problem, edge)
+        lying = lay_part_on_wall(search.problem, edge)
         for pairs in find_pairs_on_edge(lying, (8.0, 8.0), (inf, inf), 0.0):
             fine, _, _ = select_pressed_pairs(pairs, edge, lying, search.problem)
             coarse = pairs.take(np.arange(len(pairs)))
@@ -84,7 +84,7 @@ def test_what_doubles_are_too_coarse_for_is_taken_from_balls() -> None:
 def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:
     """Also where the verdict is clear: with a bound above what one place is, the ball's place stands in the list."""
     problem = problem_of(part(KITE))
-    lying = part_on_wall(problem, 0)
+    lying = lay_part_on_wall(problem, 0)
     (pairs,) = find_pairs_on_edge(lying, (8.0, 8.0), (inf, inf), 0.0)
     fine, _, _ = select_pressed_pairs(pairs, 0, lying, problem)
     pairs.point[:] += 1e-8
@@ -96,9 +96,9 @@ def test_places_that_are_told_too_coarsely_are_taken_from_balls() -> None:
 def test_a_search_that_is_cancelled_within_a_hull_edge_says_so() -> None:
     """What was found in it so far is kept."""
     cancel = Event()
-    shares = WallShares.of(Query(part(KITE), FlatJaw(pitch=8, peg_radius=2)), cancel)
-    _, whole = shares.look(0, None)
+    shares = WallShares.from_query(Query(part(KITE), FlatJaw(pitch=8, peg_radius=2)), cancel)
+    _, whole = shares.search_share(0, None)
     assert whole
     cancel.set()
-    found, whole = shares.look(0, None)
+    found, whole = shares.search_share(0, None)
     assert not whole and found is not None and len(found) > 0

@@ -40,8 +40,8 @@ def test_contacts_that_close_are_clamped_by_closing_or_by_opening_or_are_double_
     """Of the simultaneous contacts that keep the smallest gap and whose forces close, those with a positive clamping force
     are the fixtures of the closing vise, those with a negative one those of the opening vise."""
     opening = OpeningVise(**asdict(vise, recurse=False))
-    contacts = find_all_contacts(Problem.of(Query(part, vise)), 1)
-    other = find_all_contacts(Problem.of(Query(part, opening)), 1)
+    contacts = find_all_contacts(Problem.from_query(Query(part, vise)), 1)
+    other = find_all_contacts(Problem.from_query(Query(part, opening)), 1)
     assert len(other.clamping) == len(contacts.clamping)
     assert np.array_equal(np.sort(other.clamping), np.sort(-contacts.clamping))
     kept = contacts.take(

@@ -151,7 +151,7 @@ def test_a_slow_search_of_a_plate_finds_the_same(name: str, rows: int) -> None:
     plate = attrs.evolve(toolkit, columns=3, rows=rows)
     workpiece = stepped(own, clamp=[2])
     result = design(workpiece, plate, listing=None if plate.clamps == 1 else "all")
-    slow = slow_plate.slow_plate(workpiece, plate, workpiece.outline_of("clamp")[0])
+    slow = slow_plate.slow_plate(workpiece, plate, workpiece.find_outline("clamp")[0])
     assert slow_plate.seen(result) == slow
     assert len(slow) > 5
 
@@ -173,7 +173,7 @@ def test_a_slow_search_of_a_fence_finds_the_same() -> None:
     toolkit, own = OWN["fence"]
     assert isinstance(toolkit, Fence)
     workpiece = stepped(own)
-    slow = slow_fence(workpiece, toolkit, *(workpiece.outline_of(role)[0] for role in ("clamp", "wall")))
+    slow = slow_fence(workpiece, toolkit, *(workpiece.find_outline(role)[0] for role in ("clamp", "wall")))
     assert fence_places(design(workpiece, toolkit)) == {(way, *rest) for way, _, _, *rest in slow}
 
 
@@ -229,7 +229,7 @@ def test_two_left_pegs_and_two_right_ones_are_found_by_a_slow_search() -> None:
     vise = Vise(pitch=(22, 15), columns=1, peg_radius=2.5, min_gap=9, left_heights=LEFT, right_heights=RIGHT)
     workpiece = stepped({"left": (LEFT, FOOT), "right": (RIGHT, STEM)})
     result = design(workpiece, vise, types=("I",))
-    left, right = (workpiece.outline_of(role)[0] for role in ("left", "right"))
+    left, right = (workpiece.find_outline(role)[0] for role in ("left", "right"))
     plate = Plate(pitch=vise.pitch, peg_radius=2.5, columns=2, rows=2)
     looked, center = slow_plate.Searched(left, plate, right), np.array(workpiece.center)
     looked.center = center

@@ -153,7 +153,7 @@ def test_a_rectilinear_part_is_touched_from_all_four_sides_and_a_plain_rectangle
     workpiece = part(ell)
     result = design(workpiece, Plate(20, 3))
     assert len(result) > 20
-    normals = {face.number: face.segment.normal(0.0) for face in workpiece.faces}
+    normals = {face.number: face.segment.compute_normal(0.0) for face in workpiece.faces}
     for fixture in result:
         assert len({tuple(np.round(normals[peg.face], 6)) for peg in fixture.pegs}) == 4
     rectangle = design(

@@ -30,7 +30,7 @@ from workhold import Fence, Fixture, InputError, Plate, Program, Query, Result, 
 from workhold.algebra import find_fixtures_by_algebra
 from workhold.fixels.toolkit import Toolkit
 from workhold.search.explaining import explain
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 Key = tuple[object, ...]
@@ -48,7 +48,7 @@ def listed(query: Query) -> Result:
         return answer(query, threads=1)
     except InputError as error:
         assert "the program's tools pass every place" in str(error)
-        return answer(query.without_program, threads=1).part(slice(0))
+        return answer(query.without_program, threads=1).slice_rows(slice(0))
 
 
 def key_of(fixture: Fixture) -> Key:
@@ -196,7 +196,7 @@ def test_no_contact_is_on_a_face_that_is_cut_away(seed: int) -> None:
         for peg in fixture.pegs:
             (face,) = [one for one in part.faces if one.number == peg.face]
             x, y = (float(v) for v in fixture.pose.inverse.apply(peg.x, peg.y))
-            u, v = face.segment.at(face.segment.parameter((x, y)))
+            u, v = face.segment.compute_point(face.segment.find_parameter((x, y)))
             for points, radius in low:
                 away = np.hypot(points[:, 0] - u, points[:, 1] - v).min()
                 assert away > radius + program.clearance - 2 * OFF
@@ -224,7 +224,7 @@ def test_the_best_are_the_first_of_all(kind: str) -> None:
     every, best = answer(query, threads=1), answer(evolve(query, best=6), threads=1)
     assert [fixture.pegs for fixture in best] == [fixture.pegs for fixture in every[:6]]
     # What is none for a workshop stands behind all others.
-    fit = int((~unfit(every.table.quality, query.tolerance)).sum())
+    fit = int((~are_unfit(every.table.quality, query.tolerance)).sum())
     said = [fixture.quality["program_clearance"] for fixture in every[:fit]]
     assert np.diff([float(f"{value:.1e}") for value in said]).max() <= 0.0
 

@@ -26,14 +26,14 @@ from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE
 from workhold.seating import solver as solver_module
 from workhold.seating.contact_forces import is_equilibrium
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import NO_PASS, Solver
+from workhold.seating.solver import NO_PASS, SeatingSolver
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
 LOOKED_AT = 8
 
 
-READ = Solver.read
+READ = SeatingSolver.make_seating
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -41,14 +41,14 @@ def read_once() -> Iterator[None]:
     """Work out the seating of each fixture once for all tests, but for those that look at how that is done."""
     known: dict[Any, Any] = {}
 
-    def read(self: Solver, fixture: Any, *asked: Any) -> Any:
+    def read(self: SeatingSolver, fixture: Any, *asked: Any) -> Any:
         key = fixture.pose, fixture.travel, self.workpiece, solver_module.is_equilibrium
         if key not in known:
             known[key] = READ(self, fixture, *asked)
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Solver, "read", read)
+        patch.setattr(SeatingSolver, "make_seating", read)
         yield
 
 
@@ -99,7 +99,7 @@ def test_each_seating_is_that_of_its_fixture(seated: Result) -> None:
 
 def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> None:
     for told in seated.seating:
-        reading = told.reading_of()
+        reading = told.find_least_reading()
         assert reading is not None and told.capture_opening is not None
         assert len(told.warnings) == (told.capture_opening < SMALL_CAPTURE) + (reading < CLOSE_READING)
         assert told.is_foolproof == (reading >= CLOSE_READING)
@@ -120,23 +120,25 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
         (VISE, "the jaws are opened"),
     ):
         words = f"the part is caught only while {opened} by less than 0.500 mm"
-        assert small.in_toolkit(toolkit).warnings == (words,)
+        assert small.with_toolkit(toolkit).warnings == (words,)
     untold = attrs.evolve(one, capture_opening=0.0, lowest_pass=None, cage=None, placing=None)
     assert (
         untold.warnings == ("it is not known how far you may open without losing the part",)
         and untold.figures["placing"] == 0.0
     )
-    assert collect_seating_figures(untold.as_fields())["placing"] == 0.0
+    assert collect_seating_figures(untold.to_fields())["placing"] == 0.0
     free = attrs.evolve(one, capture_opening=None)
-    assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
-    assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))
+    assert not free.warnings and free.is_caught_from(1e9) and free.figures["capture_opening"] == inf
+    assert not one.is_caught_from(one.capture_opening or 0.0) and one.is_caught_from(
+        0.999 * (one.capture_opening or 0.0)
+    )
 
 
 @pytest.mark.thorough
 def test_the_result_is_the_same_on_any_number_of_threads(
     seated: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Solver, "read", READ)
+    monkeypatch.setattr(SeatingSolver, "make_seating", READ)
     other = workhold.design(WEDGE, VISE, seating=LOOKED_AT, threads=1)
     for number, result in enumerate((seated, other)):
         workhold.save(result, tmp_path / f"{number}.json")
@@ -152,7 +154,7 @@ def test_every_form_says_the_same(seated: Result, tmp_path: Path) -> None:
     for name, other in (("a.json", "b.json"), ("a.npz", "b.npz"), ("a.npz", "c.npz")):
         assert (tmp_path / name).read_bytes() == (tmp_path / other).read_bytes()
     read = workhold.open(tmp_path / "a.json")
-    assert [one.as_fields() for one in read.seating] == [one.as_fields() for one in seated.seating]
+    assert [one.to_fields() for one in read.seating] == [one.to_fields() for one in seated.seating]
     assert [one.warnings for one in read.seating] == [one.warnings for one in seated.seating]
     assert all(sum(seat.is_own for seat in one.seats) == 1 for one in read.seating)
     rows = list(csv.DictReader((tmp_path / "a.csv").open()))
@@ -185,17 +187,17 @@ def test_a_file_with_a_seating_that_is_none_is_refused(seated: Result, tmp_path:
 def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None:
     kept = workhold.design(WEDGE, VISE, seating=LOOKED_AT, foolproof=True)
     wanted = [told for told in seated.seating if told.is_foolproof]
-    assert 0 < len(wanted) < LOOKED_AT and [t.as_fields() for t in kept.seating] == [
-        t.as_fields() for t in wanted
+    assert 0 < len(wanted) < LOOKED_AT and [t.to_fields() for t in kept.seating] == [
+        t.to_fields() for t in wanted
     ]
     assert len(kept) == len(wanted) and sum(kept.found.values()) == len(seated)
     assert f"The seating of the first 8 fixtures was worked out: {len(wanted)} of them" in str(kept.notes[-1])
     # The more the jaws open, the fewer fixtures catch the part, and the more wrong seats count.
     level = sorted(told.capture_opening or inf for told in seated.seating)[4]
     opened = workhold.design(WEDGE, VISE, seating=LOOKED_AT, opening=level)
-    assert len(opened) == sum(told.catches(level) for told in seated.seating) < LOOKED_AT
+    assert len(opened) == sum(told.is_caught_from(level) for told in seated.seating) < LOOKED_AT
     assert all(told.opening == level for told in opened.seating)
-    assert all(len(told.wrong_within()) <= len(told.wrong_within(1e9)) for told in opened.seating)
+    assert all(len(told.list_wrong_seats()) <= len(told.list_wrong_seats(1e9)) for told in opened.seating)
     first = workhold.design(WEDGE, VISE, seating=LOOKED_AT, foolproof=True, best=2)
     assert list(first) == list(kept[:2])
 
@@ -213,23 +215,23 @@ def test_seating_is_a_figure_to_rank_by() -> None:
 def test_the_best_are_those_of_the_looked_at(seated: Result) -> None:
     best = workhold.design(WEDGE, VISE, seating=LOOKED_AT, best=3)
     assert list(best) == list(seated[:3])
-    assert [told.as_fields() for told in best.seating] == [told.as_fields() for told in seated.seating[:3]]
+    assert [told.to_fields() for told in best.seating] == [told.to_fields() for told in seated.seating[:3]]
     assert "Only the best 3 were sought" in str(best.notes[0])
 
 
 @pytest.mark.thorough
 def test_an_interruption_leaves_what_was_worked_out(plain: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """Those whose seating is told come first, the others as they were."""
-    cancel, solve = Event(), Solver.read
+    cancel, solve = Event(), SeatingSolver.make_seating
 
-    def until_three(self: Solver, *asked: Any) -> Any:
+    def until_three(self: SeatingSolver, *asked: Any) -> Any:
         if len(seen) == 3:
             cancel.set()
         seen.append(asked)
         return solve(self, *asked)
 
     seen: list[Any] = []
-    monkeypatch.setattr(Solver, "read", until_three)
+    monkeypatch.setattr(SeatingSolver, "make_seating", until_three)
     result = workhold.design(WEDGE, VISE, seating=LOOKED_AT, threads=1, cancel=cancel)
     assert 3 < len(result.seating) == len(seen) < LOOKED_AT and not result.complete
     assert len(result) == len(plain) and warned(result) == sorted(warned(result))
@@ -303,9 +305,9 @@ def test_an_opening_is_told_only_with_a_pass_that_is_one(
 ) -> None:
     """Passes are equilibria, and are none a little beside; without one nothing is claimed, and that is warned of."""
     solver, fixture, _ = solved(1)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    closing = solver.closing(pattern, False)
-    for row in solver.trees(pattern)[0].passes:
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    closing = solver.make_closing(pattern, False)
+    for row in solver.find_join_trees(pattern)[0].passes:
         assert is_equilibrium(row, closing)
         for column in (THETA, PLACE_X, SEPARATION):
             beside = row.copy()
@@ -325,6 +327,6 @@ def test_an_opening_is_told_only_with_a_pass_that_is_one(
     result = workhold.design(WEDGE, VISE, seating=2, best=2)
     for told in result.seating:
         assert (told.capture_opening, told.lowest_pass, told.cage, told.placing) == (0.0, None, None, None)
-        assert told.unsettled == (NO_PASS,) and told.warning_count >= 2 and not told.catches(0.001)
+        assert told.unsettled == (NO_PASS,) and told.warning_count >= 2 and not told.is_caught_from(0.001)
     workhold.save(result, tmp_path / "r.json")
     assert workhold.verify(tmp_path / "r.json").holds

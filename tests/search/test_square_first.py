@@ -29,7 +29,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.bounds import list_preferred_angles
-from workhold.listing.collector import Needed
+from workhold.listing.collector import InterestLimits
 from workhold.model.notes import BestOnly
 from workhold.model.quality import TILT
 from workhold.search.lattice_shares import LatticeShares, order_square_ranges_first
@@ -117,8 +117,8 @@ def test_angles_that_are_asked_for_stay_so() -> None:
 
 def make_records(search: ToolkitSearch, **asked: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """All that some blocks of a search find, each record once."""
-    blocks = search.blocks(search.problem.query.types, **asked)
-    return np.unique(np.concatenate([block.work(Needed()) for block in blocks]), axis=0)
+    blocks = search.make_blocks(search.problem.query.types, **asked)
+    return np.unique(np.concatenate([block.work(InterestLimits()) for block in blocks]), axis=0)
 
 
 @pytest.mark.thorough
@@ -129,7 +129,7 @@ def test_the_first_blocks_and_the_rest_find_everything(loose: bool, monkeypatch:
         # Pairs whose orientation is not known are among the first, whatever their cell.
         monkeypatch.setattr("workhold.search.toolkit_search.VAGUE", 0.0)
     query = Query(cad_part(0), VISE)
-    search = ToolkitSearch.of(Problem.of(query))
+    search = ToolkitSearch.from_problem(Problem.from_query(query))
     angles = list_preferred_angles(query)
     everything = make_records(search)
     first, rest = (make_records(search, first=angles, rest=rest) for rest in (False, True))
@@ -145,9 +145,9 @@ def test_pairs_that_slide_at_any_angle_are_in_the_first_share(monkeypatch: pytes
     tilted = []
     for vague in (1.0, 0.0):
         monkeypatch.setattr("workhold.search.toolkit_search.VAGUE", vague)
-        with LatticeShares.of(Query(part(NOTCHED), CLAMPS, best=4), 1, None) as shares:
-            blocks = shares.blocks_of(0, shares.searches[0], shares.whole_turn[0])
-        psi = np.degrees(-np.concatenate([block.work(Needed()) for block in blocks])[:, 13])
+        with LatticeShares.open_for_query(Query(part(NOTCHED), CLAMPS, best=4), 1, None) as shares:
+            blocks = shares.make_blocks(0, shares.searches[0], shares.whole_turn[0])
+        psi = np.degrees(-np.concatenate([block.work(InterestLimits()) for block in blocks])[:, 13])
         tilted.append(int((np.abs((psi + 45.0) % 90.0 - 45.0) > 5.0).sum()))
     assert tilted[0] == 0 < tilted[1]
 
@@ -171,12 +171,12 @@ def test_square_ranges_come_first_and_all_others_after_them() -> None:
 def test_small_searches_and_whole_lists_begin_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is left out of these, so that all is counted."""
     query = Query(part(NOTCHED), CLAMPS, best=4)
-    with LatticeShares.of(query, 1, None) as shares:
+    with LatticeShares.open_for_query(query, 1, None) as shares:
         assert shares.bound is not None
         assert len(shares.ranges[0]) >= 4
     monkeypatch.setattr("workhold.search.shares.SQUARE_FIRST", 1e12)
     for asked in (query, Query(part(NOTCHED), CLAMPS)):
-        with LatticeShares.of(asked, 1, None) as shares:
+        with LatticeShares.open_for_query(asked, 1, None) as shares:
             assert shares.bound is None and shares.shares == 1
     result: Result = answer(Query(cad_part(0), VISE, best=20))
     whole = design(cad_part(0), VISE)

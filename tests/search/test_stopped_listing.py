@@ -25,7 +25,7 @@ from workhold.search.design import SEARCH
 from workhold.search.seated import SEARCHED
 from workhold.verification import verify, verify_file
 from workhold.web import jobs
-from workhold.web.searching import Found
+from workhold.web.searching import SearchOutcome
 
 MOST = 41
 SYMMETRIC = Query(workhold.load("small4Handle"), Vise(pitch=10, columns=2, peg_radius=3))
@@ -65,7 +65,7 @@ def stopped_at(fraction: float) -> dict[str, Any]:
 
 def cut(listed: int, query: Query = SYMMETRIC) -> Result:
     """What a search that is stopped after all is found lists."""
-    return workhold.answer(query).part(slice(listed)).cut_short(listed)
+    return workhold.answer(query).slice_rows(slice(listed)).mark_cut_short(listed)
 
 
 @pytest.mark.thorough
@@ -158,7 +158,7 @@ def test_a_file_that_was_cut_short_must_say_so(tmp_path: Path) -> None:
     for wrong in ({"complete": True}, make_notes_entry([]), make_notes_entry([Cut(found, MOST + 1)])):
         (tmp_path / "b.json").write_text(json.dumps(said | wrong))
         assert not verify_file(tmp_path / "b.json").holds
-    workhold.save(workhold.answer(SYMMETRIC).cut_short(found), tmp_path / "b.json")
+    workhold.save(workhold.answer(SYMMETRIC).mark_cut_short(found), tmp_path / "b.json")
     assert not verify_file(tmp_path / "b.json").holds
 
 
@@ -167,7 +167,11 @@ def test_a_server_that_keeps_fewer_says_that_alone() -> None:
     result = cut(MOST)
     job = jobs.ServerJob.__new__(jobs.ServerJob)
     job.task, job.fraction, job.revision, job.orders = None, 0.0, 0, {}
-    jobs.Jobs.keep(jobs.Jobs.__new__(jobs.Jobs), job, Found(result.part(slice(10)), MOST - 10))
+    jobs.JobRegistry.keep(
+        jobs.JobRegistry.__new__(jobs.JobRegistry),
+        job,
+        SearchOutcome(result.slice_rows(slice(10)), MOST - 10),
+    )
     assert job.notes == (KeptBest(sum(result.found.values()), 10),)
     assert verify(job.result).holds
 
@@ -190,7 +194,7 @@ def test_stopped_while_the_file_is_written_the_best_are(
     written = outputs.write_found(whole, str(tmp_path / "a.json"), "json")
     assert tries == [len(whole), MOST]
     assert written == cut(MOST) and len(workhold.open(tmp_path / "a.json")) == MOST
-    for result, out in ((whole.part(slice(MOST)), str(tmp_path / "b.json")), (whole, "-")):
+    for result, out in ((whole.slice_rows(slice(MOST)), str(tmp_path / "b.json")), (whole, "-")):
         tries.clear()
         with pytest.raises(Interrupted):
             outputs.write_found(result, out, "json")

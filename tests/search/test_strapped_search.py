@@ -15,7 +15,7 @@ from strap_program import force_by_other_program
 from workhold import InputError, Load, Plate, Query, Restrictions, StrapPlate, Workpiece, circle_zone
 from workhold.model.pose import Pose
 from workhold.search.seat_search import find_seats
-from workhold.supports.straps import StrapSearch, question_of
+from workhold.supports.straps import StrapSearch, make_question
 from workhold.supports.straps_over_supports import PadPlaces, StrappedTriple, SupportedStraps
 
 BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
@@ -73,7 +73,7 @@ def test_seats_are_those_of_a_slow_enumeration(part, pitch, size):
         for column, row, face in zip(
             *(v[k] for v in (found.table.column, found.table.row, found.table.face)), strict=True
         ):
-            point = np.array(pose.inverse.apply(*map(float, plate.place(column, row))))
+            point = np.array(pose.inverse.apply(*map(float, plate.compute_hole_center(column, row))))
             assert abs(faces[face].gap(point[None])[0]) < 1e-7 and faces[face].has(point) >= 0
     assert len(ours) > 20
 
@@ -213,7 +213,7 @@ def test_the_first_seats_have_the_straps_that_need_least(block):
 
 def test_the_force_is_that_of_a_program_that_shares_nothing(block):
     for fixture in block[:3]:
-        search = StrapSearch(fixture, block.query, question_of(block.query))
+        search = StrapSearch(fixture, block.query, make_question(block.query))
         turn = np.radians(LOAD.directions[0] + fixture.pose.theta_deg)
         at = [*fixture.pose.apply(50, 30), 25.0]
         force = np.array([600 * np.cos(turn), 600 * np.sin(turn), 0.0])
@@ -256,7 +256,7 @@ def test_straps_over_supports_need_the_least_force_of_all_sets(count, pitch):
     loads = [LOAD, Load(points=(20, 20), force=120, directions=(0, 60), moment=900, height=20)]
     result = workhold.design(BLOCK, plate, loads=loads, thickness=25, strapped=2, best=2)
     for fixture in result:
-        search = StrapSearch(fixture, result.query, question_of(result.query))
+        search = StrapSearch(fixture, result.query, make_question(result.query))
         found = SupportedStraps(search, PadPlaces.of(search))
         pads, strapped = found.list_sets()
         needs = [
@@ -270,7 +270,7 @@ def test_straps_over_supports_need_the_least_force_of_all_sets(count, pitch):
         assert len(hold.supports) == 3 and len({one.hole for one in hold.straps}) == count
         for one in hold.straps:
             assert one.over in hold.supports and one.height == 35
-            assert one.at == plate.plates[0].place(*one.over)
+            assert one.at == plate.plates[0].compute_hole_center(*one.over)
 
 
 def test_friction_of_supports_counts_under_straps_and_that_of_the_plate_does_not():
@@ -302,10 +302,10 @@ def test_bolts_stand_in_holes_of_their_own():
     result = workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=1, best=1)
     bolts = plate.strap_set.bolts
     for one in result[0].hold.straps:
-        x, y = bolts.place(*one.hole)
+        x, y = bolts.compute_hole_center(*one.hole)
         assert (x % 20, y % 20) == (10, 10)
         assert 20 - 1e-9 <= np.hypot(one.at[0] - x, one.at[1] - y) <= 60 + 1e-9
-        assert bolts.place_name(*one.hole).startswith("B-")
+        assert bolts.name_place(*one.hole).startswith("B-")
 
 
 def test_without_loads_there_are_seats_and_a_push_alone():

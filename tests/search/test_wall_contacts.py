@@ -10,7 +10,7 @@ import pytest
 
 from chord_examples import arc_row
 from workhold.search.flush_search import PartOnWall
-from workhold.search.wall_contacts import find_pin_contacts, half_angles, heights
+from workhold.search.wall_contacts import bound_heights, compute_half_angles, find_pin_contacts
 
 
 @pytest.mark.parametrize("upright", [False, True])
@@ -21,8 +21,8 @@ def test_an_arc_reaches_from_its_lowest_to_its_highest_point(upright: bool) -> N
         half = random.choice([pi, random.uniform(0.01, pi)])
         row = arc_row(3.0, -2.0, random.uniform(0.5, 300.0), random.uniform(-pi, pi), half)
         rows = np.append(row, [1e-9, 1e-9])[None]
-        low, high = heights(rows, across, np.array([1e-3]))
-        reach = half_angles(rows)[0]
+        low, high = bound_heights(rows, across, np.array([1e-3]))
+        reach = compute_half_angles(rows)[0]
         middle = np.arctan2(row[4], row[3])
         angles = middle + np.linspace(-reach, reach, 4001)
         points = row[6] * (np.cos(angles) if upright else np.sin(angles))

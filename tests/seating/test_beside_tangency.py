@@ -16,7 +16,7 @@ from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, SECOND, SEPARATION, THETA
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern, list_subsets
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
 VISE = Vise(pitch=20, columns=2, peg_radius=3)
@@ -37,8 +37,8 @@ def solver_and_jaws(case):
     ]
     fixture = held(placed, (0.0, 0.0, 0.0), config[3])
     # On a plate no jaw ends in another.
-    pattern = evolve(Pattern.of(fixture, VISE), stop=-inf, widest=inf, gap=None)
-    return Solver(load(BRACKET), VISE).closing(pattern, is_turned_over)
+    pattern = evolve(Pattern.from_fixture(fixture, VISE), stop=-inf, widest=inf, gap=None)
+    return SeatingSolver(load(BRACKET), VISE).make_closing(pattern, is_turned_over)
 
 
 @pytest.mark.thinned(7)
@@ -48,7 +48,7 @@ def test_it_is_a_seat_and_nothing_is_unsettled(case):
     closing = solver_and_jaws(case)
     found = equilibria_of(closing)
     assert len(found.doubtful) == 0
-    assert len(JoinTree.of(found, closing).doubtful) == 0
+    assert len(JoinTree.from_equilibria(found, closing).doubtful) == 0
     [row] = [row for row in found.seats if abs(row[SEPARATION] - case[2][3]) < 2e-6]
     assert (
         np.abs((row[CONFIG] - case[2] + np.pi) % (2.0 * np.pi) - np.pi).max() < 5e-6 and row[CONTACTS] == 3.0
@@ -63,7 +63,7 @@ def test_it_is_a_seat_and_nothing_is_unsettled(case):
         0.0,
         5e-3,
     ]
-    ends, how = closing.run(row[CONFIG] + apart, 1e-3)
+    ends, how = closing.close_from(row[CONFIG] + apart, 1e-3)
     assert (how == AT_REST).all() and np.abs(ends - row[CONFIG]).max() < 1e-4
 
 
@@ -71,7 +71,7 @@ def test_it_is_a_seat_and_nothing_is_unsettled(case):
 def test_second_derivatives_are_those_of_the_separation(number):
     """By differences, of three contacts of which two are of one jaw, on lines and arcs."""
     solver, fixture, _ = solved(number)
-    closing = solver.closing(Pattern.of(fixture, solver.toolkit), False)
+    closing = solver.make_closing(Pattern.from_fixture(fixture, solver.toolkit), False)
     found = equilibria_of(closing)
     given = two_contacts_of(closing).given
     assert len(list_subsets(closing.pattern)) > 4

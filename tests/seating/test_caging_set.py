@@ -20,7 +20,7 @@ from workhold.kernels.seating.columns import CONFIG
 from workhold.model.seating import CAGE_SHORT
 from workhold.seating.caging_set import CagingSet
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import FixtureInPattern, Solver
+from workhold.seating.solver import FixtureInPattern, SeatingSolver
 
 BRACKET = Workpiece.from_loops(
     "bracket", [[[0, 0, 0], [80, 0, 0], [80, 20, 0], [28, 20, -0.41], [20, 28, 0], [20, 60, 0], [0, 60, 0]]]
@@ -57,15 +57,15 @@ def listed(name: str) -> tuple[Workpiece, Toolkit, list[Fixture]]:
 def reading_of(name: str, rank: int) -> FixtureInPattern:
     """What is told of one of them, in the frame of its own pegs."""
     part, toolkit, fixtures = listed(name)
-    solver = Solver(part, toolkit)
-    return solver.in_pattern(fixtures[rank], Pattern.of(fixtures[rank], toolkit))
+    solver = SeatingSolver(part, toolkit)
+    return solver.place_in_pattern(fixtures[rank], Pattern.from_fixture(fixtures[rank], toolkit))
 
 
 def around(name: str, rank: int, share: float) -> CagingSet:
     """What lies around it with what moves opened by a share of the capture opening."""
     reading = reading_of(name, rank)
-    join = reading.trees[0].join_of(reading.place)
-    told = reading.caging_set(reading.trees[0].seats[reading.place][CONFIG], join)
+    join = reading.trees[0].find_first_join(reading.place)
+    told = reading.make_caging_set(reading.trees[0].seats[reading.place][CONFIG], join)
     # The pass does not belong to what is reached by less.
     return told if share == 1.0 else evolve(told, opening=share * told.opening, to_pass=np.zeros(3))
 
@@ -81,7 +81,7 @@ def differences(name: str, rank: int, share: float, count: int = STEPS) -> np.nd
     steps = width[0] / count, float(np.ptp(up - lean * turn)) / count
     # Ends lie on the edge: between two of them the cage is wide, where it comes home from there.
     between = [(found.ends + np.roll(found.ends, k, axis=0)) / 2.0 for k in range(1, 20)]
-    inside = np.vstack([found.ends, *(some[told.come_home(some)] for some in between)]) - told.seat
+    inside = np.vstack([found.ends, *(some[told.find_homecoming(some)] for some in between)]) - told.seat
     flood = Flood(part, fixtures[rank], toolkit, told.opening, inside, steps, lean, rows=8 * count)
     size = np.array([[steps[0]], [width[1] / count], [steps[1] + abs(lean) * steps[0]]])
     return (flood.extents - found.reach) * [1.0, -1.0] / size
@@ -94,7 +94,7 @@ def end_at_home(name: str, rank: int, share: float, which: list[int]) -> bool:
     obstacle = Obstacle.about(part, fixtures[rank], toolkit)
     own, size = obstacle.start(fixtures[rank]), told.arm
     stop = reading.pattern.frame.sign * reading.pattern.stop
-    for config in reading.pattern.frame.leave(told.extents.farthest[which] + reading.shift):
+    for config in reading.pattern.frame.map_to_toolkit(told.extents.farthest[which] + reading.shift):
         assert obstacle.free(config) > -1e-7
         assert obstacle.clamping * (config[3] - own[3]) <= told.opening + 1e-7
         for _ in range(TAKEN_UP):
@@ -152,20 +152,23 @@ def test_no_extreme_lies_outside_the_cage(name, rank):
     part, toolkit, fixtures = listed(name)
     reading, told = reading_of(name, rank), around(name, rank, 1.0)
     obstacle, found = Obstacle.about(part, fixtures[rank], toolkit), told.extents
-    assert told.come_home(found.ends).all() and found.ends[:, 3].max() <= told.seat[3] + told.opening + 1e-8
+    assert (
+        told.find_homecoming(found.ends).all()
+        and found.ends[:, 3].max() <= told.seat[3] + told.opening + 1e-8
+    )
     off = found.ends[:, :3] - told.seat[:3]
     assert (found.reach[:, 0] >= np.minimum(off.min(axis=0), told.to_pass) - 1e-12).all()
     assert (found.reach[:, 1] <= np.maximum(off.max(axis=0), told.to_pass) + 1e-12).all()
-    for config in reading.pattern.frame.leave(found.farthest + reading.shift):
+    for config in reading.pattern.frame.map_to_toolkit(found.farthest + reading.shift):
         assert -1e-7 < obstacle.free(config) < 1e-6
 
 
 def test_the_oblong_part_comes_home_turned_by_twelve_degrees():
     """Poses on a grid told 9.29 degrees and 2.75 mm."""
     part, toolkit, fixtures = listed("oblong")
-    told = Solver(part, toolkit).of(fixtures[0])
+    told = SeatingSolver(part, toolkit).solve(fixtures[0])
     assert told.cage.theta_deg[0] < -12.0 and told.cage.theta_deg[1] > 12.0 and told.cage.y[0] < -3.63
-    assert told.as_fields()["cage_short"] == CAGE_SHORT
+    assert told.to_fields()["cage_short"] == CAGE_SHORT
 
 
 @pytest.mark.prove
@@ -173,7 +176,7 @@ def test_the_oblong_part_comes_home_turned_by_twelve_degrees():
 def test_extremes_of_many_fixtures_are_those_of_a_flood(name):
     """Nowhere short of it, at two openings. A flood steps over narrow ends, of some by many rows."""
     for rank in range(0, len(listed(name)[2]), 6):
-        if reading_of(name, rank).trees[0].join_of(reading_of(name, rank).place) is None:
+        if reading_of(name, rank).trees[0].find_first_join(reading_of(name, rank).place) is None:
             continue
         for share in (0.6, 0.9):
             beyond = differences(name, rank, share, 2 * STEPS)
@@ -185,7 +188,7 @@ def test_extremes_of_many_fixtures_are_those_of_a_flood(name):
 def test_parts_come_home_from_the_extremes_of_many_fixtures(name):
     """Of every sixth, all six extremes."""
     for rank in range(0, len(listed(name)[2]), 6):
-        if reading_of(name, rank).trees[0].join_of(reading_of(name, rank).place) is not None:
+        if reading_of(name, rank).trees[0].find_first_join(reading_of(name, rank).place) is not None:
             assert end_at_home(name, rank, 0.97, list(range(6))), rank
 
 

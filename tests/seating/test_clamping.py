@@ -12,8 +12,8 @@ from scipy.optimize import linprog
 
 import workhold
 from workhold import Fence, Fixture, Plate, Result, Workpiece
-from workhold.model.clamps import compute_working_forces, order_words
-from workhold.seating.clamping import WHY, by_hand, find_sticking_friction_of_two
+from workhold.model.clamps import compute_working_forces, describe_tightening_order
+from workhold.seating.clamping import WHY, find_sticking_friction_of_two, plan_hand_loading
 
 RECTANGLE = Workpiece.from_loops("rectangle", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
 BOWED = Workpiece.from_loops("bowed", [[[0, 0, 0], [70, 0, 0], [70, 45, 0.2], [20, 50, 0.3], [0, 40, 0]]])
@@ -84,7 +84,7 @@ def test_on_a_fence_a_rectangle_sticks_from_a_friction_found_by_hand() -> None:
 def test_below_the_friction_told_no_locator_can_be_spared(result: Result) -> None:
     """By linear programs from the drawing: none balance just below it, and some do just above; of each kind of order."""
     for fixture in of_every_kind(result):
-        told = by_hand(fixture, result.workpiece, result.toolkit).sticking_friction
+        told = plan_hand_loading(fixture, result.workpiece, result.toolkit).sticking_friction
         assert told is not None and 0.0 < told < inf
         sticks = [
             any(
@@ -102,7 +102,7 @@ def test_what_a_clamp_alone_does_not_press_is_told(result: Result) -> None:
     pulls, and at the working ratio none is without force."""
     for fixture in of_every_kind(result):
         told, reactions = (
-            by_hand(fixture, result.workpiece, result.toolkit),
+            plan_hand_loading(fixture, result.workpiece, result.toolkit),
             np.array([fixture.pair.reactions]),
         )
         for k, pegs in enumerate(told.unpressed):
@@ -120,8 +120,8 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
     that may be first what it leaves without force; names of fences and clamps, and no option of a command."""
     kinds = 0
     for fixture in of_every_kind(result):
-        told = by_hand(fixture, result.workpiece, result.toolkit)
-        push, touch, order, friction, after = told.steps()
+        told = plan_hand_loading(fixture, result.workpiece, result.toolkit)
+        push, touch, order, friction, after = told.list_steps()
         locators = [peg for peg in fixture.pegs[:3] if not peg.is_on_wall]
         assert all(peg.hole in push and f"{peg.touching} at {peg.hole}" in touch for peg in locators)
         on_wall = [peg for peg in fixture.pegs if peg.is_on_wall]
@@ -132,7 +132,7 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
             for d in fixture.direction.split()
         ]
         assert all(word in push for word in towards)
-        assert order.startswith(order_words(fixture)) and "until both clamps are tight" in order
+        assert order.startswith(describe_tightening_order(fixture)) and "until both clamps are tight" in order
         first = [fixture.pair.ratio[0] == 0.0, fixture.pair.ratio[1] == inf]
         for tip, may, pegs in zip(fixture.pegs[3:], first, told.unpressed, strict=True):
             assert (f"{tip.hole} alone does not press it on" in order) == may
@@ -144,33 +144,35 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
             fixture.pair.working_ratio < 0.1
             or f"{fixture.pair.working_ratio:.2f} times the force of {fixture.pegs[3].hole}" in friction
         )
-        assert told.steps(with_order=False)[2] == order.removeprefix(order_words(fixture) + " ")
+        assert told.list_steps(with_order=False)[2] == order.removeprefix(
+            describe_tightening_order(fixture) + " "
+        )
         assert all(f"at {tip.hole}" in after for tip in fixture.pegs[3:])
-        assert not any("--" in step for step in (*told.steps(), WHY))
+        assert not any("--" in step for step in (*told.list_steps(), WHY))
         kinds += 1
     assert kinds >= 3
 
 
 def test_friction_is_told_rounded_down_and_against_that_of_steel(result: Result) -> None:
-    told = by_hand(result[0], result.workpiece, result.toolkit)
-    [high] = evolve(told, sticking_friction=0.41279).friction_words()
+    told = plan_hand_loading(result[0], result.workpiece, result.toolkit)
+    [high] = evolve(told, sticking_friction=0.41279).describe_friction()
     assert "while friction is below 0.412;" in high and "tap" not in high
-    [low] = evolve(told, sticking_friction=0.19999).friction_words()
+    [low] = evolve(told, sticking_friction=0.19999).describe_friction()
     assert low.startswith("If the friction is 0.199 or more") and low.endswith(
         "so tap it home as you tighten."
     )
-    [never] = evolve(told, sticking_friction=inf).friction_words()
+    [never] = evolve(told, sticking_friction=inf).describe_friction()
     assert never.endswith("whatever the friction.")
     fixture = evolve(told.fixture, pair=evolve(told.pair, ratio=(0.0, 0.008)))
-    assert "with 0.004 times the force of" in evolve(told, fixture=fixture).friction_words()[0]
-    assert evolve(told, sticking_friction=inf).as_fields()["sticking_friction"] is None
+    assert "with 0.004 times the force of" in evolve(told, fixture=fixture).describe_friction()[0]
+    assert evolve(told, sticking_friction=inf).to_fields()["sticking_friction"] is None
     assert "0.413" in repr(evolve(told, sticking_friction=0.41279))
 
 
 def test_opposed_clamps_do_not_show_where_to_push() -> None:
     result = workhold.design(BOWED, OPPOSED)
     assert len(result)
-    push = by_hand(result[0], result.workpiece, OPPOSED).push_words()
+    push = plan_hand_loading(result[0], result.workpiece, OPPOSED).describe_push()
     assert "push the part by hand until" in push
 
 
@@ -178,5 +180,5 @@ def test_of_pegs_with_a_flat_no_friction_is_told() -> None:
     """Their contact does not stay near one point as the part turns; all else is said."""
     plate = evolve(PLATE, flat=2.5)
     [told] = workhold.seatings(workhold.design(RECTANGLE, plate, best=1))
-    assert told.sticking_friction is None and len(told.steps()) == 4
-    assert "friction" not in " ".join(told.steps()) and "sticks" not in repr(told)
+    assert told.sticking_friction is None and len(told.list_steps()) == 4
+    assert "friction" not in " ".join(told.list_steps()) and "sticks" not in repr(told)

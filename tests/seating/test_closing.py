@@ -14,12 +14,12 @@ from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
 from workhold.kernels.seating.columns import CONFIG, SECOND, DescentWorkSpace
 from workhold.kernels.seating.descent_paths import OUTSIDE, STOP
-from workhold.kernels.seating.linear_program import add_normal, shortest_out
-from workhold.kernels.seating.obstacles import clearances
+from workhold.kernels.seating.linear_program import add_normal, write_shortest_step_out
+from workhold.kernels.seating.obstacles import write_clearances_of_points
 from workhold.seating.closing import find_descent_starts
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import ClosingFrame, Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 # In which a part is moved that is said not to get away.
 DIRECTIONS = 144
@@ -40,18 +40,18 @@ def ways():
     """The jaws about the notch as drawn and turned over, with starts of the ways down of all passes, and the trees."""
     pegs = tuple(Peg(jaw, 0, 0, x, y, face, 0.3) for jaw, x, y, face in PEGS)
     fixture = Fixture("I", pegs, Pose(0, 13, 3), 42.38024723796786, {})
-    solver, pattern, out = Solver(NOTCH, VISE), Pattern.of(fixture, VISE), []
+    solver, pattern, out = SeatingSolver(NOTCH, VISE), Pattern.from_fixture(fixture, VISE), []
     for turned_over in (False, True):
-        closing = solver.closing(pattern, turned_over)
+        closing = solver.make_closing(pattern, turned_over)
         found = equilibria_of(closing)
         starts = find_descent_starts(found.passes, closing.size)[0]
-        out.append((closing, starts, JoinTree.of(found, closing)))
+        out.append((closing, starts, JoinTree.from_equilibria(found, closing)))
     return out
 
 
 def test_a_fifth_normal_is_none():
     """There are four unknowns; a fifth that rounding leaves something of would be written past the basis."""
-    work, adds = DescentWorkSpace.for_pieces(1), changed(add_normal)
+    work, adds = DescentWorkSpace.allocate(1), changed(add_normal)
     work.near[0, :4], work.basis[:] = (0.0, 1.0, 0.0, 0.0), 0.0
     assert [adds(0, 1, place, work) for place in (3, 4)] == [True, False]
 
@@ -71,7 +71,9 @@ def test_two_pegs_on_one_face_against_a_third_on_an_arc_make_a_seat(ways):
 def least_clearance(closing, configs):
     """Least distance in mm of pegs from the boundary in configurations (N, 4), below 0 in the part."""
     (first, end), out = closing.boundary.parts[0].tolist(), np.empty(4 * len(configs))
-    clearances(closing.pattern.at(configs).reshape(-1, 2), closing.boundary.rows, first, end, out)
+    write_clearances_of_points(
+        closing.pattern.place_pegs(configs).reshape(-1, 2), closing.boundary.rows, first, end, out
+    )
     return out.min()
 
 
@@ -84,10 +86,10 @@ def shortest(slopes, least):
 
 def test_the_way_out_is_the_shortest():
     """Also where one of those that were met on the way is let go, and where normals are the same."""
-    steps_out = changed(shortest_out, add_normal=changed(add_normal))
+    steps_out = changed(write_shortest_step_out, add_normal=changed(add_normal))
     generator, met = np.random.default_rng(4), 0
     for count in (1, 2, 3, 4, 6) * 12:
-        work = DescentWorkSpace.for_pieces(0)
+        work = DescentWorkSpace.allocate(0)
         slopes, off = generator.normal(size=(count, 4)), generator.normal(size=count) * 1e-3
         if count == 3:
             slopes[2] = slopes[0]
@@ -103,17 +105,17 @@ def test_the_way_out_is_the_shortest():
 def test_ways_lead_through_narrow_valleys_to_their_seats(ways):
     """In them pegs press on faces that are nearly parallel; nothing is left where it was on its way."""
     for closing, starts, _ in ways:
-        assert (closing.run(starts, 0.005)[1] != GAVE_UP).all()
+        assert (closing.close_from(starts, 0.005)[1] != GAVE_UP).all()
     tree = ways[1][2]
-    joins = [(join, seat) for k, seat in enumerate(tree.seats) if (join := tree.join_of(k))]
+    joins = [(join, seat) for k, seat in enumerate(tree.seats) if (join := tree.find_first_join(k))]
     assert any(abs(join.separation - seat[3] - 12.022505562) < 1e-8 for join, seat in joins)
 
 
 def test_a_way_does_not_depend_on_those_before_it(ways):
     """What was near to the pegs there is not near here."""
     for closing, starts, _ in ways:
-        ends, how = closing.run(starts, 0.005)
-        alone = [closing.run(start[None], 0.005) for start in starts]
+        ends, how = closing.close_from(starts, 0.005)
+        alone = [closing.close_from(start[None], 0.005) for start in starts]
         assert np.array_equal(ends, np.concatenate([end for end, _ in alone]))
         assert np.array_equal(how, np.concatenate([end for _, end in alone]))
 
@@ -122,7 +124,7 @@ def test_no_peg_is_in_the_part_on_its_way(ways):
     for closing, starts, _ in ways:
         for level in np.linspace(starts[:, 3].min() - 20.0, starts[:, 3].max(), 12):
             above = starts[starts[:, 3] >= level]
-            assert least_clearance(closing, closing.run(above, 0.005, level=level)[0]) > -2e-8
+            assert least_clearance(closing, closing.close_from(above, 0.005, level=level)[0]) > -2e-8
 
 
 @pytest.mark.thorough
@@ -131,8 +133,8 @@ def test_a_part_leaves_where_no_peg_meets_it_on_the_way(ways):
     end."""
     seen, every = set(), np.arange(DIRECTIONS) * tau / DIRECTIONS
     for closing, starts, _ in ways:
-        configs = np.concatenate([closing.run(starts[::4], 0.005)[0], starts[1::12]])
-        for config, told in zip(configs, closing.directions_away(configs), strict=True):
+        configs = np.concatenate([closing.close_from(starts[::4], 0.005)[0], starts[1::12]])
+        for config, told in zip(configs, closing.find_escape_directions(configs), strict=True):
             free = []
             for angle in every if np.isnan(told) else [told]:
                 # Pegs that move along a direction of the part's frame: the part moves the other way.
@@ -158,10 +160,10 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
         for side in (0, 1):
             starts = every[side::2]
             for k in np.flatnonzero(lengths[side::2, 0] == how_far).tolist():
-                ends, how = closing.run(
+                ends, how = closing.close_from(
                     starts[k : k + 1], how_far, np.ascontiguousarray(tree.seats[:, CONFIG])
                 )
-                at_end, at_start = closing.escape(np.concatenate([ends, starts[k : k + 1]])).tolist()
+                at_end, at_start = closing.find_escaping(np.concatenate([ends, starts[k : k + 1]])).tolist()
                 if how[0] == AT_THE_STOP:
                     assert joined[k, side] == (OUTSIDE if at_end or at_start else STOP)
                     seen.add((at_end, at_start))
@@ -170,20 +172,22 @@ def test_what_leaves_at_the_end_of_a_way_or_at_its_start_is_outside(ways):
 
 def test_a_seat_joins_at_the_lowest_pass_that_leads_elsewhere(ways):
     for _, _, tree in ways:
-        joins = [tree.join(number) for number in range(len(tree.passes))]
+        joins = [tree.make_join(number) for number in range(len(tree.passes))]
         for place in range(len(tree.seats) + len(tree.loose)):
             out = [
                 join for join in joins if tree.own[place] in join.places and join.places[0] != join.places[1]
             ]
-            assert tree.join_of(place) == (min(out, key=lambda join: join.separation) if out else None)
+            assert tree.find_first_join(place) == (
+                min(out, key=lambda join: join.separation) if out else None
+            )
 
 
 def test_a_closing_frame_leads_back():
     for quarters in range(4):
         for frame in (ClosingFrame(quarters, 1.0), ClosingFrame(quarters, -1.0)):
             config = np.array([0.3, 4.0, -5.0, 6.0])
-            assert frame.leave(frame.enter(config)) == pytest.approx(config, abs=1e-12)
-            assert np.array_equal(frame.leave(config[None])[0], frame.leave(config))
+            assert frame.map_to_toolkit(frame.map_from_toolkit(config)) == pytest.approx(config, abs=1e-12)
+            assert np.array_equal(frame.map_to_toolkit(config[None])[0], frame.map_to_toolkit(config))
 
 
 def test_pegs_that_a_part_does_not_fit_between_get_nowhere():
@@ -195,10 +199,10 @@ def test_pegs_that_a_part_does_not_fit_between_get_nowhere():
     )
     for thick, expected in ((20.02, True), (19.98, False)):
         bar = Workpiece.from_loops("bar", [[[-90, 0, 0], [60, 0, 0], [60, thick, 0], [-90, thick, 0]]])
-        closing = Solver(bar, VISE).closing(
-            Pattern.of(Fixture("I", pegs, Pose(0, 0, 0), 100.0, {}), VISE), False
+        closing = SeatingSolver(bar, VISE).make_closing(
+            Pattern.from_fixture(Fixture("I", pegs, Pose(0, 0, 0), 100.0, {}), VISE), False
         )
         # The place is that of its middle.
         start = np.array([[0.0, -15.0, 13.0, 80.0]])
-        [how] = closing.run(start, 0.005)[1]
+        [how] = closing.close_from(start, 0.005)[1]
         assert (how == GAVE_UP) == expected

@@ -15,7 +15,7 @@ from workhold import Fence, Fixture, InputError, OpeningVise, Plate, Pose, Vise,
 from workhold.model.quality import FIGURE_RANKING
 from workhold.model.seating import Seat
 from workhold.seating.closing_simulation import ENDINGS, ClosingSimulation, simulate_closing
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 CASE = 1
 
@@ -28,7 +28,7 @@ def put(fixture: Fixture, part: Workpiece, turn: float, dx: float, dy: float) ->
     return Pose(pose.theta_deg, float(x - u) + dx, float(y - v) + dy)
 
 
-def obstacle_of(solver: Solver, fixture: Fixture, turned_over: bool = False) -> Obstacle:
+def obstacle_of(solver: SeatingSolver, fixture: Fixture, turned_over: bool = False) -> Obstacle:
     """The part and the pegs, by elementary geometry."""
     part = solver.workpiece.turned_over if turned_over else solver.workpiece
     return Obstacle(part, fixture, solver.toolkit.carriers[0].peg_radius)
@@ -40,7 +40,9 @@ def config(obstacle: Obstacle, pose: Pose, separation: float) -> np.ndarray:
     return np.array([radians(pose.theta_deg), x, y, separation])
 
 
-def check_way(solver: Solver, fixture: Fixture, played: ClosingSimulation, turned_over: bool = False) -> None:
+def check_way(
+    solver: SeatingSolver, fixture: Fixture, played: ClosingSimulation, turned_over: bool = False
+) -> None:
     """All along the way no peg is in the part, S only falls, and the part never jumps."""
     assert played.ending in ENDINGS and len(played.poses) == len(played.travels) <= 500
     obstacle = obstacle_of(solver, fixture, turned_over)
@@ -129,7 +131,7 @@ def test_a_part_beside_the_pegs_is_outside_and_one_between_them_at_the_stop():
     fixture = held(
         [(LEFT, 0.0, 0.0), (LEFT, 0.0, 20.0), (RIGHT, 40.0, 0.0), (RIGHT, 40.0, 20.0)], (0, 20, 7), 40.0
     )
-    solver = Solver(square, vise)
+    solver = SeatingSolver(square, vise)
     away = simulate_closing(solver, fixture, (), Pose(0.0, 20.0, 90.0), 5.0)
     assert (away.ending, away.seat) == ("outside", None)
     assert away.travels[-1] == pytest.approx(vise.gap) and away.poses[0] == away.poses[-1]
@@ -137,7 +139,9 @@ def test_a_part_beside_the_pegs_is_outside_and_one_between_them_at_the_stop():
     about = held(
         [(LEFT, 0.0, 0.0), (LEFT, 0.0, 12.0), (RIGHT, 20.0, 0.0), (RIGHT, 20.0, 12.0)], (0, 3, 2), 20.0
     )
-    shut = simulate_closing(Solver(larger, evolve(vise, min_gap=14.0)), about, (), Pose(0.0, 2.75, 1.75), 5.0)
+    shut = simulate_closing(
+        SeatingSolver(larger, evolve(vise, min_gap=14.0)), about, (), Pose(0.0, 2.75, 1.75), 5.0
+    )
     assert (shut.ending, shut.seat) == ("stop", None)
     assert shut.travels[-1] == pytest.approx(14.0)
 
@@ -158,7 +162,7 @@ def test_a_loose_seat_is_known_by_its_reading():
     seat = Seat("loose", Pose(0.0, apart / 2, 10.0), apart, 0.0, False, False, (), (), None, False)
     fixture = evolve(moved_right(fixture, apart - 25.0), travel=apart)
     played = simulate_closing(
-        Solver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0
+        SeatingSolver(disc, Vise(10, 2, 3)), fixture, (seat,), Pose(77.0, apart / 2 + 0.3, 10.4), 2.0
     )
     assert (played.ending, played.seat) == ("wrong", seat)
     assert played.travels[-1] == pytest.approx(apart, abs=1e-6)
@@ -216,7 +220,7 @@ def test_whatever_clamps_leads_home(part, toolkit):
     if toolkit.moving.travel.most is not None and toolkit.clamping > 0:
         opening = min(opening, toolkit.moving.travel.most - fixture.travel)
     assert opening > 0.05
-    played = simulate_closing(Solver(part, toolkit), fixture, told.seats, fixture.pose, opening)
+    played = simulate_closing(SeatingSolver(part, toolkit), fixture, told.seats, fixture.pose, opening)
     assert played.ending == "right"
     assert played.travels[0] == pytest.approx(fixture.travel + toolkit.clamping * opening)
     assert played.travels[-1] == pytest.approx(fixture.travel, abs=1e-4)
@@ -230,7 +234,7 @@ def test_jaws_are_opened_no_farther_than_they_go():
     """Up to the largest opening, and a clamp to the end of its stroke; by more it is refused."""
     for toolkit, farther in ((Vise(20, 2, 3, max_opening=60), 1), (FENCE, 2)):
         result = workhold.design(WEDGE, toolkit, best=1)
-        fixture, solver = result[0], Solver(WEDGE, toolkit)
+        fixture, solver = result[0], SeatingSolver(WEDGE, toolkit)
         most = toolkit.moving.travel.most - fixture.travel
         away = Pose(0.0, 500.0, 500.0)
         assert simulate_closing(solver, fixture, (), away, most).ending == "outside"

@@ -22,12 +22,12 @@ from workhold.kernels.seating.columns import (
     SECOND,
     SEPARATION,
 )
-from workhold.kernels.seating.parallel_and_concentric import about_one_center
-from workhold.seating.closing import filled
+from workhold.kernels.seating.parallel_and_concentric import write_about_one_center
+from workhold.seating.closing import fill_rows
 from workhold.seating.equilibria import balance_candidates
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 # A plate with a rounded end, a round notch, a slanted side and a small hole.
@@ -53,17 +53,17 @@ def beyond_ends(row, given):
 @pytest.fixture(scope="module")
 def found():
     """Of pegs at random heights what the kernel writes, with what it is given; two of the left jaw and two of the right."""
-    random, solver, out = np.random.default_rng(7), Solver(PLATE, VISE), []
+    random, solver, out = np.random.default_rng(7), SeatingSolver(PLATE, VISE), []
     for _ in range(60):
         places = random.uniform((0.0, 0.0), (25.0, 60.0), (4, 2))
         pegs = [
             ("left" if k < 2 else "right", x + 100.0 * (k >= 2), y)
             for k, (x, y) in enumerate(places.tolist())
         ]
-        pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 100.0), VISE)
-        closing = solver.closing(pattern, False)
+        pattern = Pattern.from_fixture(held(pegs, (0.0, 0.0, 0.0), 100.0), VISE)
+        closing = solver.make_closing(pattern, False)
         given = two_contacts_of(closing).given
-        rows = filled(CANDIDATE_LENGTH, 4, about_one_center, given, -1e3, 1e3)
+        rows = fill_rows(CANDIDATE_LENGTH, 4, write_about_one_center, given, -1e3, 1e3)
         out.append((closing, given, rows, balance_candidates(rows.copy(), given, closing.size)))
     return out
 
@@ -101,7 +101,7 @@ def test_ways_down_end_nowhere_that_is_not_known(found):
         resting = [row for row in free if (np.abs(known.seats[:, 1:4] - row).max(axis=1) < 1e-6).any()]
         if resting:
             looked_at += 1
-            assert len(JoinTree.of(known, closing).doubtful) == 0
+            assert len(JoinTree.from_equilibria(known, closing).doubtful) == 0
         if looked_at == 4:
             break
     assert looked_at == 4
@@ -117,8 +117,8 @@ def test_a_bracket_that_rests_on_its_rounded_end_is_seated():
         ("right", 65.09828112125015, 100),
     ]
     fixture = held(pegs, (90.0, 62.098281121250174, 3.0), 55.09828112125016)
-    closing = Solver(part, VISE).closing(Pattern.of(fixture, VISE), True)
-    tree = JoinTree.of(equilibria_of(closing), closing)
+    closing = SeatingSolver(part, VISE).make_closing(Pattern.from_fixture(fixture, VISE), True)
+    tree = JoinTree.from_equilibria(equilibria_of(closing), closing)
     assert len(tree.doubtful) == 0
     [seat] = [row for row in tree.seats if abs(row[SEPARATION] - 26.2451) < 1e-4]
     assert np.degrees(seat[0]) % 360.0 == pytest.approx(96.1725, abs=1e-4)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from workhold.seating.contact_forces import balance
+from workhold.seating.contact_forces import is_balanced
 
 
 def three(generator: np.random.Generator, forces: list[float]) -> np.ndarray:
@@ -32,16 +32,16 @@ def three(generator: np.random.Generator, forces: list[float]) -> np.ndarray:
 def test_three_that_push_balance_and_none_that_pulls(seed: int) -> None:
     generator = np.random.default_rng(seed)
     wrenches = three(generator, [1.0, 0.8, 0.9])
-    assert balance(wrenches.tolist()) and balance(wrenches[[2, 0, 1]].tolist())
+    assert is_balanced(wrenches.tolist()) and is_balanced(wrenches[[2, 0, 1]].tolist())
     for column in range(3):
         off = wrenches.copy()
         off[1, column] += 1e-6
-        assert not balance(off.tolist())
+        assert not is_balanced(off.tolist())
     for pulling in ([1.0, -0.8, 0.9], [1.0, 0.8, -0.9]):
-        assert not balance(three(generator, pulling).tolist())
+        assert not is_balanced(three(generator, pulling).tolist())
     # The jaw is pushed, and not by nothing.
-    assert not balance((wrenches * [1.0, 1.0, 1.0, -1.0]).tolist())
-    assert not balance((wrenches * [1.0, 1.0, 1.0, 1e-12]).tolist())
+    assert not is_balanced((wrenches * [1.0, 1.0, 1.0, -1.0]).tolist())
+    assert not is_balanced((wrenches * [1.0, 1.0, 1.0, 1e-12]).tolist())
 
 
 def test_parallel_forces_balance_by_their_moments() -> None:
@@ -49,15 +49,15 @@ def test_parallel_forces_balance_by_their_moments() -> None:
     for jaw in range(3):
         wrenches = np.array([[0.6, 0.8, 2.0, 0.0], [-0.6, -0.8, 0.5, 0.0], [0.6, 0.8, -3.0, 0.0]])
         wrenches[jaw, 3] = abs(wrenches[jaw, 0])
-        assert balance(wrenches.tolist())
+        assert is_balanced(wrenches.tolist())
         wrenches[1, 2] = 3.5
-        assert not balance(wrenches.tolist())
+        assert not is_balanced(wrenches.tolist())
 
 
 def test_two_balance_on_one_line() -> None:
     line = [[0.6, -0.8, 0.3, 0.6], [-0.6, 0.8, -0.3, 0.0]]
-    assert balance(line)
-    assert not balance([line[0], [-0.6, 0.8, -0.3 + 1e-6, 0.0]]) and not balance(
+    assert is_balanced(line)
+    assert not is_balanced([line[0], [-0.6, 0.8, -0.3 + 1e-6, 0.0]]) and not is_balanced(
         [line[0], [-0.8, 0.6, -0.3, 0.0]]
     )
-    assert not balance([[*one[:3], -one[3]] for one in line])
+    assert not is_balanced([[*one[:3], -one[3]] for one in line])

@@ -22,13 +22,13 @@ from workhold.kernels.seating.columns import (
     SINE,
     TURNED,
 )
-from workhold.kernels.seating.descent_paths import free_until
-from workhold.kernels.seating.free_space import RANGES, leave
-from workhold.kernels.seating.obstacles import clearances
-from workhold.seating.closing import Closing, DescentCache, find_descent_starts
+from workhold.kernels.seating.descent_paths import write_last_free_nodes
+from workhold.kernels.seating.free_space import RANGES, write_escape_directions
+from workhold.kernels.seating.obstacles import write_clearances_of_points
+from workhold.seating.closing import ClosingMotion, DescentCache, find_descent_starts
 from workhold.seating.join_tree import compute_subset_shifts, follow_pass_descents, select_free_paths
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("right", 50.0, 40.0))
@@ -37,7 +37,7 @@ PEGS = (("left", 10.0, 10.0), ("left", 10.0, 30.0), ("right", 50.0, 0.0), ("righ
 def pattern_of(lifted: float = 0.0, wider: float = 0.0) -> Pattern:
     """Four pegs, the last one lifted by some mm, and the second one farther to the left by some."""
     places = [(jaw, x - wider * (k == 1), y + lifted * (k == 3)) for k, (jaw, x, y) in enumerate(PEGS)]
-    return Pattern.of(held(places, (0.0, 0.0, 0.0), 40.0), VISE)
+    return Pattern.from_fixture(held(places, (0.0, 0.0, 0.0), 40.0), VISE)
 
 
 PATTERNS = [pattern_of(), pattern_of(lifted=-10.0), pattern_of(lifted=10.0, wider=10.0)]
@@ -45,7 +45,7 @@ PATTERNS = [pattern_of(), pattern_of(lifted=-10.0), pattern_of(lifted=10.0, wide
 
 def followed(solver, pattern, turned_over=False):
     """The jaws, what was found, the strict seats, and where the ways down begin and end, and how."""
-    closing = solver.closing(pattern, turned_over)
+    closing = solver.make_closing(pattern, turned_over)
     found = equilibria_of(closing)
     seats = np.ascontiguousarray(found.seats[:, CONFIG])
     return closing, found, seats, follow_pass_descents(found, closing, seats)
@@ -54,15 +54,15 @@ def followed(solver, pattern, turned_over=False):
 @pytest.fixture(scope="module")
 def ways():
     """The same of all patterns, both sides, by one solver."""
-    solver = Solver(STEP, VISE)
+    solver = SeatingSolver(STEP, VISE)
     return [followed(solver, pattern, side) for pattern in PATTERNS for side in (False, True)]
 
 
 def clearance(closing, configs, pegs):
     """Least distance in mm of some pegs from the boundary in configurations (N, 4): (N,)."""
     (first, end), out = closing.boundary.parts[0].tolist(), np.empty(len(configs) * len(pegs))
-    points = np.ascontiguousarray(closing.pattern.at(configs)[:, pegs].reshape(-1, 2))
-    clearances(points, closing.boundary.rows, first, end, out)
+    points = np.ascontiguousarray(closing.pattern.place_pegs(configs)[:, pegs].reshape(-1, 2))
+    write_clearances_of_points(points, closing.boundary.rows, first, end, out)
     return out.reshape(len(configs), len(pegs)).min(axis=1, initial=np.inf)
 
 
@@ -71,12 +71,12 @@ def test_they_end_as_ways_that_are_followed_with_all_pegs(ways):
     seen = set()
     for closing, found, seats, (starts, ends, how) in ways:
         assert starts[::2] + starts[1::2] == pytest.approx(2.0 * found.passes[:, CONFIG], abs=1e-9)
-        known, ended = closing.run(starts, find_descent_starts(found.passes, closing.size)[1], seats)
+        known, ended = closing.close_from(starts, find_descent_starts(found.passes, closing.size)[1], seats)
         assert np.array_equal(how, ended)
         assert ends[:, 3] == pytest.approx(known[:, 3], abs=1e-5)
         assert (clearance(closing, ends, [0, 1, 2, 3]) > -2e-8).all()
         stopped = how == AT_THE_STOP
-        assert np.array_equal(closing.escape(ends[stopped]), closing.escape(known[stopped]))
+        assert np.array_equal(closing.find_escaping(ends[stopped]), closing.find_escaping(known[stopped]))
         seen |= set(how.tolist())
     assert seen == {AT_REST, AT_THE_STOP}
 
@@ -109,13 +109,15 @@ def test_a_part_is_not_taken_away_through_a_wall():
     part = Workpiece.from_loops("bar", [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [0, 20, 0]]])
     vise = Vise(pitch=10, columns=2, peg_radius=0.5)
     places = [("left", -0.7, 10.0), ("left", 20.0, 20.7), ("right", 60.7, 10.0), ("right", 40.0, 20.7)]
-    pattern = Pattern.of(held(places, (0.0, 0.0, 0.0), 40.0), vise)
-    obstacles = Solver(part, vise).closing(pattern, False).obstacles
+    pattern = Pattern.from_fixture(held(places, (0.0, 0.0, 0.0), 40.0), vise)
+    obstacles = SeatingSolver(part, vise).make_closing(pattern, False).obstacles
     lying = np.array([[0.0, *part.center, 40.0]])
     for wall, is_free in (((0.0, 0.0, 0.0), 1), ((0.0, 1.0, 0.0), 0), ((0.0, -1.0, 0.0), 1)):
         out, room = np.zeros(1), RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
         axes = np.empty(len(obstacles.rows))
-        leave(lying, obstacles._replace(half_plane=np.array(wall)), axes, np.empty((room, 2)), out)
+        write_escape_directions(
+            lying, obstacles._replace(half_plane=np.array(wall)), axes, np.empty((room, 2)), out
+        )
         assert np.isfinite(out[0]) == is_free
 
 
@@ -134,8 +136,8 @@ def test_a_long_step_is_looked_at_between_its_ends():
     part, vise = Workpiece.from_loops("fin", [fin]), Vise(pitch=10, columns=2, peg_radius=0.5)
     # Pegs far off, but for the second one, beside the fin.
     places = [("left", -90.0, 0.0), ("left", 28.0, 30.0), ("right", 190.0, 0.0), ("right", 190.0, 40.0)]
-    pattern = Pattern.of(held(places, (0.0, 0.0, 0.0), 40.0), vise)
-    obstacles = Solver(part, vise).closing(pattern, False).obstacles
+    pattern = Pattern.from_fixture(held(places, (0.0, 0.0, 0.0), 40.0), vise)
+    obstacles = SeatingSolver(part, vise).make_closing(pattern, False).obstacles
     x, y = part.center
     nodes = np.zeros((2, NODE_LENGTH))
     nodes[:, 1:4] = [[x, y, 40.0], [x - 4.0, y, 40.0]]
@@ -143,7 +145,7 @@ def test_a_long_step_is_looked_at_between_its_ends():
     one, others = np.zeros(1, np.int64), np.ones((1, 4), np.int8)
     for most, last in ((10.0, 1), (0.3, 0)):
         lasts = np.empty(1, np.int64)
-        free_until(
+        write_last_free_nodes(
             one,
             one,
             nodes,
@@ -178,7 +180,7 @@ def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
     """Nor on what is forgotten: to the last bit."""
     monkeypatch.setattr("workhold.seating.equilibria.MOST_NODES", 0)
     for number in (2, 1):
-        again = followed(Solver(STEP, VISE), PATTERNS[number])[3]
+        again = followed(SeatingSolver(STEP, VISE), PATTERNS[number])[3]
         assert [part.tobytes() for part in again] == [part.tobytes() for part in ways[2 * number][3]]
 
 
@@ -186,7 +188,7 @@ def test_ways_are_followed_once(ways, monkeypatch):
     """A second time none is; and some serve several patterns."""
     closing, found, seats, _ = ways[0]
     with monkeypatch.context() as patched:
-        patched.setattr(Closing, "followed", None)
+        patched.setattr(ClosingMotion, "trace_paths", None)
         follow_pass_descents(found, closing, seats)
     shared = [down for _, down in found.subsets if any(down is other for _, other in ways[2][1].subsets)]
     known = [down.cache.numbers[down.first : down.first + len(down.candidates)] for down in shared]
@@ -198,10 +200,12 @@ def test_what_is_added_while_others_read_stays_where_it_is():
     cache, (rng, read) = DescentCache(), (np.random.default_rng(1), [])
     for _ in range(20):
         count = int(rng.integers(0, 5))
-        first = cache.with_candidates(count)
+        first = cache.reserve_candidates(count)
         lengths = rng.integers(1, 9, 2 * count)
         nodes, how = rng.random((lengths.sum(), NODE_LENGTH)), rng.integers(0, 3, 2 * count).astype(np.int8)
-        cache.add(np.arange(first, first + count), nodes, np.concatenate([[0], np.cumsum(lengths)]), how)
+        cache.add_paths(
+            np.arange(first, first + count), nodes, np.concatenate([[0], np.cumsum(lengths)]), how
+        )
         read.append((np.arange(first, first + count), cache.nodes, cache.begins, nodes, lengths, how))
     for numbers, nodes, begins, told, lengths, how in read:
         ways = cache.numbers[numbers].ravel()
@@ -238,13 +242,19 @@ def test_what_leaves_where_a_way_began_or_ended_is_outside(ways):
     """And what was not stopped, or leaves from neither, is not."""
     closing, _, _, (starts, ends, how) = ways[0]
     every = np.concatenate([starts, ends[how == AT_THE_STOP]])
-    away = closing.escape(every)
+    away = closing.find_escaping(every)
     free, held_there = every[away], every[~away]
     assert len(free) > 1 and len(held_there) > 1
     one = np.stack([free[0], free[1], held_there[0], held_there[1], free[0]])
     two = np.stack([free[1], held_there[0], free[0], held_there[0], free[1]])
-    assert closing.leaves(one, two, np.arange(5) < 4).tolist() == [True, True, True, False, False]
-    assert closing.leaves(one, two, np.zeros(5, np.bool_)).tolist() == [False] * 5
+    assert closing.find_leaving_at_stop(one, two, np.arange(5) < 4).tolist() == [
+        True,
+        True,
+        True,
+        False,
+        False,
+    ]
+    assert closing.find_leaving_at_stop(one, two, np.zeros(5, np.bool_)).tolist() == [False] * 5
 
 
 def test_runs_of_loose_sets_are_free_and_touch_what_they_are_said_to(ways):

@@ -9,11 +9,11 @@ from attrs import evolve
 from seating_examples import cells_by_pair, moved, solved, two_contacts_of
 from workhold.kernels.seating.candidates import complete_third, complete_three
 from workhold.kernels.seating.columns import BOTTOM, CANDIDATE_LENGTH, CELL_LENGTH, DEPTH, SEPARATION, TOP
-from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
-from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
-from workhold.seating.closing import filled
+from workhold.kernels.seating.four_contacts import write_third_of_jaw, write_two_pairs
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, write_three_contacts
+from workhold.seating.closing import fill_rows
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 
 def told_by(holdings, boundary, pattern, discs, stop):
@@ -21,13 +21,13 @@ def told_by(holdings, boundary, pattern, discs, stop):
     stack, work, three, third = np.empty((DEPTH, 2)), np.empty((5, len(discs))), [], []
     for side in holdings.jaws:
         given = *cells_by_pair(holdings, side), holdings.sought, discs
-        three.append(filled(ROOT_LENGTH, 4096, three_contacts, *given, stop, stack, work))
-        third.append(filled(ROOT_LENGTH, 4096, third_of_jaw, *given, stack))
+        three.append(fill_rows(ROOT_LENGTH, 4096, write_three_contacts, *given, stop, stack, work))
+        third.append(fill_rows(ROOT_LENGTH, 4096, write_third_of_jaw, *given, stack))
     three, third = np.concatenate(three), np.concatenate(third)
-    found = filled(
+    found = fill_rows(
         CANDIDATE_LENGTH, len(three) + 1, complete_three, three, holdings.given, boundary.pocket_pieces
     )
-    fixed = filled(
+    fixed = fill_rows(
         CANDIDATE_LENGTH, len(third) + 1, complete_third, third, holdings.given, boundary.pocket_pieces
     )
     return found[found[:, SEPARATION] > pattern.stop], fixed
@@ -37,8 +37,8 @@ def told_by(holdings, boundary, pattern, discs, stop):
 def test_pieces_left_out_have_no_roots(number):
     """Discs as large as the table and no stop let every piece be looked at: no more balances are found."""
     solver, fixture, _ = solved(number)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    closing = solver.closing(pattern, False)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    closing = solver.make_closing(pattern, False)
     boundary, holdings = closing.boundary, two_contacts_of(closing)
     everywhere = np.array(boundary.discs)
     everywhere[:, 2] += 1e4
@@ -56,13 +56,13 @@ def test_pieces_left_out_have_no_roots(number):
 def test_holdings_meet_as_of_each_cell_by_itself():
     """Which cells of the other jaw reach into a cell does not depend on the cells before it."""
     solver, fixture, _ = solved(0)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    holdings = two_contacts_of(solver.closing(pattern, False))
-    left, right = holdings.of_jaw(0), holdings.of_jaw(1)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    holdings = two_contacts_of(solver.make_closing(pattern, False))
+    left, right = holdings.make_jaw_cells(0), holdings.make_jaw_cells(1)
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(right.cells), np.int64)
-    every = filled(ROOT_LENGTH, 1024, two_pairs, left, right, holdings.sought, *work)
+    every = fill_rows(ROOT_LENGTH, 1024, write_two_pairs, left, right, holdings.sought, *work)
     ones = [left._replace(cells=one[None, :]) for one in left.cells]
-    alone = [filled(ROOT_LENGTH, 64, two_pairs, one, right, holdings.sought, *work) for one in ones]
+    alone = [fill_rows(ROOT_LENGTH, 64, write_two_pairs, one, right, holdings.sought, *work) for one in ones]
     assert len(every) > 10
     assert np.array_equal(every, np.concatenate(alone))
     # Nor does what is left out by heights meet.
@@ -70,7 +70,7 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     for jaw in tall:
         jaw.cells[:, BOTTOM], jaw.cells[:, TOP] = -1e9, 1e9
     assert left.height != right.height
-    assert np.array_equal(filled(ROOT_LENGTH, 1024, two_pairs, *tall, holdings.sought, *work), every)
+    assert np.array_equal(fill_rows(ROOT_LENGTH, 1024, write_two_pairs, *tall, holdings.sought, *work), every)
 
 
 def test_many_fixtures_are_told_as_one_by_one():
@@ -79,7 +79,7 @@ def test_many_fixtures_are_told_as_one_by_one():
     again = moved(fixture, [1, 2, 3, 0], False, (16.0, 8.0))
     turned = moved(fixture, [0, 1, 2, 3], True, (0.0, 0.0))
     for threads in (1, 2):
-        one, two, three = Solver(solver.workpiece, solver.toolkit).of_all(
+        one, two, three = SeatingSolver(solver.workpiece, solver.toolkit).solve_all(
             [again, turned, fixture], False, threads
         )
         for other, given in ((one, again), (two, turned), (three, fixture)):

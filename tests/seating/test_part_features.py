@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from workhold import Workpiece, load
-from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.base.distance import measure_outline_distances
 from workhold.seating.part_features import SAME_PLACE, Silhouette
 
 PLATE = Workpiece.from_loops("plate", [[[0, 0, 0], [40, 0, 0], [40, 60, 0], [0, 60, 0]]])
@@ -22,7 +22,9 @@ def covers(part: Workpiece, turn: float, x: float, y: float, turned_over: bool =
     """Whether a part covers its place after a turn about its middle and a shift in mm along its own axes."""
     c, s = np.cos(HERE[0]), np.sin(HERE[0])
     there = HERE + np.array([turn, c * x - s * y, s * x + c * y, 5.0])
-    return bool(Silhouette.of(part).cover_same(HERE, there[None], np.array([turned_over]))[0])
+    return bool(
+        Silhouette.from_workpiece(part).find_same_cover(HERE, there[None], np.array([turned_over]))[0]
+    )
 
 
 @pytest.mark.parametrize("part", [PLATE, DISC, CROWNED], ids=lambda part: part.name)
@@ -50,10 +52,10 @@ def test_turned_over_means_in_the_frame_of_the_part() -> None:
 def test_all_is_as_the_distances_of_all_points_say() -> None:
     """Of many configurations near the place and far from it, as drawn and turned over, of a part with all sorts of faces."""
     part, generator = load("widget"), np.random.default_rng(3)
-    outline, count = Silhouette.of(part), 400
+    outline, count = Silhouette.from_workpiece(part), 400
     over, near = generator.random(count) < 0.3, 10.0 ** generator.uniform(-6.0, 1.0, count)
     others = HERE + near[:, None] * generator.normal(size=(count, 4)) * np.array([0.01, 1.0, 1.0, 1.0])
-    told = outline.cover_same(HERE, others, over)
+    told = outline.find_same_cover(HERE, others, over)
     right = []
     for other, is_over in zip(others, over, strict=True):
         (c, s), (d, t) = ((np.cos(theta), np.sin(theta)) for theta in (other[0], HERE[0]))
@@ -62,5 +64,5 @@ def test_all_is_as_the_distances_of_all_points_say() -> None:
             + other[1:3]
         )
         back = (points - HERE[1:3]) @ np.array([[d, -t], [t, d]])
-        right.append(outline_distances(back, outline.rows).max() <= SAME_PLACE)
+        right.append(measure_outline_distances(back, outline.rows).max() <= SAME_PLACE)
     assert told.tolist() == right and 20 < sum(right) < count - 20

@@ -23,23 +23,23 @@ from workhold.seating.join_tree import (
     UNSETTLED,
     JoinTree,
     RestPoses,
-    kinds_of,
+    classify_seats,
 )
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 CASES = ("sampled", "step", "fence")
 Told = tuple[str, float, tuple[float, ...]]
 
 
-def example(name: str) -> tuple[Solver, Fixture]:
+def example(name: str) -> tuple[SeatingSolver, Fixture]:
     """A part on pegs."""
     if name == "sampled":
         return solved(2)[:2]
     toolkit = (
         Vise(20, 2, 3) if name == "step" else Fence(pitch=15, peg_radius=3, wall_offset=6, directions=["-x"])
     )
-    return Solver(STEP, toolkit), workhold.design(STEP, toolkit, best=1)[0]
+    return SeatingSolver(STEP, toolkit), workhold.design(STEP, toolkit, best=1)[0]
 
 
 def kind(row: np.ndarray, boundary: Any, pattern: Pattern) -> str:
@@ -63,7 +63,7 @@ def listed(tree: JoinTree, boundary: Any, pattern: Pattern) -> list[Told]:
     ]
     out = []
     for place, (name, row) in enumerate(every):
-        join = tree.join_of(place)
+        join = tree.find_first_join(place)
         depth = inf if join is None else join.separation - row[SEPARATION]
         if name in ("fixture", "loose") or depth >= 1e-3:
             out.append((name, depth, tuple(row[CONFIG])))
@@ -75,9 +75,9 @@ def listed(tree: JoinTree, boundary: Any, pattern: Pattern) -> list[Told]:
 def test_what_is_listed_is_what_the_trees_tell(name: str) -> None:
     """As drawn, then turned over; also where something is not settled, and where seats are shallow."""
     solver, fixture = example(name)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    boundary = solver.closing(pattern, False).boundary
-    first, other = solver.trees(pattern)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    boundary = solver.make_closing(pattern, False).boundary
+    first, other = solver.find_join_trees(pattern)
     tops = first.tops[: len(first.seats)]
     low = np.array(first.seats)
     # The first seat from which there is a way is next to none, the next just deep enough.
@@ -92,7 +92,7 @@ def test_what_is_listed_is_what_the_trees_tell(name: str) -> None:
         (evolve(first, seats=low), other),
         (first, evolve(other, doubtful=doubtful)),
     ):
-        rests = RestPoses.of(trees, boundary, len(pattern.pegs))
+        rests = RestPoses.from_join_trees(trees, boundary, len(pattern.pegs))
         told = [
             (KINDS[kind], depth, tuple(row))
             for kind, depth, row in zip(rests.kinds, rests.depths, rests.rows[:, CONFIG], strict=True)
@@ -105,7 +105,7 @@ def test_what_is_listed_is_what_the_trees_tell(name: str) -> None:
 
 def test_a_peg_that_touches_twice_is_in_a_pocket_whatever_else_touches_a_corner() -> None:
     solver, fixture = example("step")
-    boundary = solver.closing(Pattern.of(fixture, solver.toolkit), False).boundary
+    boundary = solver.make_closing(Pattern.from_fixture(fixture, solver.toolkit), False).boundary
     corner, face = (
         next(k for k, touch in enumerate(boundary.touches) if touch.corner == is_one)
         for is_one in (True, False)
@@ -115,14 +115,19 @@ def test_a_peg_that_touches_twice_is_in_a_pocket_whatever_else_touches_a_corner(
     rows[0, PIECE + 2] = rows[1, PIECE + 3] = corner
     rows[1, PEG + 1] = 1.0
     rows[3, CONTACTS] = 3.0
-    assert [KINDS[kind] for kind in kinds_of(rows, boundary, 4)] == ["corner", "pocket", "fixture", "curved"]
+    assert [KINDS[kind] for kind in classify_seats(rows, boundary, 4)] == [
+        "corner",
+        "pocket",
+        "fixture",
+        "curved",
+    ]
 
 
 def test_all_kinds_are_among_the_examples() -> None:
     counts = Counter[str]()
     for name in CASES:
         solver, fixture = example(name)
-        counts.update(seat.kind for seat in solver.of(fixture, with_cage=False).seats)
+        counts.update(seat.kind for seat in solver.solve(fixture, with_cage=False).seats)
     assert {*KINDS} - {*counts} <= {"unsettled"}
 
 
@@ -131,11 +136,11 @@ def test_seats_have_the_contacts_and_forces_of_their_candidates(name: str) -> No
     """By the numbers of the fixture's pegs, those on a wall last in candidates; ordered by reading. Also of pegs that are
     known by other numbers."""
     solver, fixture = example(name)
-    solver.of(fixture, with_cage=False)
+    solver.solve(fixture, with_cage=False)
     order = [0, 1, 2, 3] if name == "fence" else [2, 0, 3, 1]
-    seats = solver.of(evolve(fixture, pegs=tuple(fixture.pegs[k] for k in order)), with_cage=False).seats
+    seats = solver.solve(evolve(fixture, pegs=tuple(fixture.pegs[k] for k in order)), with_cage=False).seats
     [(pattern, trees, _)] = solver.solved.values()
-    boundary = solver.closing(pattern, False).boundary
+    boundary = solver.make_closing(pattern, False).boundary
     touches = boundary.touches + boundary.hull.touches
     on_wall = [k for k, peg in enumerate(fixture.pegs) if peg.is_on_wall]
     numbers = [order.index(k) for k in (*pattern.numbers, *on_wall)]

@@ -14,13 +14,13 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, R
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.seating.pattern import Pattern, PegSubset
 from workhold.seating.self_motions import (
-    balance,
     find_circle_crossings,
     find_motions_on_one_center,
     find_motions_on_one_line,
     find_motions_on_parallel_lines,
+    is_balanced,
 )
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 # Parallel faces at three depths, a round end, and an arc about the same centre that bends in; none along x or y.
@@ -32,7 +32,7 @@ PART = Workpiece.from_loops(
     "handle", [[[0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y, bulge] for x, y, bulge in loop] for loop in DRAWN]
 )
 DISC = Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]])
-SOLVERS = {id(part): Solver(part, VISE) for part in (PART, DISC)}
+SOLVERS = {id(part): SeatingSolver(part, VISE) for part in (PART, DISC)}
 
 
 def ways_of(part, pegs, right):
@@ -40,9 +40,9 @@ def ways_of(part, pegs, right):
     placed = [
         ("right" if side else "left", x + 100.0 * side, y) for side, (x, y) in zip(right, pegs, strict=True)
     ]
-    whole = Pattern.of(held([*placed, ("left", -300.0, 300.0)], (0.0, 0.0, 0.0), 100.0), VISE)
-    pattern = evolve(PegSubset.of(whole, range(len(pegs))).pattern, stop=-np.inf)
-    closing = SOLVERS[id(part)].closing(pattern, False)
+    whole = Pattern.from_fixture(held([*placed, ("left", -300.0, 300.0)], (0.0, 0.0, 0.0), 100.0), VISE)
+    pattern = evolve(PegSubset.from_pattern(whole, range(len(pegs))).pattern, stop=-np.inf)
+    closing = SOLVERS[id(part)].make_closing(pattern, False)
     boundary, held_by = closing.boundary, two_contacts_of(closing)
     three = find_motions_on_parallel_lines(boundary, pattern, held_by.slides, held_by.given)
     return (
@@ -72,7 +72,7 @@ def test_pegs_touch_and_press_all_along():
         for way in ways:
             kinds.add((len(way.contacts), way.is_closed))
             assert np.ptp(way.configs[:, 3]) == 0.0
-            places, matrix = pattern.at(way.configs), np.zeros((3, len(way.contacts)))
+            places, matrix = pattern.place_pegs(way.configs), np.zeros((3, len(way.contacts)))
             for at, (peg, piece) in enumerate(way.contacts):
                 row = boundary.rows[piece]
                 d = places[:, peg] - row[[X, Y]]
@@ -125,10 +125,10 @@ def test_forces_balance_as_by_elimination():
     for _ in range(400):
         normals, moves = [(cos(a), sin(a)) for a in random.uniform(0.0, 2.0 * pi, 3)], [0, 0, 1]
         matrix = np.array([[x, y, x * move] for (x, y), move in zip(normals, moves, strict=True)]).T
-        told = balance(normals, moves)
+        told = is_balanced(normals, moves)
         assert told == bool((np.linalg.solve(matrix, [0.0, 0.0, 1.0]) > 1e-9).all())
         seen.add(told)
-    assert seen == {True, False} and not balance([(1.0, 0.0), (1.0, 0.0), (-1.0, 0.0)], [0, 0, 1])
+    assert seen == {True, False} and not is_balanced([(1.0, 0.0), (1.0, 0.0), (-1.0, 0.0)], [0, 0, 1])
 
 
 def test_circles_meet_in_points_of_both():
@@ -156,8 +156,8 @@ def test_a_plate_lies_square_only_against_a_peg_between(heights, is_held):
     """Two left pegs 20 apart and one of two right ones, the other of which touches nothing or lies beside them too."""
     vise = Vise(10, 2, 3)
     pegs = [(LEFT, 0.0, 0.0), (LEFT, 0.0, 20.0), (RIGHT, 10.0, heights[0]), (RIGHT, 20.0, heights[1])]
-    pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
-    tree = Solver(PLATE, vise).trees(pattern)[0]
+    pattern = Pattern.from_fixture(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
+    tree = SeatingSolver(PLATE, vise).find_join_trees(pattern)[0]
     # Its two long faces are 40 + 2 * 3 apart, the jaws' pegs 10 nearer.
     square = [
         one

@@ -24,7 +24,7 @@ from workhold import Fixture, Peg, Pose, Vise, Workpiece
 from workhold.model.seating import Seating
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 # Digits of the sampled values.
 DIGITS = 6e-7
@@ -33,7 +33,13 @@ CASES = range(len(SAMPLED))
 
 def figures(told: Seating) -> tuple[float, ...]:
     """What must not depend on how the drawing and the pegs lie."""
-    known = (told.capture_opening, told.way_out, told.room_factor, told.sticking_friction, told.reading_of())
+    known = (
+        told.capture_opening,
+        told.way_out,
+        told.room_factor,
+        told.sticking_friction,
+        told.find_least_reading(),
+    )
     return tuple(-1.0 if value is None else value for value in known)
 
 
@@ -69,10 +75,10 @@ def test_values_are_those_of_another_method(number):
 def test_passes_and_seats_are_equilibria(number):
     """Forces balance to 1e-9 with the jaw's; a pass has two or three contacts and is above its seats."""
     solver, fixture, _ = solved(number)
-    pattern = Pattern.of(fixture, solver.toolkit)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
     part = solver.workpiece
     obstacle = Obstacle(part, fixture, solver.toolkit.peg_radius)
-    closing = solver.closing(pattern, False)
+    closing = solver.make_closing(pattern, False)
     found = equilibria_of(closing)
     for row in [*found.seats, *found.passes]:
         config = row[[0, 1, 2, 3]]
@@ -84,7 +90,7 @@ def test_passes_and_seats_are_equilibria(number):
         assert rest < 1e-9
         assert forces.sum() == pytest.approx(row[13:17].sum(), abs=1e-6)
     assert {int(row[4]) for row in found.passes} <= {2, 3}
-    tree = JoinTree.of(found, closing)
+    tree = JoinTree.from_equilibria(found, closing)
     for row, places in zip(tree.passes, tree.joined.tolist(), strict=True):
         assert all(row[3] > tree.seats[place, 3] for place in places if 0 <= place < len(tree.seats))
 
@@ -160,10 +166,10 @@ def test_a_thousand_walks_come_home(number):
 def test_beyond_the_pass_lies_another_place(number):
     """Both ways down from the pass end lower, one in the seat and one elsewhere."""
     solver, fixture, told = solved(number)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    tree = solver.trees(pattern)[0]
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    tree = solver.find_join_trees(pattern)[0]
     place = next(k for k, row in enumerate(tree.seats) if abs(row[3] - fixture.travel) < 1e-6)
-    join = tree.join_of(place)
+    join = tree.find_first_join(place)
     assert join.separation == pytest.approx(told.lowest_pass.jaw_separation, abs=1e-12)
     assert place in join.places and len(set(join.places)) == 2
     # No pass below it leads from the seat to elsewhere.
@@ -182,7 +188,7 @@ def test_beyond_the_pass_lies_another_place(number):
 )
 def test_pegs_named_moved_or_turned_say_the_same(order, half_turn, shift):
     solver, fixture, told = solved(1)
-    other = Solver(solver.workpiece, solver.toolkit).of(
+    other = SeatingSolver(solver.workpiece, solver.toolkit).solve(
         moved(fixture, order, half_turn, shift), with_cage=False
     )
     assert figures(other) == pytest.approx(figures(told), abs=1e-8)
@@ -196,7 +202,7 @@ def test_a_solved_pattern_answers_for_all_its_fixtures():
     solver, fixture, told = solved(1)
     again = moved(fixture, [1, 2, 3, 0], False, (16.0, 8.0))
     before = len(solver.solved)
-    other = solver.of(again, with_cage=False)
+    other = solver.solve(again, with_cage=False)
     assert len(solver.solved) == before
     assert figures(other) == pytest.approx(figures(told), abs=1e-9)
     own, mine = (next(seat for seat in one.seats if seat.is_own) for one in (told, other))
@@ -210,18 +216,20 @@ def test_another_drawing_of_the_part_says_the_same():
     solver, fixture, told = solved(1)
     part, vise = solver.workpiece, solver.toolkit
     drawn = Pose(35.0, 12.0, -7.0)
-    lying = part.placed(drawn)
+    lying = part.apply_pose(drawn)
     c, s = cos(radians(-35.0)), sin(radians(-35.0))
     theta = radians(fixture.pose.theta_deg - 35.0)
     x, y = -(c * 12.0 + s * 7.0), -(s * 12.0 - c * 7.0)
     u, v = fixture.pose.apply(x, y)
     same = Fixture("I", fixture.pegs, Pose(degrees(theta), float(u), float(v)), fixture.travel, {})
-    other = Solver(lying, vise).of(same, with_cage=False)
+    other = SeatingSolver(lying, vise).solve(same, with_cage=False)
     assert figures(other) == pytest.approx(figures(told), abs=1e-8)
     # Turned over about a line along the jaws' way, so that the jaws stay where they are: y to -y.
     pegs = tuple(Peg(peg.carrier, 0, 0, peg.x, -peg.y, 0, 0.0) for peg in fixture.pegs)
     flipped = Pose(180.0 - fixture.pose.theta_deg, fixture.pose.x, -fixture.pose.y)
-    over = Solver(part.turned_over, vise).of(Fixture("I", pegs, flipped, fixture.travel, {}), with_cage=False)
+    over = SeatingSolver(part.turned_over, vise).solve(
+        Fixture("I", pegs, flipped, fixture.travel, {}), with_cage=False
+    )
     assert figures(over) == pytest.approx(figures(told), abs=1e-8)
     for mirrored in (False, True):
         assert separations(over, mirrored) == pytest.approx(separations(told, mirrored), abs=1e-8)
@@ -229,8 +237,8 @@ def test_another_drawing_of_the_part_says_the_same():
 
 def seats_of(part: Workpiece, pegs: list[tuple[str, float, float]], vise: Vise) -> JoinTree:
     """What can be reached from where, on pegs at separation 0."""
-    solver = Solver(part, vise)
-    return solver.trees(Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), vise))[0]
+    solver = SeatingSolver(part, vise)
+    return solver.find_join_trees(Pattern.from_fixture(held(pegs, (0.0, 0.0, 0.0), 0.0), vise))[0]
 
 
 def test_a_disc_is_nowhere_located():
@@ -247,9 +255,9 @@ def test_a_disc_is_nowhere_located():
 def test_a_rectangle_on_level_pegs_slides():
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [40, 0, 0], [40, 60, 0], [0, 60, 0]]])
     pegs = [(LEFT, 0.0, 0.0), (LEFT, 0.0, 20.0), (RIGHT, 10.0, 0.0), (RIGHT, 10.0, 20.0)]
-    solver = Solver(plate, Vise(10, 2, 3))
-    pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), solver.toolkit)
-    tree = solver.trees(pattern)[0]
+    solver = SeatingSolver(plate, Vise(10, 2, 3))
+    pattern = Pattern.from_fixture(held(pegs, (0.0, 0.0, 0.0), 0.0), solver.toolkit)
+    tree = solver.find_join_trees(pattern)[0]
     square = [row for row in (*tree.loose, *tree.slack) if abs(row[3] - 36.0) < 1e-9]
     # Both ways up: the part is its own half turn. All four pegs touch.
     assert sorted(round(degrees(row[0])) % 360 for row in square) == [0, 180]
@@ -275,7 +283,7 @@ def test_a_square_pinwheel_sits_four_ways_at_one_reading():
     """Seats come in fours of one separation, which no reading tells apart; turned over it is another part."""
     part, vise = pinwheel(), Vise(20, 2, 3)
     fixture = workhold.design(part, vise, types="I", best=1)[0]
-    told = Solver(part, vise).of(fixture, with_cage=False)
+    told = SeatingSolver(part, vise).solve(fixture, with_cage=False)
     alike = [seat for seat in told.seats if abs(seat.difference) < 1e-7]
     assert len(alike) >= 4 and all(seat.kind == "fixture" for seat in alike)
     turns = sorted(
@@ -292,11 +300,13 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats():
     result = workhold.design(wedge, Vise(pitch=20, columns=2, peg_radius=3), types="I")
     by_pattern: dict[object, list[Fixture]] = {}
     for fixture in result:
-        by_pattern.setdefault(Pattern.of(fixture, result.toolkit).key(), []).append(fixture)
-    solver = Solver(wedge, result.toolkit)
+        by_pattern.setdefault(Pattern.from_fixture(fixture, result.toolkit).make_key(), []).append(fixture)
+    solver = SeatingSolver(wedge, result.toolkit)
     for fixtures in list(by_pattern.values())[:6]:
-        turned = Pattern.of(moved(fixtures[0], [0, 1, 2, 3], True, (0.0, 0.0)), result.toolkit).key()
-        told = [solver.of(fixture, with_cage=False) for fixture in fixtures]
+        turned = Pattern.from_fixture(
+            moved(fixtures[0], [0, 1, 2, 3], True, (0.0, 0.0)), result.toolkit
+        ).make_key()
+        told = [solver.solve(fixture, with_cage=False) for fixture in fixtures]
         assert all(sum(seat.is_own for seat in one.seats) == 1 for one in told)
         there = [seat for seat in told[0].seats if seat.kind == "fixture" and not seat.mirrored]
         assert len(there) == len(fixtures) + len(by_pattern.get(turned, ()))
@@ -315,9 +325,9 @@ def test_three_parallel_forces_are_found():
     )
     vise = Vise(10, 2, 2)
     pegs = [(LEFT, 0.0, 0.0), (LEFT, 0.0, 30.0), (RIGHT, 10.0, 10.0), (RIGHT, 20.0, 20.0)]
-    solver = Solver(bar, vise)
-    pattern = Pattern.of(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
-    closing = solver.closing(pattern, False)
+    solver = SeatingSolver(bar, vise)
+    pattern = Pattern.from_fixture(held(pegs, (0.0, 0.0, 0.0), 0.0), vise)
+    closing = solver.make_closing(pattern, False)
     found = equilibria_of(closing)
     rows = [row for row in [*found.seats, *found.passes] if row[4] == 3.0]
     obstacle = Obstacle(bar, held(pegs, (0.0, 0.0, 0.0), 0.0), 2.0)
@@ -356,14 +366,14 @@ def test_every_seat_lies_free_where_its_pose_says(number):
 def test_curved_seats_hold_and_passes_let_go(number):
     """Beside a seat of three contacts closing leads back; beside a pass down, but where a flat face begins."""
     solver, fixture, _ = solved(number)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    closing = solver.closing(pattern, False)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    closing = solver.make_closing(pattern, False)
     found = equilibria_of(closing)
     for rows, holds in ((found.seats, True), (found.passes, False)):
         for row in (row for row in rows if row[4] < 4.0):
             motion = np.append(row[18:21], 0.0)
             step = 0.01 * motion / (abs(motion[0]) * closing.size + hypot(*motion[1:3]))
-            ended, _ = closing.run(row[:4] + np.stack([step, -step]), 0.005)
+            ended, _ = closing.close_from(row[:4] + np.stack([step, -step]), 0.005)
             rises = ended[:, 3] - row[3]
             assert (np.abs(rises) < 1e-6).all() if holds else rises.min() < -1e-7 and rises.max() < 1e-9
 
@@ -372,5 +382,5 @@ def test_a_part_like_its_mirror_image_covers_its_place_turned_over():
     kite = Workpiece.from_loops("kite", [[[0, 0, 0], [70, 30, 0], [0, 60, 0]]])
     vise = Vise(20, 2, 3)
     fixture = workhold.design(kite, vise, types="I", best=1)[0]
-    told = Solver(kite, vise).of(fixture, with_cage=False)
+    told = SeatingSolver(kite, vise).solve(fixture, with_cage=False)
     assert any(seat.mirrored and seat.same_place and abs(seat.difference) < 1e-7 for seat in told.seats)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from workhold.seating.clamping import sticking_friction
+from workhold.seating.clamping import find_sticking_friction
 
 
 def balances(points, normals, right, friction):
@@ -44,7 +44,7 @@ def test_friction_is_the_least_at_which_three_contacts_balance(seed):
     generator = np.random.default_rng(seed)
     for _ in range(6):
         points, normals, right = clamped(generator)
-        least = sticking_friction(points, normals, right)
+        least = find_sticking_friction(points, normals, right)
         assert least < np.inf
         assert not balances(points, normals, right, 0.9999 * least)
         assert balances(points, normals, right, 1.0001 * least)
@@ -56,5 +56,5 @@ def test_two_contacts_balance_where_their_line_lies_in_both_cones(one, two):
     points = np.array([[-10.0, 3.0], [-10.0, 3.0], [10.0, 3.0], [-10.0, 3.0]])
     left = [-np.cos(one), np.sin(one)]
     normals = np.array([left, left, [np.cos(two), np.sin(two)], left])
-    least = sticking_friction(points, normals, np.array([0, 0, 1, 0]))
+    least = find_sticking_friction(points, normals, np.array([0, 0, 1, 0]))
     assert least == pytest.approx(max(np.tan(one), np.tan(two)), abs=1e-9)

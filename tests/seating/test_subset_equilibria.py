@@ -26,13 +26,13 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
-from workhold.kernels.seating.obstacles import clearances
-from workhold.kernels.seating.slides import slides_blocked
+from workhold.kernels.seating.obstacles import write_clearances_of_points
+from workhold.kernels.seating.slides import write_blocked_slides
 from workhold.seating import two_contact_curves
-from workhold.seating.closing import filled
+from workhold.seating.closing import fill_rows
 from workhold.seating.equilibria import Equilibria, SubsetCache, find_subset_equilibria
 from workhold.seating.pattern import Pattern, PegSubset, list_subsets
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 VISE = Vise(pitch=10, columns=2, peg_radius=3)
 FIRST = 6
@@ -44,12 +44,12 @@ def patterns() -> list[Pattern]:
     fixtures = workhold.design(STEP, VISE, best=60)
     three, two = ([f for f in fixtures if f.type == kind][:FIRST] for kind in ("II", "I"))
     assert len(three) == len(two) == FIRST
-    return [Pattern.of(fixture, VISE) for fixture in (*two, *three)]
+    return [Pattern.from_fixture(fixture, VISE) for fixture in (*two, *three)]
 
 
-def solve(solver: Solver, pattern: Pattern) -> tuple[Equilibria, Equilibria]:
+def solve(solver: SeatingSolver, pattern: Pattern) -> tuple[Equilibria, Equilibria]:
     """What is found of a pattern, as drawn and turned over."""
-    both = (solver.closing(pattern, turned_over) for turned_over in (False, True))
+    both = (solver.make_closing(pattern, turned_over) for turned_over in (False, True))
     one, two = (equilibria_of(closing) for closing in both)
     return one, two
 
@@ -64,14 +64,15 @@ def told(found: Equilibria) -> list[bytes]:
 def by_themselves() -> list[list[bytes]]:
     """What is found of each pattern by a solver that has seen no other."""
     return [
-        [byte for one in solve(Solver(STEP, VISE), pattern) for byte in told(one)] for pattern in patterns()
+        [byte for one in solve(SeatingSolver(STEP, VISE), pattern) for byte in told(one)]
+        for pattern in patterns()
     ]
 
 
 @pytest.mark.thorough
 def test_nothing_depends_on_what_was_solved_before():
     """Not on the order of patterns: to the last bit."""
-    solver, count = Solver(STEP, VISE), 0
+    solver, count = SeatingSolver(STEP, VISE), 0
     for number in reversed(range(len(patterns()))):
         assert [byte for one in solve(solver, patterns()[number]) for byte in told(one)] == by_themselves()[
             number
@@ -79,8 +80,8 @@ def test_nothing_depends_on_what_was_solved_before():
         count += len(list_subsets(patterns()[number]))
     [boundary] = solver.boundaries.values()
     assert (
-        len(boundary.once(SubsetCache.empty).found) < 0.8 * count
-        and len(boundary.once(two_contact_curves.curves_of_jaws)) < count
+        len(boundary.find_once(SubsetCache.make_empty).found) < 0.8 * count
+        and len(boundary.find_once(two_contact_curves.make_curve_cache)) < count
     )
 
 
@@ -90,14 +91,14 @@ def test_what_is_forgotten_is_found_again(monkeypatch):
     kept than those of a pattern."""
     monkeypatch.setattr("workhold.seating.equilibria.MOST_KEPT", 3)
     monkeypatch.setattr(two_contact_curves, "MOST_KEPT", 1500)
-    solver = Solver(STEP, VISE)
+    solver = SeatingSolver(STEP, VISE)
     for pattern, known in zip(patterns()[:2], by_themselves()[:2], strict=True):
         assert [byte for one in solve(solver, pattern) for byte in told(one)] == known
     for boundary in (one for drawn in solver.boundaries.values() for one in (drawn, drawn.turned_over)):
-        assert 0 < len(boundary.once(SubsetCache.empty).found) <= len(list_subsets(patterns()[1]))
+        assert 0 < len(boundary.find_once(SubsetCache.make_empty).found) <= len(list_subsets(patterns()[1]))
         assert (
             0
-            < sum(len(one.cells) for one in boundary.once(two_contact_curves.curves_of_jaws).values())
+            < sum(len(one.cells) for one in boundary.find_once(two_contact_curves.make_curve_cache).values())
             <= 1500
         )
 
@@ -118,7 +119,7 @@ def test_pegs_that_stand_alike_are_one_group(order):
         for group in list_subsets(other):
             # Back in the pattern each peg stands where it stands.
             own, config = group.pattern, np.array([[0.0, 0.0, 0.0, 12.0]])
-            back = own.at(config) - other.at(config + group.shift)[:, list(group.numbers)]
+            back = own.place_pegs(config) - other.place_pegs(config + group.shift)[:, list(group.numbers)]
             assert np.abs(back).max() < 1e-10
             assert own.stop <= other.stop - group.shift[3]
 
@@ -126,22 +127,22 @@ def test_pegs_that_stand_alike_are_one_group(order):
 def test_groups_that_stand_otherwise_are_others():
     """By where a peg stands, which jaw it is of and the gap that is kept."""
     pattern = patterns()[0]
-    known = PegSubset.of(pattern, (0, 1, 2)).key
+    known = PegSubset.from_pattern(pattern, (0, 1, 2)).key
     lifted = pattern.pegs + np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 1e-6], [0.0, 0.0]])
     for other in (
         evolve(pattern, pegs=lifted),
         evolve(pattern, right=1 - pattern.right),
         evolve(pattern, gap=pattern.gap + 1.0),
     ):
-        assert PegSubset.of(other, (0, 1, 2)).key != known
+        assert PegSubset.from_pattern(other, (0, 1, 2)).key != known
 
 
 def touch(row: np.ndarray, pattern: Pattern, boundary: Any) -> None:
     """See that each peg of a candidate is on the piece it is said to touch."""
-    places, out = pattern.at(row[None, :4])[0], np.empty(1)
+    places, out = pattern.place_pegs(row[None, :4])[0], np.empty(1)
     for peg, piece in zip(row[PEG:PIECE].astype(int), row[PIECE:FORCE].astype(int), strict=True):
         if peg >= 0:
-            clearances(places[[peg]], boundary.loose, piece, piece + 1, out)
+            write_clearances_of_points(places[[peg]], boundary.loose, piece, piece + 1, out)
             assert abs(out[0]) < 1e-7
 
 
@@ -166,8 +167,8 @@ def test_parts_that_slide_are_stopped_and_clamped():
     own; and in each all that touches does."""
     told = set()
     for pattern in patterns():
-        solver = Solver(STEP, VISE)
-        closing = solver.closing(pattern, False)
+        solver = SeatingSolver(STEP, VISE)
+        closing = solver.make_closing(pattern, False)
         found = solve(solver, pattern)[0]
         for row in np.concatenate([found.seats, found.passes]):
             touch(row, pattern, closing.boundary)
@@ -177,11 +178,11 @@ def test_parts_that_slide_are_stopped_and_clamped():
 
 def test_slides_end_where_a_third_peg_of_the_jaw_touches():
     """As three pegs in three places are found, which they are too where no two of them slide."""
-    pattern, solver = patterns()[-1], Solver(STEP, VISE)
-    boundary, size = solver.closing(pattern, False).boundary, solver.outline.arm
+    pattern, solver = patterns()[-1], SeatingSolver(STEP, VISE)
+    boundary, size = solver.make_closing(pattern, False).boundary, solver.outline.arm
     [group] = (group for group in list_subsets(pattern) if group.is_of_a_jaw and len(group.sides) == 3)
-    held = two_contact_curves.TwoContactCurves.of(boundary, group.pattern)
-    stopped = filled(CANDIDATE_LENGTH, 256, slides_blocked, held.slides, held.given)
+    held = two_contact_curves.TwoContactCurves.from_pattern(boundary, group.pattern)
+    stopped = fill_rows(CANDIDATE_LENGTH, 256, write_blocked_slides, held.slides, held.given)
     assert len(stopped) > 2
     kept = SubsetCache()
     own = find_subset_equilibria(kept, boundary, group, size)
@@ -200,10 +201,10 @@ def test_all_kinds_of_groups_have_their_part():
     """Two, three and four pegs touch in what is found, a peg in a corner among them, none at less than the stop."""
     pegs, pockets, loose = set(), 0, 0
     for pattern in patterns():
-        found = solve(Solver(STEP, VISE), pattern)[0]
+        found = solve(SeatingSolver(STEP, VISE), pattern)[0]
         rows = np.concatenate([found.seats, found.passes])
         assert (rows[:, SEPARATION] > pattern.stop).all()
-        assert pattern.reaches(found.loose.rows[:, SEPARATION]).all()
+        assert pattern.is_reachable(found.loose.rows[:, SEPARATION]).all()
         for row in rows:
             touching = [int(peg) for peg in row[PEG:PIECE] if peg >= 0]
             pegs.add(len(set(touching)))

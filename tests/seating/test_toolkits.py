@@ -13,14 +13,14 @@ import workhold
 from seating_examples import Obstacle, closed, equilibria_of
 from workhold import Fence, Fixture, InputError, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.fixels.toolkit import Toolkit
-from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.base.distance import measure_outline_distances
 from workhold.kernels.seating.columns import CONTACTS, SEPARATION
 from workhold.model.seating import Seating
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.contact_forces import find_contact_normals
 from workhold.seating.join_tree import JoinTree
 from workhold.seating.pattern import ClosingFrame, Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 from workhold.seating.wall_equilibria import WallEquilibria
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
@@ -46,17 +46,17 @@ KITS: dict[str, tuple[Workpiece, Toolkit]] = {
 
 
 @cache
-def listed(name: str) -> tuple[Result, Solver]:
+def listed(name: str) -> tuple[Result, SeatingSolver]:
     """All fixtures of a part in a toolkit, and what solves their patterns."""
     part, toolkit = KITS[name]
-    return workhold.design(part, toolkit), Solver(part, toolkit)
+    return workhold.design(part, toolkit), SeatingSolver(part, toolkit)
 
 
 @cache
 def told_of(name: str, rank: int) -> Seating:
     """The seating of a fixture, with its cage."""
     result, solver = listed(name)
-    return solver.of(result[rank])
+    return solver.solve(result[rank])
 
 
 @pytest.mark.thinned(7)
@@ -66,14 +66,16 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
     result, solver = listed(name)
     by_pattern: dict[object, list[Fixture]] = {}
     for fixture in result:
-        by_pattern.setdefault(Pattern.of(fixture, result.toolkit).key(), []).append(fixture)
+        by_pattern.setdefault(Pattern.from_fixture(fixture, result.toolkit).make_key(), []).append(fixture)
     most = sorted(by_pattern.values(), key=len)[-2:]
     for fixtures in most:
-        pattern = Pattern.of(fixtures[0], result.toolkit)
+        pattern = Pattern.from_fixture(fixtures[0], result.toolkit)
         turned = (
-            evolve(pattern, pegs=-pattern.pegs, right=1 - pattern.right).key() if name == "opening" else None
+            evolve(pattern, pegs=-pattern.pegs, right=1 - pattern.right).make_key()
+            if name == "opening"
+            else None
         )
-        told = [solver.of(fixture, with_cage=False) for fixture in fixtures]
+        told = [solver.solve(fixture, with_cage=False) for fixture in fixtures]
         for fixture, one in zip(fixtures, told, strict=True):
             [own] = [seat for seat in one.seats if seat.is_own]
             assert (
@@ -85,10 +87,10 @@ def test_all_fixtures_of_a_pattern_are_among_its_seats(name):
             told_faces = zip(faces, fixture.pegs, strict=True)
             assert all(face == peg.face for face, peg in told_faces if not peg.is_on_wall)
         # Those that hold by less than a micrometre of opening are fixtures all the same.
-        touches = solver.closing(pattern, False).boundary.touches
+        touches = solver.make_closing(pattern, False).boundary.touches
         there = [
             row
-            for row in solver.trees(pattern)[0].seats
+            for row in solver.find_join_trees(pattern)[0].seats
             if len(set(row[5:9])) == 4
             and not any(touches[int(k)].corner for k in row[9:13] if k < len(touches))
         ]
@@ -105,7 +107,7 @@ def test_every_seat_lies_free_where_its_pose_says(name):
     assert len(told.seats) > 1 and any(seat.mirrored for seat in told.seats)
     # What is reached with what moves open by a millimetre.
     rises = [told.clamping * (seat.jaw_separation - fixture.travel) for seat in told.seats if seat.is_wrong]
-    assert len(told.wrong_within(1.0)) == sum(rise < 1.0 for rise in rises)
+    assert len(told.list_wrong_seats(1.0)) == sum(rise < 1.0 for rise in rises)
     for seat in told.seats:
         assert seat.difference == pytest.approx(seat.jaw_separation - fixture.travel, abs=1e-9)
         part = result.workpiece.turned_over if seat.mirrored else result.workpiece
@@ -174,7 +176,13 @@ def test_the_cage_is_told_in_the_frame_of_the_toolkit(name):
 
 def figures(told: Seating) -> tuple[float, ...]:
     """What must not depend on how the drawing and the pegs lie."""
-    known = (told.capture_opening, told.way_out, told.room_factor, told.sticking_friction, told.reading_of())
+    known = (
+        told.capture_opening,
+        told.way_out,
+        told.room_factor,
+        told.sticking_friction,
+        told.find_least_reading(),
+    )
     return tuple(-1.0 if value is None else value for value in known)
 
 
@@ -214,7 +222,9 @@ def quarter_turned(fixture: Fixture, names: dict[str, str], quarters: int) -> Fi
 def test_a_plate_turned_says_the_same(direction, quarters):
     result, _ = listed("left")
     plate = evolve(result.toolkit, directions=(direction,))
-    other = Solver(WEDGE, plate).of(quarter_turned(result[0], {"clamp -x": f"clamp {direction}"}, quarters))
+    other = SeatingSolver(WEDGE, plate).solve(
+        quarter_turned(result[0], {"clamp -x": f"clamp {direction}"}, quarters)
+    )
     told = told_of("left", 0)
     same(other, told)
     ways = [told.cage.x, told.cage.y]
@@ -232,21 +242,21 @@ def test_part_and_plate_turned_over_say_the_same():
     pegs = tuple(Peg(peg.carrier, 0, 0, peg.x, -peg.y, 0, 0.0) for peg in fixture.pegs)
     pose = Pose(180.0 - fixture.pose.theta_deg, fixture.pose.x, -fixture.pose.y)
     over = Fixture("clamp", pegs, pose, fixture.travel, {})
-    same(Solver(WEDGE.turned_over, result.toolkit).of(over, with_cage=False), told_of("left", 0))
+    same(SeatingSolver(WEDGE.turned_over, result.toolkit).solve(over, with_cage=False), told_of("left", 0))
 
 
 def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
     """Seen from the right jaw the left one comes nearer as S grows: with -S for S it closes."""
     result, solver = listed("opening")
     for fixture in result[:2]:
-        opening = Pattern.of(fixture, result.toolkit)
+        opening = Pattern.from_fixture(fixture, result.toolkit)
         places = np.array([[peg.x, peg.y] for peg in fixture.pegs])
         right = np.array([int(peg.carrier == "right") for peg in fixture.pegs])
         places[:, 0] -= right * fixture.travel
         closing = Pattern(
             places, 1 - right, opening.radii, opening.stop, opening.widest, ClosingFrame(0, 1.0)
         )
-        for one, other in zip(solver.trees(opening), solver.trees(closing), strict=True):
+        for one, other in zip(solver.find_join_trees(opening), solver.find_join_trees(closing), strict=True):
             assert len(one.seats) > 0
             assert one.seats[:, 3] == pytest.approx(other.seats[:, 3], abs=1e-8)
             assert one.passes[:, SEPARATION] == pytest.approx(other.passes[:, SEPARATION], abs=1e-8)
@@ -262,8 +272,8 @@ def test_a_plate_with_the_pegs_of_a_vise_says_the_same():
         pegs = tuple(
             evolve(peg, carrier="plate" if peg.carrier == "left" else "clamp -x") for peg in fixture.pegs
         )
-        onto = Solver(WEDGE, plate).of(evolve(fixture, pegs=pegs), with_cage=False)
-        told = Solver(WEDGE, vise).of(fixture, with_cage=False)
+        onto = SeatingSolver(WEDGE, plate).solve(evolve(fixture, pegs=pegs), with_cage=False)
+        told = SeatingSolver(WEDGE, vise).solve(fixture, with_cage=False)
         assert [told.capture_opening, told.way_out] == pytest.approx(
             [onto.capture_opening, onto.way_out], abs=1e-9
         )
@@ -278,13 +288,16 @@ def test_a_clamp_stops_where_its_tip_meets_a_locator():
     fixture = Fixture(
         "clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 20.0, {}
     )
-    pattern = Pattern.of(fixture, Plate(pitch=20, peg_radius=3, clamp_radius=4))
+    pattern = Pattern.from_fixture(fixture, Plate(pitch=20, peg_radius=3, clamp_radius=4))
     assert (pattern.stop, pattern.widest) == pytest.approx((7.0, 40.0 - np.sqrt(49.0 - 9.0)))
     stroke = evolve(fixture, travel=-30.0)
-    short = Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(5, 35)))
+    short = Pattern.from_fixture(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(5, 35)))
     assert short.stop == -35.0
     assert (
-        short.key() == Pattern.of(stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(7, 35))).key()
+        short.make_key()
+        == Pattern.from_fixture(
+            stroke, Plate(pitch=20, peg_radius=3, clamp_radius=4, travel=(7, 35))
+        ).make_key()
     )
 
 
@@ -295,7 +308,7 @@ def test_a_disc_is_nowhere_located_by_a_clamp():
     fixture = Fixture(
         "clamp", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
     )
-    tree = Solver(disc, plate).trees(Pattern.of(fixture, plate))[0]
+    tree = SeatingSolver(disc, plate).find_join_trees(Pattern.from_fixture(fixture, plate))[0]
     assert len(tree.seats) == 0
     # Between two locators, its centre 15 + 3 from both; the tip 15 + 5 from it.
     assert any(
@@ -318,7 +331,7 @@ def test_a_disc_is_nowhere_located_by_a_clamp():
 def test_what_is_not_told_is_refused_in_a_sentence(toolkit, message):
     fixture = Fixture("I", (), Pose(0, 0, 0), 0.0, {})
     with pytest.raises(InputError, match=message):
-        Solver(WEDGE, toolkit).of(fixture)
+        SeatingSolver(WEDGE, toolkit).solve(fixture)
 
 
 def test_a_part_put_above_a_fence_comes_home_and_none_is_put_into_it():
@@ -347,10 +360,10 @@ def test_a_part_slides_along_a_fence_under_the_clamp():
     fixture = Fixture(
         "edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
     )
-    pattern = Pattern.of(fixture, fence)
-    closing = Solver(plate, fence).closing(pattern, False)
+    pattern = Pattern.from_fixture(fixture, fence)
+    closing = SeatingSolver(plate, fence).make_closing(pattern, False)
     found = equilibria_of(closing)
-    tree = JoinTree.of(found, closing)
+    tree = JoinTree.from_equilibria(found, closing)
     assert len(tree.seats) == 0
     flat = [row for row in (*tree.loose, *tree.slack) if row[CONTACTS] >= 3.0]
     # On each of its four sides, as high as the part; the tip goes from one end of the edge to the other.
@@ -374,7 +387,7 @@ def test_a_disc_turns_on_a_fence(direction):
     fixture = Fixture(
         "edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
     )
-    tree = Solver(disc, fence).trees(Pattern.of(fixture, fence))[0]
+    tree = SeatingSolver(disc, fence).find_join_trees(Pattern.from_fixture(fixture, fence))[0]
     assert len(tree.seats) == 0 and len(tree.loose) >= 1
     ahead = np.sqrt(18.0**2 - 5.0**2)
     # Its centre 15 above the fence and 18 from the locator; the tip straight ahead, or above and to one side.
@@ -396,7 +409,7 @@ def test_pegs_pressed_apart_in_a_slot_rest_at_its_ends():
     vise = OpeningVise(pitch=10, columns=2, peg_radius=3, min_gap=6)
     at = (("left", 0, 0), ("left", 0, -200), ("right", 10, 0), ("right", 10, 200))
     fixture = Fixture("I", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {})
-    seats = Solver(slotted, vise).trees(Pattern.of(fixture, vise))[0].seats
+    seats = SeatingSolver(slotted, vise).find_join_trees(Pattern.from_fixture(fixture, vise))[0].seats
     # 30 between the ends' centres and 10 - 3 beyond each, less the 10 by which the right peg stands ahead.
     assert [row[4] for row in seats if abs(row[3] + 30.0 + 14.0 - 10.0) < 1e-9] == [2.0, 2.0]
 
@@ -406,25 +419,27 @@ def test_the_tip_stops_at_the_fence_and_touches_with_its_own_radius():
     for way, stop, widest in (("-y", -36.0, np.inf), ("+y", -np.inf, 36.0)):
         pegs = tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in (*at, (f"clamp {way}", 0.0, 40.0)))
         fence = Fence(**{**DOWN, "directions": [way]}, clamp_radius=4)
-        pattern = Pattern.of(Fixture("edge", pegs, Pose(0, 0, 0), 0.0, {}), fence)
+        pattern = Pattern.from_fixture(Fixture("edge", pegs, Pose(0, 0, 0), 0.0, {}), fence)
         assert (pattern.stop, pattern.widest) == (stop, widest)
     for name in ("left", "along a fence"):
         result, solver = listed(name)
-        pattern, outline = Pattern.of(result[0], result.toolkit), solver.outline
-        boundary = solver.closing(pattern, False).boundary
-        for row in solver.trees(pattern)[0].seats:
+        pattern, outline = Pattern.from_fixture(result[0], result.toolkit), solver.outline
+        boundary = solver.make_closing(pattern, False).boundary
+        for row in solver.find_join_trees(pattern)[0].seats:
             places, _, _ = find_contact_normals(boundary, pattern, row)
             c, s = np.cos(row[0]), np.sin(row[0])
-            assert outline_distances(places @ np.array([[c, -s], [s, c]]), outline.rows).max() < 1e-7
+            assert measure_outline_distances(places @ np.array([[c, -s], [s, c]]), outline.rows).max() < 1e-7
 
 
 def test_between_hull_edges_and_ends_of_arcs_a_part_stands_on_one_piece():
     result, solver = listed("onto a fence")
-    pattern = Pattern.of(result[0], result.toolkit)
-    fence = WallEquilibria(solver.closing(pattern, False).boundary, pattern)
+    pattern = Pattern.from_fixture(result[0], result.toolkit)
+    fence = WallEquilibria(solver.make_closing(pattern, False).boundary, pattern)
     for piece, low, high in fence.runs:
         # But for where runs overlap.
-        reach = fence.boundary.hull.reach(fence.outward() - np.linspace(low + 3e-9, high - 3e-9, 9))
+        reach = fence.boundary.hull.compute_reach(
+            fence.compute_outward_direction() - np.linspace(low + 3e-9, high - 3e-9, 9)
+        )
         assert reach[:, piece] == pytest.approx(reach.max(axis=1), abs=1e-7)
     # All of a turn but next to nothing, and each piece's turn once.
     assert sum(high - low for _, low, high in fence.runs) == pytest.approx(2 * np.pi, abs=1e-6)

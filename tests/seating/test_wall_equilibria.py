@@ -25,7 +25,7 @@ from workhold.kernels.seating.columns import (
 from workhold.model.quality import FIGURE_RANKING
 from workhold.seating.contact_forces import settle_on_wall
 from workhold.seating.pattern import Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 from workhold.seating.wall_equilibria import LOCATOR, TIP, WallEquilibria
 
 PART = Workpiece.from_loops(
@@ -136,13 +136,13 @@ def placed(part, toolkit, locator, tip):
     fixture = Fixture(
         "edge", tuple(Peg(name, 0, 0, x, y, 0, 0.0) for name, x, y in at), Pose(0, 0, 0), 0.0, {}
     )
-    closing = Solver(part, toolkit).closing(Pattern.of(fixture, toolkit), False)
+    closing = SeatingSolver(part, toolkit).make_closing(Pattern.from_fixture(fixture, toolkit), False)
     return WallEquilibria(closing.boundary, closing.pattern), closing
 
 
 def missing(fence, step):
     """What sampling finds and bounds do not."""
-    found = fence.three_contacts()
+    found = fence.find_three_contacts()
     on_hull = found[:, PIECE + 2] - len(fence.boundary.rows)
     out, count = [], 0
     for theta, piece, locator, tip in sampled(fence, step):
@@ -221,7 +221,7 @@ def made_with_two():
 def test_two_balances_less_than_a_twentieth_of_a_degree_apart_are_both_found():
     """One a minimum of S over the orientation, the other a maximum; both press, and neither is in doubt."""
     (fence, closing), pair = made_with_two()
-    found = fence.three_contacts()
+    found = fence.find_three_contacts()
     found[:, THETA] = (found[:, THETA] + pi) % (2.0 * pi) - pi
     near = found[np.argsort(found[:, THETA])]
     near = near[np.abs(near[:, THETA] - pair[0]) < 0.01]
@@ -235,7 +235,7 @@ def test_two_balances_less_than_a_twentieth_of_a_degree_apart_are_both_found():
 def test_candidates_of_three_contacts_are_stationary(seed):
     """S does not change, to first order, along the motion that is told, and changes by its second derivative."""
     fence = random_fence(seed)
-    found = fence.three_contacts()
+    found = fence.find_three_contacts()
     assert len(found) and (found[:, CONTACTS] == 3.0).all() and not found[:, DOUBT].any()
     for row in found:
         piece, step = int(row[PIECE + 2]) - len(fence.boundary.rows), 1e-4
@@ -263,13 +263,13 @@ def test_the_tip_is_in_a_pocket_wherever_the_locator_touches_too(way):
     """On a part with inner corners: where the locator's distance from a face changes its sign as the part turns."""
     toolkit = Fence(pitch=20, peg_radius=3, wall_offset=10, directions=[way])
     fence, _ = placed(NOTCHED, toolkit, (30.0, 20.0), (60.0, 45.0) if way == "-y" else (-30.0, 45.0))
-    found, count, (ux, uy, off) = fence.tip_in_pocket(), 0, fence.half_plane
+    found, count, (ux, uy, off) = fence.find_tip_in_pocket(), 0, fence.half_plane
     (lx, ly), (_, ty) = fence.pattern.pegs
     touched = found[(found[:, CONTACTS] == 4.0) & (found[:, PEG] == LOCATOR)]
     assert not touched[:, DOUBT].any() and (touched[:, PEG + 2 : PEG + 4] == TIP).all()
     rows, boundary = fence.boundary.rows, fence.boundary
     for (vx, vy), pieces in zip(boundary.pockets[:, :2], boundary.pocket_pieces, strict=True):
-        if not boundary.fits(1, int(pieces[0])):
+        if not boundary.can_touch(1, int(pieces[0])):
             continue
         for piece, low, high in fence.runs:
             thetas = np.linspace(low, high, 3000)
@@ -314,6 +314,6 @@ def test_no_two_fixtures_of_a_design_are_in_doubt():
     """What was to be settled by other means is: of the pattern of a listed fixture no balance is in doubt."""
     toolkit = Fence(pitch=20, peg_radius=3, wall_offset=10)
     for fixture in workhold.design(PART, toolkit, best=3, rank_by=FIGURE_RANKING):
-        pattern = Pattern.of(fixture, toolkit)
-        fence = WallEquilibria(Solver(PART, toolkit).closing(pattern, False).boundary, pattern)
-        assert not fence.three_contacts()[:, DOUBT].any()
+        pattern = Pattern.from_fixture(fixture, toolkit)
+        fence = WallEquilibria(SeatingSolver(PART, toolkit).make_closing(pattern, False).boundary, pattern)
+        assert not fence.find_three_contacts()[:, DOUBT].any()

@@ -15,8 +15,8 @@ from attrs import evolve
 from closing_forces import clamping_force, null_vectors
 from workhold import Vise, Workpiece
 from workhold.conventions import LEAST_SPAN
-from workhold.kernels.contact.rules import minors
-from workhold.statics.contact_matrix import Touched, compute_outward_normals
+from workhold.kernels.contact.rules import write_minors
+from workhold.statics.contact_matrix import TouchableFeatures, compute_outward_normals
 
 # An L: the faces at x = 20 and y = 20 meet in a concave corner, where a peg's centre stays its radius away.
 CORNER = Workpiece.from_loops(
@@ -38,7 +38,7 @@ def test_a_peg_is_as_far_from_the_end_of_a_face_as_its_own_radius_lets_it(
 ) -> None:
     """A peg 6 mm from the concave corner, along either face, is 6 mm less its radius from the end of its feature; so are
     pegs of another radius on the same face."""
-    touched = Touched.of(CORNER, toolkit(standing, moving))
+    touched = TouchableFeatures.from_workpiece(CORNER, toolkit(standing, moving))
     carriers = np.array([[0, 0, 1, 1]])
     radii = np.array([standing, standing, moving, moving])
     faces = np.array([[ABOVE, LEFT, BESIDE, BELOW], [BESIDE, BELOW, ABOVE, LEFT]])
@@ -51,7 +51,7 @@ def test_a_peg_is_as_far_from_the_end_of_a_face_as_its_own_radius_lets_it(
     pegs = np.array(
         [[at[face](r) for r, face in zip(radii, row, strict=True)] for row in faces.tolist()], np.float64
     )
-    found = touched.contact_matrices(pegs, np.zeros((2, 3)), np.repeat(carriers, 2, axis=0), faces)
+    found = touched.compute_contact_matrices(pegs, np.zeros((2, 3)), np.repeat(carriers, 2, axis=0), faces)
     inner = np.isin(faces, (ABOVE, BESIDE))
     assert found.ends[inner] == pytest.approx((6.0 - np.stack([radii, radii]))[inner])
     assert found.normals[faces == ABOVE] == pytest.approx(np.array([(0, 1), (0, 1)]))
@@ -75,7 +75,7 @@ def wrenches(points, normals, length):
 def solved(points, normals, length):
     """Smallest entry of the kernel's null vector, scaled to sum 1, and that vector."""
     out = np.empty(4)
-    assert minors(points, normals, length, out) == np.abs(out).sum()
+    assert write_minors(points, normals, length, out) == np.abs(out).sum()
     null = out / out.sum()
     return null.min(), null
 
@@ -107,7 +107,7 @@ def test_the_null_vector_is_null_and_sums_to_one():
 
 
 def test_compiled_and_array_forms_agree():
-    """kernels.contact.closure.minors and algebra.conditions.wrench_minors, both scaled, are one function."""
+    """kernels.contact.closure.minors and algebra.conditions.compute_wrench_minors, both scaled, are one function."""
     random = Random(2)
     many = [contacts(random) for _ in range(300)]
     points, normals = (np.array(column) for column in zip(*many, strict=True))
@@ -163,7 +163,7 @@ def test_concurrent_normals_do_not_close():
         points = np.array([3.0, -2.0]) + normals * np.array([[random.uniform(1, 30)] for _ in range(4)])
         matrix = wrenches(points - [3.0, -2.0], normals, 40.0)
         assert np.linalg.matrix_rank(matrix, tol=1e-9) < 3
-        assert minors(points - [3.0, -2.0], normals, 40.0, np.empty(4)) < LEAST_SPAN * 1e-6
+        assert write_minors(points - [3.0, -2.0], normals, 40.0, np.empty(4)) < LEAST_SPAN * 1e-6
 
 
 def test_three_concurrent_normals_leave_the_fourth_without_force():

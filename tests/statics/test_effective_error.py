@@ -16,7 +16,7 @@ from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
 from workhold.statics.effective_error import EffectiveErrors, classify_angles
-from workhold.statics.why_first import why_first
+from workhold.statics.why_first import explain_why_first
 from workhold.verification.first_choice import EffectiveJudge
 
 BLOCK = [(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]
@@ -33,7 +33,7 @@ def holding(query: Query, **changed: object) -> tuple[FixtureTable, dict[str, np
     """All fixtures, and which factors hold of them."""
     table = answer(query, threads=1).table
     table = evolve(table, **changed) if changed else table
-    return table, dict(zip(KEYS, EffectiveErrors.of(query).holding(table).T, strict=True))
+    return table, dict(zip(KEYS, EffectiveErrors.from_query(query).find_factors(table).T, strict=True))
 
 
 def test_angles_as_written() -> None:
@@ -48,7 +48,7 @@ def test_near_the_end_of_a_straight_face_is_nearer_than_the_pegs_radius() -> Non
     query = Query(block(), Plate(pitch=20, peg_radius=3, clamps=2))
     table, found = holding(query)
     square = np.flatnonzero(table.theta == 0.0)
-    x, _ = workhold.model.fixture_table.peg_places(table, query.toolkit, query.workpiece)
+    x, _ = workhold.model.fixture_table.compute_peg_places(table, query.toolkit, query.workpiece)
     for number in square[:200].tolist():
         places = []
         for peg, face in enumerate(table.face[number].tolist()):
@@ -71,11 +71,11 @@ def test_clamps_and_dowels_inside_holes_count_unless_asked_for() -> None:
     assert (found["dowel_in_bore"] == is_inside[:, :3].any(axis=1)).all() and found["dowel_in_bore"].any()
     outside = [face.number for face in part.faces if face.number not in inside]
     asked = evolve(query, restrictions=Restrictions(avoid=outside))
-    assert not EffectiveErrors.of(asked).unasked.any()
+    assert not EffectiveErrors.from_query(asked).unasked.any()
     some = evolve(query, restrictions=Restrictions(avoid=outside[:-1]))
-    assert np.flatnonzero(EffectiveErrors.of(some).unasked).tolist() == sorted(inside)
+    assert np.flatnonzero(EffectiveErrors.from_query(some).unasked).tolist() == sorted(inside)
     opening = Query(part, OpeningVise(pitch=5, columns=2, peg_radius=2, min_gap=5))
-    assert not EffectiveErrors.of(opening).unasked.any()
+    assert not EffectiveErrors.from_query(opening).unasked.any()
 
 
 @pytest.mark.thorough
@@ -95,10 +95,10 @@ def test_what_hangs_over_the_plate(columns: int | None, rows: int | None, hangs:
         theta=np.zeros(1),
         position=np.array([[-10.0, -10.0]]),
     )
-    assert bool(EffectiveErrors.of(query).hangs_over(table)[0]) == hangs
+    assert bool(EffectiveErrors.from_query(query).find_overhanging(table)[0]) == hangs
     moved = evolve(table, position=np.array([[-9.0, -10.0]]))
     # A millimetre beside whole holes: then as wide a plate as the part is never enough.
-    assert bool(EffectiveErrors.of(query).hangs_over(moved)[0]) == (hangs or columns == 5)
+    assert bool(EffectiveErrors.from_query(query).find_overhanging(moved)[0]) == (hangs or columns == 5)
 
 
 TOOLKITS: dict[str, Toolkit] = {
@@ -117,9 +117,9 @@ def test_verification_finds_the_same_factors(kind: str) -> None:
     part = Workpiece.from_loops("part", [L_SHAPE, [(8, 14, 1), (20, 14, 1)]])
     query = Query(part, TOOLKITS[kind])
     result = answer(query, threads=1)
-    effective = EffectiveErrors.of(query)
+    effective = EffectiveErrors.from_query(query)
     judge = EffectiveJudge(query, result.least_effective_error)
-    marks = effective.holding(result.table)
+    marks = effective.find_factors(result.table)
     for fixture, row in zip(result, marks, strict=True):
         said = [ends for _, ends in judge.list_factors(fixture)]
         assert all(
@@ -138,7 +138,9 @@ def test_factors_multiply() -> None:
     product = np.ones(len(table))
     for factor in FACTORS:
         product[found[factor.key]] *= factor.times
-    assert np.allclose(EffectiveErrors.of(query).errors(table), table.quality[:, LOCATION_ERROR] * product)
+    assert np.allclose(
+        EffectiveErrors.from_query(query).compute_errors(table), table.quality[:, LOCATION_ERROR] * product
+    )
     assert len(np.unique(np.round(product, 9))) > 4
 
 
@@ -147,32 +149,36 @@ def test_why_first_says_what_counts() -> None:
     """As drawn, turned by a quarter, and of another order nothing."""
     plate, two = Plate(pitch=20, peg_radius=3), Plate(pitch=20, peg_radius=3, clamps=2)
     square = answer(Query(block(), two, best=3), threads=1)
-    assert re.fullmatch(r"First: no warning; location error 0\.\d{4} mm, .*; as drawn\.", why_first(square))
+    assert re.fullmatch(
+        r"First: no warning; location error 0\.\d{4} mm, .*; as drawn\.", explain_why_first(square)
+    )
     aslant = answer(Query(block(), plate, best=3), threads=1)
-    assert "(turned aslant" in why_first(
+    assert "(turned aslant" in explain_why_first(
         aslant
-    ) and "no fixture that lies square to the drawing" in why_first(aslant)
+    ) and "no fixture that lies square to the drawing" in explain_why_first(aslant)
     quarter = Workpiece.from_loops("standing", [[(y, -x, b) for x, y, b in BLOCK]])
     tilted = answer(Query(quarter, two, restrictions=Restrictions(angles=((90.0, 90.0),)), best=3), threads=1)
-    assert "counted as" in why_first(tilted) and "(turned by 90°" in why_first(tilted)
-    assert why_first(answer(Query(block(), two, rank_by="penalty", best=3), threads=1)) == ""
+    assert "counted as" in explain_why_first(tilted) and "(turned by 90°" in explain_why_first(tilted)
+    assert explain_why_first(answer(Query(block(), two, rank_by="penalty", best=3), threads=1)) == ""
 
 
 def test_why_first_says_what_stands_square() -> None:
     """None at all, none among those listed, none within a tenth, or none that has no warning or is fit."""
     whole = answer(Query(block(), Plate(pitch=20, peg_radius=3)), threads=1)
     best = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=3), threads=1)
-    assert why_first(whole).endswith("; no fixture lies square to the drawing.")
-    assert why_first(best).endswith(
+    assert explain_why_first(whole).endswith("; no fixture lies square to the drawing.")
+    assert explain_why_first(best).endswith(
         "; no fixture that lies square to the drawing comes within a tenth, and none is listed."
     )
-    assert why_first(evolve(whole, complete=False)).endswith("and none is listed.")
+    assert explain_why_first(evolve(whole, complete=False)).endswith("and none is listed.")
     alone = answer(Query(block(), Plate(pitch=20, peg_radius=3), best=1), threads=1)
-    assert why_first(alone).endswith("; no fixture that lies square to the drawing comes within a tenth.")
+    assert explain_why_first(alone).endswith(
+        "; no fixture that lies square to the drawing comes within a tenth."
+    )
     theta, quality = whole.table.theta.copy(), whole.table.quality.copy()
     theta[7] = np.pi
     turned = evolve(whole.table, theta=theta)
-    assert why_first(evolve(whole, table=turned)).endswith(
+    assert explain_why_first(evolve(whole, table=turned)).endswith(
         "; no fixture that lies square to the drawing comes within a tenth."
     )
     for column, value, words in (
@@ -181,14 +187,14 @@ def test_why_first_says_what_stands_square() -> None:
     ):
         changed = quality.copy()
         changed[7, column] = value
-        assert why_first(evolve(whole, table=evolve(turned, quality=changed))).endswith(f"; {words}.")
+        assert explain_why_first(evolve(whole, table=evolve(turned, quality=changed))).endswith(f"; {words}.")
         other = theta.copy()
         other[8] = np.pi / 2
         two = evolve(whole.table, theta=other, quality=changed)
-        assert why_first(evolve(whole, table=two)).endswith("comes within a tenth.")
+        assert explain_why_first(evolve(whole, table=two)).endswith("comes within a tenth.")
     quarter = theta.copy()
     quarter[0], quarter[7] = np.pi / 2, 0.3
-    said = why_first(evolve(whole, table=evolve(whole.table, theta=quarter)))
+    said = explain_why_first(evolve(whole, table=evolve(whole.table, theta=quarter)))
     assert said.endswith("; no fixture lies as drawn.")
 
 

@@ -7,8 +7,13 @@ import pytest
 from attrs import evolve
 
 from friction_program import force_needed
-from workhold.model.jaw_hold import Patch
-from workhold.statics.friction import Grip, directed, find_least_peak_pressure, is_pressed_all_over
+from workhold.model.jaw_hold import JawPatch
+from workhold.statics.friction import (
+    FrictionHold,
+    enclose_directions,
+    find_least_peak_pressure,
+    is_pressed_all_over,
+)
 from workhold.statics.patches import PressedPatch, hulls_meet
 
 MU, WIDE, DEEP = 0.15, 100.0, 60.0
@@ -16,14 +21,14 @@ MU, WIDE, DEEP = 0.15, 100.0, 60.0
 
 def block(grip=20.0, friction=MU, width=WIDE, opening=DEEP, stop=(), way=1.0):
     """A block of a width between jaws that are an opening apart."""
-    face = Patch(((0.0, width, 0.0, grip),), (0,))
-    return Grip.of(face, face, opening, friction, stop, way)
+    face = JawPatch(((0.0, width, 0.0, grip),), (0,))
+    return FrictionHold.from_patches(face, face, opening, friction, stop, way)
 
 
 def needed(grip, *loads):
     """The force for point loads (point, force) that act together."""
     points, forces = (np.array(each, float) for each in zip(*loads, strict=True))
-    return grip.forces_needed(grip.wrenches(points, forces).sum(axis=0)[None])[0]
+    return grip.compute_forces_needed(grip.compute_wrenches(points, forces).sum(axis=0)[None])[0]
 
 
 @pytest.mark.parametrize("way", [(300.0, 0.0, 0.0), (-300.0, 0.0, 0.0), (0.0, 0.0, 300.0)])
@@ -60,7 +65,7 @@ def test_part_tips_where_its_push_leaves_the_kern(grip):
 def test_cells_turn_as_the_integral_does():
     """The moment of the friction of a rectangle about its middle, by cells and by a fine sum."""
     for width, height in ((100.0, 20.0), (30.0, 30.0), (12.0, 60.0)):
-        cells = PressedPatch(Patch(((0.0, width, 0.0, height),), ())).cells
+        cells = PressedPatch(JawPatch(((0.0, width, 0.0, height),), ())).cells
         arms = np.hypot(*(cells.centre - [width / 2, height / 2]).T)
         x, z = (np.arange(2000) + 0.5) / 2000 * width, (np.arange(1000) + 0.5) / 1000 * height
         exact = np.hypot(x[:, None] - width / 2, z - height / 2).mean() * width * height
@@ -113,7 +118,9 @@ def test_force_on_a_step_is_that_of_another_program(case):
     height, width, opening, friction, force, share = case
     fixed = [(0.0, width / 3, 0.0, height), (width / 2, width, 0.0, 0.6 * height)]
     moving = [(0.1 * width, 0.9 * width, 0.2 * height, height)]
-    held = Grip.of(Patch(tuple(fixed), ()), Patch(tuple(moving), ()), opening, friction)
+    held = FrictionHold.from_patches(
+        JawPatch(tuple(fixed), ()), JawPatch(tuple(moving), ()), opening, friction
+    )
     load = share * [width, opening, height], force
     assert needed(held, load) == pytest.approx(
         force_needed(fixed, moving, opening, friction, [load]), rel=0.03, abs=1.0
@@ -121,8 +128,8 @@ def test_force_on_a_step_is_that_of_another_program(case):
 
 
 def test_disc_held_along_two_lines_turns_about_them():
-    line = Patch(((0.0, 0.0, 0.0, 20.0),), (0,))
-    held = Grip.of(line, line, 50.0, MU)
+    line = JawPatch(((0.0, 0.0, 0.0, 20.0),), (0,))
+    held = FrictionHold.from_patches(line, line, 50.0, MU)
     assert needed(held, ((0, 25, 10), (0, 0, 100.0))) == pytest.approx(100 / (2 * MU), rel=1e-9)
     # About the upright axis through the disc both lines slide at half the opening.
     turning = needed(held, ((10, 25, 10), (0, 100.0, 0)), ((-10, 25, 10), (0, -100.0, 0)))
@@ -132,23 +139,23 @@ def test_disc_held_along_two_lines_turns_about_them():
 
 
 def test_jaws_that_cannot_press_all_over():
-    wide, short = Patch(((0.0, 60.0, 0.0, 20.0),), ()), Patch(((0.0, 22.0, 0.0, 20.0),), ())
+    wide, short = JawPatch(((0.0, 60.0, 0.0, 20.0),), ()), JawPatch(((0.0, 22.0, 0.0, 20.0),), ())
     assert not is_pressed_all_over(wide, short)
-    assert is_pressed_all_over(wide, Patch(((0.0, 40.0, 0.0, 20.0),), ()))
+    assert is_pressed_all_over(wide, JawPatch(((0.0, 40.0, 0.0, 20.0),), ()))
     assert find_least_peak_pressure(wide, short, 1.0) is None
 
 
 def test_pressure_is_even_where_both_faces_are_alike():
-    face = Patch(((0.0, 50.0, 0.0, 20.0),), ())
+    face = JawPatch(((0.0, 50.0, 0.0, 20.0),), ())
     assert find_least_peak_pressure(face, face, 3000.0) == pytest.approx(3.0, rel=1e-9)
     # Off the middle by a tenth of the width, the edge bears 1.6 times the mean.
-    moved = Patch(((10.0, 60.0, 0.0, 20.0),), ())
+    moved = JawPatch(((10.0, 60.0, 0.0, 20.0),), ())
     assert find_least_peak_pressure(face, moved, 3000.0) == pytest.approx(4.8, rel=1e-6)
 
 
 def test_corners_about_a_range_of_directions_hold_all_of_them():
     for low, high in ((0.0, 2 * np.pi), (0.3, 0.9), (-1.0, 2.0)):
-        corners = directed(low, high)
+        corners = enclose_directions(low, high)
         for turn in np.linspace(low, high, 50):
             way = np.array([np.cos(turn), np.sin(turn)])
             for normal in np.linspace(0, 2 * np.pi, 64):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from held import force_directions, held, load_wrench, plate_fixture
 from workhold import Load, Result
 from workhold.errors import InputError
-from workhold.statics.loads import compute_shared_forces, jaw_stiffness, load_cases
+from workhold.statics.loads import compute_load_cases, compute_shared_forces, read_jaw_stiffness
 
 Array = NDArray[np.float64]
 
@@ -69,8 +69,8 @@ def test_locked_forces_are_those_of_springs(result: Result, stiffness: float) ->
         )
         wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
         wrench = load_wrench(90, point, angle, load.moment)
-        (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
-        (more,) = load_cases(
+        (case,) = compute_load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
+        (more,) = compute_load_cases(
             fixture, result.workpiece, result.toolkit, [load], jaw_force=1.1 * case.jaw_force, jaw=jaw
         )
         assert more.keeps_contact
@@ -85,10 +85,10 @@ def test_the_manuals_plate() -> None:
     plate, vise, fixture = plate_fixture()
     for direction, constant in ((0, 200), (180, 0)):
         push = Load(points=[(0, 0)], force=200, directions=(direction, direction))
-        assert load_cases(fixture, plate, vise, [push])[0].needed.value == pytest.approx(100)
-        assert load_cases(fixture, plate, vise, [push], jaw="constant")[0].needed.value == pytest.approx(
-            constant
-        )
+        assert compute_load_cases(fixture, plate, vise, [push])[0].needed.value == pytest.approx(100)
+        assert compute_load_cases(fixture, plate, vise, [push], jaw="constant")[
+            0
+        ].needed.value == pytest.approx(constant)
 
 
 def test_a_jaw_that_gives_way_is_between_the_two(result: Result) -> None:
@@ -97,7 +97,7 @@ def test_a_jaw_that_gives_way_is_between_the_two(result: Result) -> None:
     fixture = result[0]
 
     def case(jaw: str | float) -> tuple[float, float]:
-        (told,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
+        (told,) = compute_load_cases(fixture, result.workpiece, result.toolkit, [load], jaw=jaw)
         return told.needed.value, told.reaction.value
 
     (soft, one), (constant, other) = case(1e-9), case("constant")
@@ -111,7 +111,7 @@ def test_a_jaw_that_gives_way_is_between_the_two(result: Result) -> None:
 def test_friction_never_asks_for_more() -> None:
     """With friction a locked jaw needs no more than without."""
     plate, vise, fixture = plate_fixture()
-    (case,) = load_cases(
+    (case,) = compute_load_cases(
         fixture, plate, vise, [Load(points=[(0, 15)], force=200, directions=(0, 0))], friction=0.1
     )
     assert case.needed_with_friction == pytest.approx(75) == pytest.approx(case.needed.value)
@@ -140,4 +140,4 @@ def test_two_clamps_that_are_locked_share_as_springs_do() -> None:
 def test_other_jaws_are_refused(jaw: str | float) -> None:
     """One sentence that names what can be given."""
     with pytest.raises(InputError, match="give screw, constant, or how many times"):
-        jaw_stiffness(jaw)
+        read_jaw_stiffness(jaw)

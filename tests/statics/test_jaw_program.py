@@ -5,18 +5,18 @@ import pytest
 
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import Tool
-from workhold.model.jaw_hold import Patch
+from workhold.model.jaw_hold import JawPatch
 from workhold.model.moves import Moves
 from workhold.model.program import Program
-from workhold.statics.friction import Grip, MotionProgram
-from workhold.statics.jaw_program import GAP, CuttingPieces, PressedPart, worst_of_program
+from workhold.statics.friction import FrictionHold, MotionProgram
+from workhold.statics.jaw_program import GAP, CuttingPieces, PressedPart, find_worst_move
 
 WIDE, DEEP, GRIP, HIGH, SAFETY = 100.0, 60.0, 18.0, 25.0, 2.0
 
 
 def block(friction=0.1, stop=()):
-    face = Patch(((0.0, WIDE, 0.0, GRIP),), (0,))
-    return Grip.of(face, face, DEEP, friction, stop)
+    face = JawPatch(((0.0, WIDE, 0.0, GRIP),), (0,))
+    return FrictionHold.from_patches(face, face, DEEP, friction, stop)
 
 
 def program_of(points, bulges=None, force=400.0, torque=2000.0, axial=(-200.0, 0.0), direction="any"):
@@ -71,15 +71,15 @@ def tried(grip, program, steps=33, ways=64, spread=np.pi):
                 for pull in forces.axial[move]:
                     force = [forces.force[move] * np.cos(angle), forces.force[move] * np.sin(angle), -pull]
                     for sign in (-1.0, 1.0):
-                        row = grip.wrenches(point[None], np.array([force]))[0]
+                        row = grip.compute_wrenches(point[None], np.array([force]))[0]
                         row[5] += sign * forces.torque[move] / grip.length
                         found.append((move, row * SAFETY))
     loads = np.array([row for _, row in found])
-    return MotionProgram(grip).least_forces(loads).max()
+    return MotionProgram(grip).find_least_forces(loads).max()
 
 
 def asked(grip, program, theta=0.0, position=(0.0, 0.0)):
-    return worst_of_program(grip, CuttingPieces.from_program(program, HIGH), program, theta, position, SAFETY)
+    return find_worst_move(grip, CuttingPieces.from_program(program, HIGH), program, theta, position, SAFETY)
 
 
 PATHS = {
@@ -133,7 +133,7 @@ def test_drill_that_presses_on_the_parallels_asks_for_its_torque_alone():
     need, grip = asked(block(), program), block()
     row = np.zeros((1, 6))
     row[0, 5] = 3000.0 * SAFETY / grip.length
-    assert need.force >= MotionProgram(grip).least_forces(row)[0] * (1 - 1e-9) > 0
+    assert need.force >= MotionProgram(grip).find_least_forces(row)[0] * (1 - 1e-9) > 0
 
 
 def test_corners_have_both_torques_and_both_ends_of_the_axial_force():
@@ -142,23 +142,27 @@ def test_corners_have_both_torques_and_both_ends_of_the_axial_force():
     part = PressedPart(
         CuttingPieces.from_program(program, HIGH), grip, MotionProgram(grip), 0.0, (0.0, 0.0), SAFETY
     )
-    rows = part.loads(np.array([0]), 0.0, 0.0)
+    rows = part.make_loads(np.array([0]), 0.0, 0.0)
     assert set(np.round(rows[:, 5] * grip.length)) == {-6000.0, 6000.0}
     assert set(rows[:, 2]) == {200.0, -1000.0}
 
 
 def test_loads_in_one_cone_are_answered_by_one_motion():
     rng, grip = np.random.default_rng(3), block()
-    loads = grip.wrenches(rng.uniform(0, 1, (150, 3)) * [WIDE, DEEP, HIGH], rng.normal(size=(150, 3)) * 300)
-    each = np.array([need if need is not None else np.inf for need in grip.forces_needed(loads)])
-    together = MotionProgram(grip).least_forces(loads)
+    loads = grip.compute_wrenches(
+        rng.uniform(0, 1, (150, 3)) * [WIDE, DEEP, HIGH], rng.normal(size=(150, 3)) * 300
+    )
+    each = np.array([need if need is not None else np.inf for need in grip.compute_forces_needed(loads)])
+    together = MotionProgram(grip).find_least_forces(loads)
     assert together == pytest.approx(each, rel=1e-8, abs=1e-6)
 
 
 def test_what_suffices_does_not_stand_for_the_least():
     rng, grip = np.random.default_rng(5), block()
-    loads = grip.wrenches(rng.uniform(0, 1, (40, 3)) * [WIDE, DEEP, HIGH], rng.normal(size=(40, 3)) * 300)
-    each, motions = MotionProgram(grip).least_forces(loads), MotionProgram(grip)
-    enough = motions.least_forces(loads, 1.2 * each.max())
+    loads = grip.compute_wrenches(
+        rng.uniform(0, 1, (40, 3)) * [WIDE, DEEP, HIGH], rng.normal(size=(40, 3)) * 300
+    )
+    each, motions = MotionProgram(grip).find_least_forces(loads), MotionProgram(grip)
+    enough = motions.find_least_forces(loads, 1.2 * each.max())
     assert (enough >= each * (1 - 1e-9)).all() and (enough <= 1.2 * each.max()).all()
-    assert motions.least_forces(loads) == pytest.approx(each, rel=1e-8, abs=1e-6)
+    assert motions.find_least_forces(loads) == pytest.approx(each, rel=1e-8, abs=1e-6)

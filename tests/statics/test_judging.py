@@ -22,9 +22,9 @@ from workhold.model.quality import (
     TILT,
     WARNINGS,
 )
-from workhold.statics.judging import Judging
-from workhold.statics.loads import load_cases
-from workhold.statics.quality import main_direction, measure_quality, tilts
+from workhold.statics.judging import JudgingLimits
+from workhold.statics.loads import compute_load_cases
+from workhold.statics.quality import compute_tilts, find_main_direction, measure_quality
 
 SHEET = {"number": 1, "count": 1, "day": None, "result_hash": "", "version": ""}
 
@@ -39,7 +39,7 @@ def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
         :, WARNINGS
     ]
     for fixture, count in zip(result, counts, strict=True):
-        cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
+        cases = compute_load_cases(fixture, result.workpiece, result.toolkit, loads, force)
         details = SheetDetails(**SHEET, jaw_force=force, loads=cases)  # type: ignore[arg-type]
         distances = measure_edge_distances(fixture, result.workpiece, result.toolkit)
         kinds = [
@@ -55,7 +55,7 @@ def test_the_jaw_force_needed_is_that_of_the_load_cases(result: Result) -> None:
     loads = [Load(((5.0, 5.0),), 100.0, (20.0, 70.0)), Load((), 0.0, moment=-500.0)]
     needed = measure_quality(result.table, result.workpiece, result.toolkit, loads=loads)[:, JAW_FORCE_NEEDED]
     for fixture, found in zip(result, needed, strict=True):
-        cases = load_cases(fixture, result.workpiece, result.toolkit, loads)
+        cases = compute_load_cases(fixture, result.workpiece, result.toolkit, loads)
         assert found == pytest.approx(max(case.needed.value for case in cases), rel=1e-6, abs=1e-9)
 
 
@@ -86,7 +86,7 @@ def test_a_figure_exactly_on_the_edge_costs_nothing(
     quality = np.zeros((4, 12))
     quality[:, [LOCATION_ERROR, SMALLEST_FACE]] = 0.02, 50.0
     quality[:, figure] = edge, edge + beyond, edge - beyond, edge + beyond / 1000
-    penalty = Judging(0.02, 5.0, None).penalty(quality)
+    penalty = JudgingLimits(0.02, 5.0, None).compute_penalty(quality)
     assert penalty[:2].tolist() == [0, points]
     assert figure in (TILT, LOCATION_ERROR) or penalty[2:].tolist() == [0, 0]
 
@@ -96,10 +96,10 @@ def test_the_main_direction_turns_with_the_part(turn: float) -> None:
     """A long bar's, also where rounding puts its sides about 0 and 90 degrees."""
     corners = np.array([0, 60, 60 + 20j, 20j]) * np.exp(1j * np.radians(turn))
     part = Workpiece.from_loops("bar", [[[z.real, z.imag, 0] for z in corners]])
-    off = (main_direction(part) - turn + 45) % 90 - 45
+    off = (find_main_direction(part) - turn + 45) % 90 - 45
     assert abs(off) < 1e-9
-    assert tilts(
-        np.radians([-turn, 90 - turn, 30 - turn, -turn - 0.009]), main_direction(part)
+    assert compute_tilts(
+        np.radians([-turn, 90 - turn, 30 - turn, -turn - 0.009]), find_main_direction(part)
     ) == pytest.approx([0.0, 0.0, 30.0, 0.0], abs=1e-9)
 
 
@@ -109,7 +109,7 @@ def test_without_one_main_direction_the_drawing_decides() -> None:
         "triangle", [[[0, 0, 0], [40, 10, 0], [20 - 5 * 3**0.5, 5 + 20 * 3**0.5, 0]]]
     )
     disc = Workpiece.from_loops("disc", [[[-10, 0, 1], [10, 0, 1]]])
-    assert main_direction(triangle) == main_direction(disc) == 0.0
+    assert find_main_direction(triangle) == find_main_direction(disc) == 0.0
 
 
 def test_of_faces_that_are_nearly_square_the_longest_tells_the_main_direction() -> None:
@@ -120,4 +120,4 @@ def test_of_faces_that_are_nearly_square_the_longest_tells_the_main_direction() 
         corners = (0, along, along * 1.2 + across * 0.9, across)
         part = Workpiece.from_loops("bracket", [[[z.real, z.imag, 0] for z in map(complex, corners)]])
         (x, y), (u, v) = part.segments[side].start, part.segments[side].end
-        assert main_direction(part) == pytest.approx(np.degrees(np.arctan2(v - y, u - x)) % 90, abs=1e-9)
+        assert find_main_direction(part) == pytest.approx(np.degrees(np.arctan2(v - y, u - x)) % 90, abs=1e-9)

@@ -23,7 +23,7 @@ from workhold.model.quality import (
     LOAD_REACTION,
     LOCATION_ERROR,
 )
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.statics.quality import measure_quality
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ class TestHeld:
             load = Load(
                 points=[point], force=90, directions=(direction, direction), moment=random.uniform(-500, 500)
             )
-            (case,) = load_cases(
+            (case,) = compute_load_cases(
                 fixture, result.workpiece, result.toolkit, [load], jaw_force=250, jaw="constant"
             )
             assert case.smallest == pytest.approx(case.largest, rel=1e-9, abs=1e-9)
@@ -73,7 +73,7 @@ class TestHeld:
         path = [(-10.0, 3.0), (12.0, -4.0), (5.0, 9.0)]
         for fixture in list(result)[::5]:
             load = Load(points=path, force=90, directions=(200, 290), moment=-200)
-            (case,) = load_cases(
+            (case,) = compute_load_cases(
                 fixture, result.workpiece, result.toolkit, [load], jaw_force=100, jaw="constant"
             )
             singles = [
@@ -81,13 +81,13 @@ class TestHeld:
                 for point in (*path, (1.0, -0.5))
                 for angle in np.linspace(200, 290, 46)
             ]
-            cases = load_cases(
+            cases = compute_load_cases(
                 fixture, result.workpiece, result.toolkit, singles, jaw_force=100, jaw="constant"
             )
             forces = np.array([single.largest for single in cases])
             # Half a step of 2 degrees takes 1 - cos(1 degree) off a sinusoid, which is as large at most as the forces and
             # those that do not turn with the load, of the jaws and the moment.
-            (still,) = load_cases(
+            (still,) = compute_load_cases(
                 fixture, result.workpiece, result.toolkit, [Load(moment=-200)], jaw_force=100
             )
             slack = 1.6e-4 * (np.abs(forces).max() + np.abs(still.largest).max())
@@ -102,7 +102,7 @@ class TestHeld:
         random = np.random.default_rng(2)
         for fixture in result:
             load = Load(points=[(4.0, 7.0), (-9.0, 1.0)], force=60, directions=(20, 200), moment=90)
-            (case,) = load_cases(fixture, result.workpiece, result.toolkit, [load], jaw="constant")
+            (case,) = compute_load_cases(fixture, result.workpiece, result.toolkit, [load], jaw="constant")
             wrenches, shares = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
             there = load_wrench(60, case.needed.point, case.needed.direction, 90)
             assert least_jaw_force(wrenches, shares, there) == pytest.approx(
@@ -114,7 +114,7 @@ class TestHeld:
             assert case.jaw_force == case.needed.value and case.keeps_contact
             if case.needed.value > 0:
                 assert min(case.smallest) == pytest.approx(0.0, abs=1e-9 * max(case.largest))
-                (less,) = load_cases(
+                (less,) = compute_load_cases(
                     fixture,
                     result.workpiece,
                     result.toolkit,
@@ -132,7 +132,7 @@ class TestHeld:
         for fixture in list(result)[::2]:
             angle, point = random.uniform(0, 360), (random.uniform(-9, 9), random.uniform(-9, 9))
             load = Load(points=[point], force=60, directions=(angle, angle), moment=90)
-            (case,) = load_cases(
+            (case,) = compute_load_cases(
                 fixture, result.workpiece, result.toolkit, [load], friction=friction, jaw="constant"
             )
             wrenches, shares = force_directions(
@@ -150,7 +150,7 @@ class TestHeld:
             steps = [
                 Load(points=[(4.0, 7.0)], force=60, directions=(a, a)) for a in np.linspace(20, 200, 181)
             ]
-            case, *singles = load_cases(
+            case, *singles = compute_load_cases(
                 fixture, result.workpiece, result.toolkit, [load, *steps], friction=0.15, jaw="constant"
             )
             worst = max(single.needed_with_friction or 0.0 for single in singles)
@@ -168,7 +168,7 @@ def test_little_friction_adds_little_in_a_vise_that_opens() -> None:
     assert len(result) > 0
     load = Load(points=[(4.0, 7.0)], force=60, directions=(0, 360))
     for fixture in result:
-        (case,) = load_cases(fixture, part, result.toolkit, [load], friction=1e-7, jaw="constant")
+        (case,) = compute_load_cases(fixture, part, result.toolkit, [load], friction=1e-7, jaw="constant")
         assert case.needed_with_friction == pytest.approx(case.needed.value, rel=1e-3)
 
 
@@ -188,10 +188,10 @@ def test_worked_example() -> None:
     """What docs/quality.md works out by hand: a = F - 200, b = d = F - 250, c = F, and the figures that follow."""
     plate, vise, fixture = plate_fixture()
     push = Load(points=[(0, 15)], force=200, directions=(0, 0))
-    (case,) = load_cases(fixture, plate, vise, [push], jaw_force=600, jaw="constant")
+    (case,) = compute_load_cases(fixture, plate, vise, [push], jaw_force=600, jaw="constant")
     assert case.largest == pytest.approx((400, 350, 350, 600)) and case.keeps_contact
     assert case.needed.value == pytest.approx(250) and case.reaction.value == pytest.approx(250)
-    (case,) = load_cases(
+    (case,) = compute_load_cases(
         fixture, plate, vise, [Load(points=[(0, 15)], force=200)], jaw_force=600, jaw="constant"
     )
     assert case.needed.value == pytest.approx(200 * hypot(1.25, 0.5)) == pytest.approx(269.26, abs=0.005)
@@ -218,7 +218,7 @@ def test_worked_example() -> None:
 def test_the_sign_of_loads() -> None:
     """A load is what acts on the part: pushed to the right, the right peg presses harder than the left one."""
     plate, vise, fixture = plate_fixture()
-    (case,) = load_cases(
+    (case,) = compute_load_cases(
         fixture,
         plate,
         vise,
@@ -229,14 +229,14 @@ def test_the_sign_of_loads() -> None:
     left, _, _, right = case.largest
     assert right - left == pytest.approx(100)
     # A moment counter-clockwise is resisted by the pegs below and above, whose forces turn the part clockwise.
-    (case,) = load_cases(fixture, plate, vise, [Load(moment=1000)], jaw_force=500, jaw="constant")
+    (case,) = compute_load_cases(fixture, plate, vise, [Load(moment=1000)], jaw_force=500, jaw="constant")
     assert case.largest == pytest.approx((500, 550, 550, 500))
 
 
 def test_a_load_that_closes_a_vise_that_keeps_its_force_needs_none() -> None:
     """The jaw force needed is never negative."""
     plate, vise, fixture = plate_fixture()
-    (case,) = load_cases(
+    (case,) = compute_load_cases(
         fixture,
         plate,
         vise,
@@ -253,10 +253,10 @@ def test_bad_numbers_are_refused(option: str, value: float) -> None:
     """One sentence for a jaw force or a coefficient of friction that cannot be."""
     plate, vise, fixture = plate_fixture()
     with pytest.raises(InputError, match=r"cannot be used: give 0 or more\."):
-        load_cases(fixture, plate, vise, [Load(moment=1)], **{option: value})
+        compute_load_cases(fixture, plate, vise, [Load(moment=1)], **{option: value})
 
 
 def test_no_loads_no_cases() -> None:
     """Nothing acts, nothing is told."""
     result = held("widget", 8, 1, 3, 50)
-    assert load_cases(result[0], result.workpiece, result.toolkit, []) == ()
+    assert compute_load_cases(result[0], result.workpiece, result.toolkit, []) == ()

@@ -11,9 +11,15 @@ from numpy.typing import NDArray
 from workhold import Program
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingDirection, Cylinder, Tool
-from workhold.model.moves import Moves, along
+from workhold.model.moves import Moves, compute_path_points
 from workhold.statics import path_forces as module
-from workhold.statics.path_forces import PathForces, drop_lesser_torques, inside, list_all_pieces, path_forces
+from workhold.statics.path_forces import (
+    PathForces,
+    are_inside_hull,
+    drop_lesser_torques,
+    list_all_pieces,
+    list_path_forces,
+)
 
 Array = NDArray[np.float64]
 CENTER = (7.0, -3.0)
@@ -59,7 +65,7 @@ def walked(program: Program, functions: Array, places: int = 200, ways: int = 12
         share = np.linspace(0, 1, places if moves.bulge[k] else 2)
         ones = np.ones(len(share))
         ends = (np.outer(ones, one[k, :2]) for one in (moves.start, moves.end))
-        at = along(*ends, moves.bulge[k] * ones, share) - np.array(CENTER)
+        at = compute_path_points(*ends, moves.bulge[k] * ones, share) - np.array(CENTER)
         chord, sweep = (moves.end - moves.start)[k], 4 * np.arctan(moves.bulge[k])
         against = np.arctan2(chord[1], chord[0]) + sweep * (share - 0.5) + pi
         phi = against[:, None] + np.linspace(-half, half, ways)
@@ -77,7 +83,7 @@ def walked(program: Program, functions: Array, places: int = 200, ways: int = 12
 @pytest.mark.parametrize("seed", range(4))
 def test_the_worst_is_that_of_a_dense_walk(seed: int, levels: int, direction: CuttingDirection) -> None:
     program, functions = random_program(seed, direction, levels), functions_of(seed, 9, 4)
-    found, (dense, _) = path_forces(program, CENTER).worst(functions), walked(program, functions)
+    found, (dense, _) = list_path_forces(program, CENTER).find_worst(functions), walked(program, functions)
     assert (found.value >= dense.max(axis=1) * (1 - 1e-12)).all()
     assert found.value == pytest.approx(dense.max(axis=1), rel=2e-3)
     certain = np.sort(dense, axis=1)[:, -1] > 1.01 * np.sort(dense, axis=1)[:, -2]
@@ -111,18 +117,18 @@ COLUMNS = ("line", "tool", "cutting", "start", "end", "bulge", "feed", "spindle"
 @pytest.mark.parametrize("levels", [1, 5, 400])
 def test_what_is_left_out_is_never_worst(levels: int, direction: CuttingDirection) -> None:
     program, functions = random_program(11, direction, levels, 900), functions_of(3, 60, 2)
-    whole, some = list_all_pieces(program, CENTER), path_forces(program, CENTER)
+    whole, some = list_all_pieces(program, CENTER), list_path_forces(program, CENTER)
     assert len(some) < len(whole) / (3 if direction == "any" else 1.1)
-    every = whole.worst(functions)
-    assert some.worst(functions).value == pytest.approx(every.value, rel=1e-12)
+    every = whole.find_worst(functions)
+    assert some.find_worst(functions).value == pytest.approx(every.value, rel=1e-12)
 
 
 def test_blocks_are_passed_over_only_where_they_hold_less(monkeypatch: pytest.MonkeyPatch) -> None:
     program, functions = random_program(5, "feed", 30, 400), functions_of(9, 40, 3)
     pieces = drop_lesser_torques(list_all_pieces(program, CENTER))
-    found = pieces.worst(functions)
+    found = pieces.find_worst(functions)
     monkeypatch.setattr(module, "BLOCK", len(pieces))
-    whole = PathForces(*(getattr(pieces, name) for name in module.COLUMNS), spread=pieces.spread).worst(
+    whole = PathForces(*(getattr(pieces, name) for name in module.COLUMNS), spread=pieces.spread).find_worst(
         functions
     )
     assert found.value == pytest.approx(whole.value, rel=1e-13)
@@ -137,13 +143,15 @@ def test_a_straight_push_by_hand() -> None:
     forces = CuttingForces([200], [1000], [[0, 0]], [0])
     tool = Tool(1, [Cylinder(0, 40, 5)], 10)
     program = Program("p.nc", "0", "mm", (0.0, 0.0), 0.0, tools={1: tool}, moves=moves, forces=forces)
-    found = path_forces(program, (0.0, 0.0)).worst(np.array([[[0, 0, 1.0]], [[0, 0, -2.0]], [[3.0, 4, 0]]]))
+    found = list_path_forces(program, (0.0, 0.0)).find_worst(
+        np.array([[[0, 0, 1.0]], [[0, 0, -2.0]], [[3.0, 4, 0]]])
+    )
     assert found.value.tolist() == pytest.approx([7000, 14000, 1000])
     against = CuttingForces([200], [1000], [[0, 0]], [0], "feed")
-    found = path_forces(
+    found = list_path_forces(
         Program("p.nc", "0", "mm", (0.0, 0.0), 0.0, tools={1: tool}, moves=moves, forces=against),
         (0.0, 0.0),
-    ).worst(np.array([[[1.0, 0, 0]], [[-1.0, 0, 0]], [[0, 1.0, 0]]]))
+    ).find_worst(np.array([[[1.0, 0, 0]], [[-1.0, 0, 0]], [[0, 1.0, 0]]]))
     # Within 60 degrees of -x: never to the right, and across with the sine of 60 degrees.
     assert found.value.tolist() == pytest.approx([0, 200, 200 * 3**0.5 / 2])
     assert found.move.tolist() == [-1, 0, 0]
@@ -152,5 +160,5 @@ def test_a_straight_push_by_hand() -> None:
 def test_inside_a_hull_with_upright_sides() -> None:
     square = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]])
     x, y = np.array([0.0, 2, 0, 2, 1, -0.1, 2.1, 1, 0]), np.array([1.0, 1, 0, 2, 2, 1, 1, 2.1, -0.1])
-    assert inside(square, x, y).tolist() == [True] * 5 + [False] * 4
-    assert not inside(square[:2], x, y).any()
+    assert are_inside_hull(square, x, y).tolist() == [True] * 5 + [False] * 4
+    assert not are_inside_hull(square[:2], x, y).any()

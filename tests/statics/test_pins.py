@@ -21,9 +21,9 @@ from workhold.model.quality import (
     list_figures_in_columns,
 )
 from workhold.model.solid import SolidOutline
-from workhold.statics.bent_pegs import bent_pegs
-from workhold.statics.contact_matrix import Touched
-from workhold.statics.pins import compute_deflections, stresses
+from workhold.statics.bent_pegs import compute_bent_pegs
+from workhold.statics.contact_matrix import TouchableFeatures
+from workhold.statics.pins import compute_deflections, compute_stresses
 from workhold.statics.quality import measure_quality
 from workhold.units import INCH, MILLIMETRE
 
@@ -45,8 +45,8 @@ def test_by_hand_a_pin_of_6_mm_gives_way_0_694_mm() -> None:
     bending, shear = 500 * 38**3 / (3 * 210_000 * inertia), 10 * 500 * 38 / (9 * 81_000 * area)
     assert (round(bending, 3), round(bending + shear, 3)) == (0.685, 0.694)
     assert compute_deflections(500.0, 38.0, 6.0) == pytest.approx(bending + shear, rel=1e-12)
-    assert stresses(500.0, 38.0, 6.0) == pytest.approx(500 * 38 / (inertia / 3), rel=1e-12)
-    assert round(stresses(500.0, 38.0, 6.0)) == 896
+    assert compute_stresses(500.0, 38.0, 6.0) == pytest.approx(500 * 38 / (inertia / 3), rel=1e-12)
+    assert round(compute_stresses(500.0, 38.0, 6.0)) == 896
 
 
 def test_the_pinwheel_by_hand(bent: Result) -> None:
@@ -57,7 +57,7 @@ def test_the_pinwheel_by_hand(bent: Result) -> None:
     )
     way = compute_deflections(500.0, 38.0, 6.0)
     assert fixture.quality["pin_deflection"] == pytest.approx(way, rel=1e-9)
-    assert fixture.quality["pin_stress"] == pytest.approx(stresses(500.0, 38.0, 6.0), rel=1e-9)
+    assert fixture.quality["pin_stress"] == pytest.approx(compute_stresses(500.0, 38.0, 6.0), rel=1e-9)
     # Pegs b and d give way by w each, so the part turns by w / 10, and a keeps 10 w / 10 + w of its side.
     corner = np.hypot(2 * way + 17 * way / 10, 17 * way / 10)
     assert fixture.quality["pin_movement"] == pytest.approx(corner, rel=1e-9)
@@ -71,10 +71,10 @@ def test_without_a_force_it_is_for_each_kn_and_warns_of_nothing(bent: Result) ->
         for key in PIN_KEYS:
             assert fixture.quality[key] == pytest.approx(2 * other[key], rel=1e-9)
         assert other["warnings"] == fixture.quality["warnings"] + 2
-    found = bent_pegs(per_kn[0], SQUARE, VISE, pressed_up_to=76)
-    assert found is not None and found.cautions("jaw", MILLIMETRE) == []
-    assert found.sentence("jaw", MILLIMETRE).startswith("For each kN of jaw force ")
-    assert found.sentence("jaw", INCH).startswith("For each 225 lbf")
+    found = compute_bent_pegs(per_kn[0], SQUARE, VISE, pressed_up_to=76)
+    assert found is not None and found.list_cautions("jaw", MILLIMETRE) == []
+    assert found.describe_bending("jaw", MILLIMETRE).startswith("For each kN of jaw force ")
+    assert found.describe_bending("jaw", INCH).startswith("For each 225 lbf")
 
 
 @pytest.mark.thinned(2)
@@ -92,13 +92,13 @@ def test_limits_are_those_of_the_toolkit(limits: dict[str, float], more: int) ->
     base = design(SQUARE, VISE, best=1, thickness=76)[0].quality["warnings"]
     result = design(SQUARE, evolve(VISE, pins=PinLimits(**limits)), best=1, thickness=76, jaw_force=500)
     assert result[0].quality["warnings"] == base + more
-    found = bent_pegs(result[0], SQUARE, result.toolkit, pressed_up_to=76, jaw_force=500)
-    assert found is not None and len(found.cautions("jaw", MILLIMETRE)) == more
+    found = compute_bent_pegs(result[0], SQUARE, result.toolkit, pressed_up_to=76, jaw_force=500)
+    assert found is not None and len(found.list_cautions("jaw", MILLIMETRE)) == more
 
 
 def test_the_usual_limit_is_a_third_of_the_yield_of_hrc_47() -> None:
     """HRC 47 is HV 471 (ASTM E140), which yields at 2.876 HV - 90.7 MPa (Pavlina and Van Tyne, 2008)."""
-    found = bent_pegs(design(SQUARE, VISE, best=1)[0], SQUARE, VISE, pressed_up_to=10, jaw_force=1)
+    found = compute_bent_pegs(design(SQUARE, VISE, best=1)[0], SQUARE, VISE, pressed_up_to=10, jaw_force=1)
     assert found is not None
     assert found.stress_limit == round((2.876 * 471 - 90.7) / 3)
     assert found.movement_limit == 0.05
@@ -107,19 +107,20 @@ def test_the_usual_limit_is_a_third_of_the_yield_of_hrc_47() -> None:
 def test_the_worst_is_at_the_top_and_supports_make_the_lever_longer() -> None:
     fixture = design(SQUARE, VISE, best=1)[0]
     low, high = (
-        bent_pegs(fixture, SQUARE, VISE, pressed_up_to=20, jaw_force=500, lift=lift) for lift in (0.0, 8.0)
+        compute_bent_pegs(fixture, SQUARE, VISE, pressed_up_to=20, jaw_force=500, lift=lift)
+        for lift in (0.0, 8.0)
     )
     assert low is not None and high is not None
     for peg, lifted in zip(low.pegs, high.pegs, strict=True):
         assert (peg.height, peg.top, lifted.height, lifted.top) == (10.0, 20.0, 18.0, 28.0)
         assert peg.worst_deflection == pytest.approx(compute_deflections(peg.force, 20.0, 6.0))
-        assert lifted.stress == pytest.approx(stresses(peg.force, 18.0, 6.0))
+        assert lifted.stress == pytest.approx(compute_stresses(peg.force, 18.0, 6.0))
     assert low.movement < low.worst_movement < high.worst_movement
 
 
 def test_where_no_height_is_known_nothing_is_said() -> None:
     result = design(SQUARE, VISE, jaw_force=500)
-    assert bent_pegs(result[0], SQUARE, VISE) is None
+    assert compute_bent_pegs(result[0], SQUARE, VISE) is None
     assert not set(PIN_KEYS) & set(result[0].quality)
     assert list_figures_in_columns(result.table.quality.shape[1]) == FIGURES[:BEFORE_PINS]
     with pytest.raises(InputError, match="give the part's thickness, or the height of the pegs"):
@@ -139,7 +140,7 @@ def test_clamps_and_points_do_not_bend() -> None:
     """Of a plate the three locators alone, and pegs of radius 0 have no section."""
     result = design(KITE, PLATE, best=3, thickness=12)
     for fixture in result:
-        found = bent_pegs(fixture, KITE, PLATE, pressed_up_to=12)
+        found = compute_bent_pegs(fixture, KITE, PLATE, pressed_up_to=12)
         assert found is not None
         assert [peg.hole for peg in found.pegs] == [p.hole for p in fixture.pegs if p.carrier == "plate"]
         assert found.most.deflection == pytest.approx(fixture.quality["pin_deflection"], rel=1e-9)
@@ -151,10 +152,10 @@ def test_clamps_and_points_do_not_bend() -> None:
 def test_pegs_move_the_part_as_errors_of_their_places_would() -> None:
     """The derivative is that of the location error: tried on every corner of the part."""
     result = design(KITE, PLATE, best=5, thickness=30, jaw_force=900)
-    touched = Touched.of(KITE, PLATE)
+    touched = TouchableFeatures.from_workpiece(KITE, PLATE)
     for fixture in result:
-        contacts = touched.of_fixture(fixture, PLATE)
-        found = bent_pegs(fixture, KITE, PLATE, pressed_up_to=30, jaw_force=900)
+        contacts = touched.compute_for_fixture(fixture, PLATE)
+        found = compute_bent_pegs(fixture, KITE, PLATE, pressed_up_to=30, jaw_force=900)
         assert found is not None
         ways = np.array([*[peg.deflection for peg in found.pegs], 0.0])
         moved = contacts.inverses[0, :3] @ ways
@@ -180,10 +181,10 @@ def test_of_a_solid_each_peg_is_pressed_in_the_middle_of_its_run() -> None:
     heights: dict[int, set[float]] = {}
     result = design(part, VISE)
     for fixture in result:
-        found = bent_pegs(fixture, part, VISE)
+        found = compute_bent_pegs(fixture, part, VISE)
         assert found is not None
         for peg, bent_peg in zip(fixture.pegs, found.pegs, strict=True):
-            run = part.numbered.pressed(peg.face, fixture.pose.inverse.apply(peg.x, peg.y))
+            run = part.numbered.find_pressed_band(peg.face, fixture.pose.inverse.apply(peg.x, peg.y))
             assert run is not None
             assert (bent_peg.height, bent_peg.top) == pytest.approx((sum(run) / 2, run[1]), abs=1e-9)
             heights.setdefault(peg.face, set()).add(round(bent_peg.height, 6))

@@ -13,11 +13,11 @@ from attrs import evolve
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
 from workhold import Load, Program, Query, Result, answer
-from workhold.model.cutting_forces import CuttingForces, forces_on
+from workhold.model.cutting_forces import CuttingForces, compute_cutting_forces
 from workhold.model.cutting_tool import CuttingData
-from workhold.model.moves import Moves, Stretches, along
+from workhold.model.moves import Moves, MoveStretches, compute_path_points
 from workhold.model.quality import JAW_FORCE_NEEDED, LOAD_REACTION
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.statics.program_forces import find_cutting_need
 from workhold.statics.quality import measure_quality
 
@@ -37,7 +37,7 @@ def result_of(kind: str, **more: Any) -> Result:
 def pressing(program: Program, force: float = 300.0) -> Program:
     """A program whose tools press."""
     data = CuttingData(cutting_force=force)
-    return evolve(program, forces=forces_on(program.moves, program.tools, data), is_placed=False)
+    return evolve(program, forces=compute_cutting_forces(program.moves, program.tools, data), is_placed=False)
 
 
 def figures(result: Result, program: Program | None, loads: tuple[Load, ...] = ()) -> np.ndarray:
@@ -56,7 +56,7 @@ def as_loads(program: Program, step: float = 0.05) -> tuple[Load, ...]:
         count = 2 if moves.bulge[k] == 0.0 else int(moves.length[k] / step) + 2
         share, ones = np.linspace(0, 1, count), np.ones(count)
         ends = (np.outer(ones, one[k, :2]) for one in (moves.start, moves.end))
-        points = along(*ends, moves.bulge[k] * ones, share)
+        points = compute_path_points(*ends, moves.bulge[k] * ones, share)
         for sign in (1, -1):
             out.append(
                 Load(points.tolist(), float(forces.force[own]), moment=sign * float(forces.torque[own]))
@@ -79,7 +79,7 @@ def test_a_program_asks_what_its_loads_do(kind: str) -> None:
     both = np.maximum(found, figures(result, None, heavy))
     assert figures(result, program, heavy) == pytest.approx(both)
     for index in range(3):
-        cases = load_cases(result[index], result.workpiece, result.toolkit, loads, jaw_force=4000.0)
+        cases = compute_load_cases(result[index], result.workpiece, result.toolkit, loads, jaw_force=4000.0)
         need = find_cutting_need(result, index, 4000.0)
         assert need is not None
         assert need.jaw.force == pytest.approx(max(case.needed.value for case in cases), rel=1e-4)
@@ -89,7 +89,7 @@ def test_a_program_asks_what_its_loads_do(kind: str) -> None:
         assert need.room == pytest.approx(4000.0 - need.jaw.force)
         constant = find_cutting_need(result, index, None, "constant")
         assert constant is not None and constant.room is None
-        cases = load_cases(result[index], result.workpiece, result.toolkit, loads, jaw="constant")
+        cases = compute_load_cases(result[index], result.workpiece, result.toolkit, loads, jaw="constant")
         assert constant.jaw.force == pytest.approx(cases[0].jaw_force, rel=1e-4)
 
 
@@ -97,7 +97,7 @@ def test_forces_twice_as_large_ask_for_twice_as_much() -> None:
     result = result_of("vise")
     program = result.query.program
     assert program is not None
-    strong = pressing(program, 600.0).pressing_on(result.workpiece.outer_loops)
+    strong = pressing(program, 600.0).keep_forces_on(result.workpiece.outer_loops)
     once, twice = figures(result, program), figures(result, strong)
     assert twice == pytest.approx(2 * once) and (once > 0).all()
 
@@ -128,7 +128,7 @@ def test_a_longer_path_never_asks_for_less(direction: Any) -> None:
         whole = program.forces
         some = whole.stretches
         own = some.move < count
-        cut = Stretches(some.move[own], some.first[own], some.last[own])
+        cut = MoveStretches(some.move[own], some.first[own], some.last[own])
         columns = (whole.force[:count], whole.torque[:count], whole.axial[:count], whole.height[:count])
         forces = CuttingForces(*columns, direction, stretches=cut)
         found = figures(result, evolve(program, moves=part, forces=forces))
@@ -156,7 +156,9 @@ def test_words_say_who_asks() -> None:
     assert need.jaw.line in program.moves.line and need.jaw.tool in program.tools
     holes = [peg.hole for peg in result_of("vise")[0].pegs]
     assert need.jaw.element is not None and need.jaw.element.removeprefix("peg ") in holes
-    still = evolve(program, forces=forces_on(program.moves, program.tools, CuttingData(cutting_force=0)))
+    still = evolve(
+        program, forces=compute_cutting_forces(program.moves, program.tools, CuttingData(cutting_force=0))
+    )
     none = find_cutting_need(
         evolve(result_of("vise"), query=evolve(result_of("vise").query, program=still)), 0
     )

@@ -13,8 +13,8 @@ from scipy.spatial import ConvexHull
 
 from held import contacts, force_directions, held, load_wrench
 from workhold import Fixture, Load, Plate, Result, Tolerance, Workpiece, design
-from workhold.geometry.segment import Arc, segment_rows
-from workhold.kernels.base.distance import outline_distances
+from workhold.geometry.segment import Arc, make_segment_rows
+from workhold.kernels.base.distance import measure_outline_distances
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.quality import (
@@ -26,7 +26,7 @@ from workhold.model.quality import (
     LOCATION_ERROR,
     WRENCH_RADIUS,
 )
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 from workhold.statics.quality import measure_quality
 
 Array = NDArray[np.float64]
@@ -106,7 +106,7 @@ class TestHeld:
         assert together == pytest.approx(np.max(single, axis=0), rel=1e-12)
         for k, fixture in enumerate(result):
             wrenches, _ = force_directions(fixture, result.workpiece, result.toolkit.peg_radius)
-            cases = load_cases(fixture, result.workpiece, result.toolkit, loads)
+            cases = compute_load_cases(fixture, result.workpiece, result.toolkit, loads)
             for load, case, figures in zip(loads, cases, single, strict=True):
                 worst = case.reaction
                 assert worst.value == pytest.approx(figures[k], rel=1e-6)
@@ -123,18 +123,23 @@ class TestHeld:
 def walk(workpiece: Workpiece, radius: float, number: int, center: Array) -> float:
     """How far in mm a peg can go along its face until it leaves the face or comes nearer than its radius to the part."""
     face = next(face.segment for face in workpiece.faces if face.number == number)
-    rows = segment_rows([other.segment for other in workpiece.faces])
+    rows = make_segment_rows([other.segment for other in workpiece.faces])
     scale = face.radius + face.sign * radius if isinstance(face, Arc) else 1.0
     if isinstance(face, Arc) and face.is_full:
         return pi * scale
-    start = face.parameter((float(center[0]), float(center[1])))
+    start = face.find_parameter((float(center[0]), float(center[1])))
     best = np.inf
     for way in (-1.0, 1.0):
 
         def clear(distances: Array, way: float = way) -> NDArray[np.bool_]:
             parameters = start + way * distances / scale
-            at = np.array([np.add(face.at(s), np.multiply(radius, face.normal(s))) for s in parameters])
-            apart = outline_distances(at, rows) >= radius - 1e-9
+            at = np.array(
+                [
+                    np.add(face.compute_point(s), np.multiply(radius, face.compute_normal(s)))
+                    for s in parameters
+                ]
+            )
+            apart = measure_outline_distances(at, rows) >= radius - 1e-9
             return np.asarray((np.abs(parameters) <= face.half_extent) & apart)
 
         steps = np.arange(0.0, 120.0, 0.05) + 1e-7
@@ -153,7 +158,7 @@ def silhouette(workpiece: Workpiece) -> Array:
     for face in workpiece.faces:
         half = face.segment.half_extent
         count = 2 + int(100 * half) if isinstance(face.segment, Arc) else 2
-        points += [face.segment.at(s) for s in np.linspace(-half, half, count)]
+        points += [face.segment.compute_point(s) for s in np.linspace(-half, half, count)]
     return np.array(points)
 
 
@@ -190,7 +195,7 @@ def solved(fixture: Fixture, result: Result, off: int, error: float) -> Array:
                     np.hypot(qx - segment.center[0], qy - segment.center[1]) - segment.radius
                 )
             else:
-                nx, ny = segment.normal()
+                nx, ny = segment.compute_normal()
                 away = (qx - segment.middle[0]) * nx + (qy - segment.middle[1]) * ny
             out.append(away - radius - wrong)
         return out
@@ -245,7 +250,10 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_no_fixtures_no_figures() -> None:
     """An empty table gives an empty array; without loads the load reaction is not known."""
     result = held("widget", 8, 1, 3, 50)
-    assert measure_quality(FixtureTable.empty(), result.workpiece, result.toolkit).shape == (0, BEFORE_PINS)
+    assert measure_quality(FixtureTable.make_empty(), result.workpiece, result.toolkit).shape == (
+        0,
+        BEFORE_PINS,
+    )
     quality = measure_quality(result.table, result.workpiece, result.toolkit)
     assert np.isnan(quality[:, LOAD_REACTION]).all() and not np.isnan(quality[:, :LOAD_REACTION]).any()
 

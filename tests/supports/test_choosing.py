@@ -15,8 +15,8 @@ from workhold import Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.model.support_request import SupportRequest
 from workhold.supports import choosing, listing
-from workhold.supports.choosing import bound_coarse_figure, coarse
-from workhold.supports.listing import supports_of, yield_supports
+from workhold.supports.choosing import bound_coarse_figure, round_coarsely
+from workhold.supports.listing import find_supports, yield_supports
 
 
 @pytest.mark.thorough
@@ -31,14 +31,14 @@ def test_the_best_few_of_random_fixtures_are_the_first_of_all(
         request, loads = random_demand(random, query.workpiece)
         if random.random() < 0.3:
             request = evolve(request, reach=[(20.0, 20.0, 5.0, 40.0)])
-        everything = supports_of(fixture, query, request, loads)
+        everything = find_supports(fixture, query, request, loads)
         assert everything.complete
         with monkeypatch.context() as patch:
             patch.setattr(choosing, "FEW_HOLES", few)
             patch.setattr(choosing, "FIRST", 2)
             patch.setattr(choosing, "LATER", 5)
             for count in (1, 3, 12):
-                best = supports_of(fixture, query, request, loads, best=count)
+                best = find_supports(fixture, query, request, loads, best=count)
                 assert best.triples == everything.triples[:count]
                 assert best.count in (None, everything.count)
         with_some += bool(everything.triples)
@@ -64,10 +64,11 @@ def test_of_a_part_that_hangs_in_places_the_best_few_are_the_first_of_all() -> N
             head_radius=random.uniform(1.0, 6.0),
             tip_margin=random.uniform(0.0, 1.0),
         )
-        everything = supports_of(fixture, query, request, loads)
+        everything = find_supports(fixture, query, request, loads)
         for count in (1, 3, 12):
             assert (
-                supports_of(fixture, query, request, loads, best=count).triples == everything.triples[:count]
+                find_supports(fixture, query, request, loads, best=count).triples
+                == everything.triples[:count]
             )
         order = [(one.standing < -1e-9, one.given is None, one.clamp.hangs) for one in everything.triples]
         late = request.point is not None
@@ -89,12 +90,12 @@ def rectangle(a: list[float], b: list[float], most: float) -> list[list[float]]:
 def test_sets_from_which_the_part_falls_come_after_all_others(name: str) -> None:
     """By the whole list, and with the loads of the truth."""
     one = case(name)
-    every = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force).triples
+    every = find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force).triples
     falls = [triple.standing < -1e-9 for triple in every]
     assert any(falls) and not all(falls) and falls == sorted(falls)
     standing = [triple for triple in every if triple.standing >= -1e-9]
     needs = [
-        coarse((triple.given or triple.best).clamp_needed)
+        round_coarsely((triple.given or triple.best).clamp_needed)
         for triple in standing
         if triple.given or not one.request.point
     ]
@@ -104,12 +105,14 @@ def test_sets_from_which_the_part_falls_come_after_all_others(name: str) -> None
 @pytest.mark.parametrize("value", [0.0, 1.0, 9.9, 10.0, 1500.0, 0.0123, 134.99, 99.4])
 def test_digits_bound_all_that_count_as_a_figure(value: float) -> None:
     """All figures below the first count as less, all above the second as more."""
-    value = coarse(value)
+    value = round_coarsely(value)
     low, high = bound_coarse_figure(value)
     assert low <= value <= high
     for near in np.linspace(0.9 * value, 1.1 * value + 1e-8, 2001):
         if abs(near - low) > 1e-6 * value and abs(near - high) > 1e-6 * value:
-            assert (coarse(near) < value) == (near < low) and (coarse(near) > value) == (near > high)
+            assert (round_coarsely(near) < value) == (near < low) and (round_coarsely(near) > value) == (
+                near > high
+            )
 
 
 def test_a_list_of_too_many_is_refused_and_the_best_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,13 +120,13 @@ def test_a_list_of_too_many_is_refused_and_the_best_are_not(monkeypatch: pytest.
     one = case("plate100")
     monkeypatch.setattr(choosing, "MOST_LISTED", 50)
     with pytest.raises(InputError, match="more than 50 sets of three supports hold the part up, too many"):
-        supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force)
+        find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force)
     assert (
-        len(supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=5).triples) == 5
+        len(find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=5).triples) == 5
     )
     monkeypatch.setattr(listing, "MOST_POSITIONS", 10)
     with pytest.raises(InputError, match="holes could hold a support, more than 10"):
-        supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=5)
+        find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=5)
 
 
 def test_a_search_is_followed_and_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,7 +134,11 @@ def test_a_search_is_followed_and_stopped(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(choosing, "FEW_HOLES", 0)
     plate = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
     result = design(plate, Vise(pitch=20, columns=5, peg_radius=3), best=3)
-    request, seen, cancel = SupportRequest.of(plate, 20, toolkit=result.toolkit), list[float](), Event()
+    request, seen, cancel = (
+        SupportRequest.from_workpiece(plate, 20, toolkit=result.toolkit),
+        list[float](),
+        Event(),
+    )
     found = list(yield_supports(result, result.query, request, each=2, progress=seen.append))
     assert len(found) == 3 and seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 10
     assert not any(one.stopped for one in found)

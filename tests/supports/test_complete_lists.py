@@ -17,7 +17,7 @@ from supports.random_supports import TOOLKITS, random_demand, random_fixtures
 from workhold import Fixture
 from workhold.files.supports_file import write_supports
 from workhold.model.support_request import SupportRequest
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 from workhold.verification.supports import verify_supports_file
 
 
@@ -34,7 +34,7 @@ def compare(seed: int, of_each: int, path: Path) -> Counter[str]:
     seen = Counter[str]()
     for random, query, fixture in random_fixtures(seed, of_each):
         request, loads = random_demand(random, query.workpiece)
-        found = supports_of(fixture, query, with_reach(random, request, fixture), loads)
+        found = find_supports(fixture, query, with_reach(random, request, fixture), loads)
         write_supports(found, path)
         outcome = verify_supports_file(path)
         assert outcome.holds, (seed, query.toolkit, outcome.faults, outcome.unproven[:1])
@@ -66,7 +66,7 @@ def complete_list(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The file of a complete list."""
     one = case("bracketL")
     path = tmp_path_factory.mktemp("complete") / "supports.json"
-    write_supports(supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force), path)
+    write_supports(find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force), path)
     assert verify_supports_file(path).holds
     return path.read_text()
 

@@ -9,7 +9,7 @@ import pytest
 from attrs import evolve
 
 from workhold import Program, Query, Vise, Workpiece, answer
-from workhold.model.cutting_forces import forces_on
+from workhold.model.cutting_forces import compute_cutting_forces
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import Moves
 from workhold.model.support_request import SpatialLoad
@@ -21,10 +21,12 @@ VISE = Vise(pitch=20, columns=5, peg_radius=3)
 
 def program_of(rows: list[tuple[Any, ...]], kind: str = "", **cutting: Any) -> Program:
     """A program of one tool of 10 mm from rows of start, end and bulge, whose Z0 is 20 mm up."""
-    moves = Moves.of_rows([(k, 1, True, *row, 100.0, 900.0) for k, row in enumerate(rows, 1)])
+    moves = Moves.from_rows([(k, 1, True, *row, 100.0, 900.0) for k, row in enumerate(rows, 1)])
     tools = {1: Tool(1, [Cylinder(0, 60, 5)], 10, kind=kind)}
     bare = Program("p.nc", "0" * 64, "mm", (0.0, 0.0), 20.0, tools=tools, moves=moves)
-    return evolve(bare, forces=forces_on(moves, tools, CuttingData(cutting_force=400, **cutting)))
+    return evolve(
+        bare, forces=compute_cutting_forces(moves, tools, CuttingData(cutting_force=400, **cutting))
+    )
 
 
 SLOT = [((20, 30, 15), (80, 30, 15), 0.0)]

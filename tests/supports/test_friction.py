@@ -18,8 +18,8 @@ from workhold import Vise, design
 from workhold.errors import InputError
 from workhold.model.support_request import SpatialLoad
 from workhold.model.support_triples import Supports, Triple
-from workhold.supports.friction import around, clamp_with_friction
-from workhold.supports.listing import supports_of
+from workhold.supports.friction import compute_clamp_force, yield_polygon_corners
+from workhold.supports.listing import find_supports
 
 Array = NDArray[np.float64]
 VISE = Vise(pitch=15, columns=4, peg_radius=3)
@@ -106,8 +106,8 @@ def test_the_clamp_force_with_friction_is_that_of_another_formulation(seed: int)
         request, loads = random_demand(random, result.workpiece)
         loads = tuple(evolve(load, directions=(load.directions[0],) * 2) for load in loads)
         request = evolve(request, bottom_zones=(), top_zones=(), point=None)
-        found = supports_of(random.choice(list(result)), result.query, request, loads, best=1)
-    triple, bands = found.triples[0], found.request.peg_bands(4).tolist()
+        found = find_supports(random.choice(list(result)), result.query, request, loads, best=1)
+    triple, bands = found.triples[0], found.request.list_peg_bands(4).tolist()
     for friction in (0.05, 0.2):
         worst = max(
             least_clamp(found, triple, friction, heights, wrench)
@@ -116,13 +116,13 @@ def test_the_clamp_force_with_friction_is_that_of_another_formulation(seed: int)
             for heights in product(*bands)
         )
         expected = min(max(worst, 0.0), triple.clamp.clamp_needed)
-        assert found.clamp_with_friction(friction) == pytest.approx(expected, rel=1e-6, abs=1e-5)
+        assert found.bound_clamp_force(friction) == pytest.approx(expected, rel=1e-6, abs=1e-5)
 
 
 def found_in(name: str, jaw_force: float | None = None) -> Supports:
     """The two best sets of a case."""
     one = case(name)
-    return supports_of(one.fixture, one.query, one.request, one.loads, jaw_force or one.jaw_force, best=2)
+    return find_supports(one.fixture, one.query, one.request, one.loads, jaw_force or one.jaw_force, best=2)
 
 
 @pytest.mark.thorough
@@ -131,7 +131,7 @@ def test_without_friction_it_is_what_the_clamp_needs_and_more_friction_never_ask
     """At the worst heights of the bands and in all directions; what is needed is derived in another way."""
     found = found_in(name)
     for rank, triple in enumerate(found.triples, 1):
-        forces = [found.clamp_with_friction(one, rank) for one in (0.0, 0.05, 0.1, 0.3)]
+        forces = [found.bound_clamp_force(one, rank) for one in (0.0, 0.05, 0.1, 0.3)]
         assert forces[0] == pytest.approx(triple.clamp.clamp_needed, rel=1e-9)
         assert forces == sorted(forces, reverse=True) and forces[-1] < 0.5 * forces[0]
 
@@ -140,7 +140,7 @@ def test_without_friction_it_is_what_the_clamp_needs_and_more_friction_never_ask
 def test_corners_around_directions_leave_none_out_and_are_hardly_longer() -> None:
     """Each direction of a range is inside the hull of the corners, which are at most 0.5 % longer than 1."""
     for directions in ((0.0, 360.0), (20.0, 20.0), (-30.0, 100.0), (10.0, 14.0)):
-        corners = np.array(list(around(directions)))
+        corners = np.array(list(yield_polygon_corners(directions)))
         assert np.hypot(*corners.T).max() <= 1.005
         for turn in np.radians(np.linspace(*directions, 400)):
             for look in np.radians(np.arange(0, 360, 7.5)):
@@ -153,8 +153,8 @@ def test_what_is_no_friction_and_no_load_are_refused() -> None:
     found = found_in("bracketL")
     for wrong in (-0.1, float("nan"), float("inf"), 1e9):
         with pytest.raises(InputError, match="cannot be used: give a coefficient from 0 to"):
-            found.clamp_with_friction(wrong)
+            found.bound_clamp_force(wrong)
     with pytest.raises(InputError, match="and there are none: give a load too"):
-        clamp_with_friction(evolve(found, loads=()), found.triples[0], 0.1)
+        compute_clamp_force(evolve(found, loads=()), found.triples[0], 0.1)
     with pytest.raises(InputError, match="there is no set 3 of supports"):
-        found.clamp_with_friction(0.1, 3)
+        found.bound_clamp_force(0.1, 3)

@@ -12,7 +12,7 @@ from workhold import Vise
 from workhold.cli.supports_command import list_support_notes as notes_of_command
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 from workhold.supports.words import place_notes, write_flat_faces_notes
 from workhold.units import find_unit
 from workhold.web.support_tasks import list_support_notes as notes_of_page
@@ -26,8 +26,8 @@ def found() -> Supports:
     part = stepped({})
     result = workhold.design(part, Vise(10, 4, 3))
     for fixture in result:
-        request = SupportRequest.of(part, 30.0, toolkit=result.toolkit)
-        some = supports_of(fixture, result.query, request, [LOAD], best=3)
+        request = SupportRequest.from_workpiece(part, 30.0, toolkit=result.toolkit)
+        some = find_supports(fixture, result.query, request, [LOAD], best=3)
         if some.triples:
             opened = fixture.travel + 20.0
             return evolve(some, triples=tuple(evolve(one, travel=opened) for one in some.triples))

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from shown_words import last_paragraph
 from slow_program import OFF, THICKNESS, TOOLS, Row, path, program_of, random_program, walked
 from workhold import Program, Query, Vise, Workpiece, answer, circle_zone
-from workhold.geometry.loop import loop_segments
+from workhold.geometry.loop import make_loop_segments
 from workhold.model.requirements import make_zone
 from workhold.model.support_request import SupportRequest
 from workhold.supports.choosing import WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, find_point_on_curve
 from workhold.supports.faces import FaceBorders, TouchableFace, offset_curves
 from workhold.supports.forces import Triangles
-from workhold.supports.listing import supports_of, yield_supports
-from workhold.supports.program import FINEST, MOST_ABOVE, add_program_zones, capsule
+from workhold.supports.listing import find_supports, yield_supports
+from workhold.supports.program import FINEST, MOST_ABOVE, add_program_zones, make_capsule
 
 Array = NDArray[np.float64]
 PART = Workpiece.from_points("plate", [(0, 0), (60, 0), (60, 40), (0, 40)])
@@ -58,10 +58,10 @@ def rooms(program: Program, points: Array) -> tuple[Array, Array]:
     asked = SupportRequest(THICKNESS, PAD, TIP)
     request = add_program_zones(asked, PART, program)
     bottom, top = (
-        TouchableFace.of(PART.loops, [zone.loop for zone in zones])
+        TouchableFace.from_loops(PART.loops, [zone.loop for zone in zones])
         for zones in (request.bottom_zones, request.top_zones)
     )
-    return bottom.room(points) - PAD, top.room(points) - TIP
+    return bottom.measure_room(points) - PAD, top.measure_room(points) - TIP
 
 
 @pytest.mark.thorough
@@ -71,7 +71,7 @@ def test_zones_leave_what_a_walk_leaves(number: int) -> None:
     """Every place that is left keeps the clearance; every place that keeps a little more is left."""
     program = random_program(Random(4700 + number), PART, clearance=(0.0, 1.0, 2.5)[number % 3])
     points = grid()
-    face = TouchableFace.of(PART.loops).room(points)
+    face = TouchableFace.from_loops(PART.loops).measure_room(points)
     below, above = rooms(program, points)
     clamp = [(THICKNESS + low, THICKNESS + high, share * TIP) for low, high, share in CLAMP]
     for found, slabs, disc in ((below, [(-inf, 0.0, PAD)], PAD), (above, clamp, TIP)):
@@ -115,7 +115,9 @@ def test_own_zones_stay_and_nothing_is_added_twice() -> None:
 def test_capsules_hold_what_is_nearer_than_their_radius(bulge: float, radius: float) -> None:
     """Signed distances from the border are distances from the path, less the radius, also inside bends."""
     start, end = (3.0, 1.0), (11.0, 6.0)
-    loop = tuple(loop_segments(np.array(make_zone(capsule(((*start, bulge), (*end, 0.0)), radius)).loop)))
+    loop = tuple(
+        make_loop_segments(np.array(make_zone(make_capsule(((*start, bulge), (*end, 0.0)), radius)).loop))
+    )
     span = program_of([(1, True, (*start, 0.0), (*end, 0.0), bulge)])
     line = walked(span)[0][:, :2]
     points = np.random.default_rng(4).uniform(-15, 25, (400, 2))
@@ -149,20 +151,20 @@ def test_the_clamps_place_is_the_best_of_a_fine_grid(number: int) -> None:
     """Free pieces of borders hold the best place: no place of a grid 0.4 mm fine that is left is any better."""
     program = program_of(many_passes()) if number % 2 else random_program(Random(91 + number), PART)
     request = add_program_zones(SupportRequest(THICKNESS, PAD, TIP), PART, program)
-    face = TouchableFace.of(PART.loops, [zone.loop for zone in request.top_zones])
+    face = TouchableFace.from_loops(PART.loops, [zone.loop for zone in request.top_zones])
     places = ClampPlaces(face, TIP, None)
     random = np.random.default_rng(number)
     corners = random.uniform((0, 0), (60, 40), (40, 3, 2))
     sides = corners[:, 1:] - corners[:, :1]
     area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
     corners = np.where(area[:, None, None] < 0, corners[:, ::-1], corners)[np.abs(area) > 100]
-    triangles = Triangles.of(corners)
+    triangles = Triangles.from_corners(corners)
     reach = random.uniform(-1.0, 3.0, (len(corners), 3))
     reach[:, 0] = np.abs(reach[:, 0]) + 0.1
-    points, value = places.best(triangles, reach, 1.0)
+    points, value = places.find_best(triangles, reach, 1.0)
     around = grid(0.4)
-    around = around[(face.room(around) >= TIP)]
-    shares = triangles.shares(np.broadcast_to(around, (len(corners), *around.shape)))
+    around = around[(face.measure_room(around) >= TIP)]
+    shares = triangles.compute_shares(np.broadcast_to(around, (len(corners), *around.shape)))
     well = (shares / triangles.steepness[:, None]).min(axis=2) >= 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
         on_grid = np.where(well, (np.maximum(reach, 0.0)[:, None] / shares).max(axis=2), np.inf)
@@ -170,8 +172,8 @@ def test_the_clamps_place_is_the_best_of_a_fine_grid(number: int) -> None:
     assert found.any() or not well.any()
     assert (value <= on_grid.min(axis=1, initial=np.inf) * (1 + 1e-9)).all()
     at = triangles.take(np.flatnonzero(found))
-    assert (face.room(points[found]) >= TIP - 1e-8).all()
-    assert (at.sides(points[found]).min(axis=1) >= 1.0 - 1e-8).all()
+    assert (face.measure_room(points[found]) >= TIP - 1e-8).all()
+    assert (at.measure_side_distances(points[found]).min(axis=1) >= 1.0 - 1e-8).all()
 
 
 @pytest.mark.thorough
@@ -201,7 +203,7 @@ def test_a_top_that_is_machined_all_over_is_said_to_be() -> None:
     ]
     query = Query(PART, Vise(8, 4, 3), program=program_of(path(1, passes)), peg_height=4.0, best=1)
     (fixture, *_) = list(answer(query))
-    found = supports_of(fixture, query, SupportRequest(THICKNESS, PAD, TIP))
+    found = find_supports(fixture, query, SupportRequest(THICKNESS, PAD, TIP))
     assert not found.triples
     sentence = last_paragraph(found)
     assert "the tools of the program and the keep-outs leave no place on the upper face" in sentence
@@ -220,7 +222,7 @@ def test_boxes_of_rapid_moves_count_inside(number: int) -> None:
     dx, dy = (np.maximum(np.abs(points[:, k] - (x, y)[k]) - off, 0.0) for k in (0, 1))
     # The shank of 5 mm passes the knob.
     slack = np.hypot(dx, dy) - 5.0 - 1.0 - 1.5 * TIP
-    face = TouchableFace.of(PART.loops).room(points) - TIP
+    face = TouchableFace.from_loops(PART.loops).measure_room(points) - TIP
     assert (slack[above >= 0.0] > -0.02).all()
     assert (above[(slack > 0.03) & (face >= 0.0)] >= -1e-9).all()
 
@@ -234,8 +236,8 @@ def test_supports_of_a_fixture_with_a_program_keep_off_what_it_sweeps() -> None:
     query = Query(PART, Vise(8, 4, 3), program=program, peg_height=4.0, best=3)
     (fixture, *_) = list(answer(query))
     request = SupportRequest(THICKNESS, PAD, TIP)
-    found = supports_of(fixture, query, request)
-    free = supports_of(fixture, evolve(query, program=None, peg_height=None, rank_by=None), request)
+    found = find_supports(fixture, query, request)
+    free = find_supports(fixture, evolve(query, program=None, peg_height=None, rank_by=None), request)
     assert 0 < len(found.triples) < len(free.triples)
     pads = np.array([[pad.x, pad.y] for one in found.triples for pad in one.supports])
     tips = np.array([one.best.at for one in found.triples])
@@ -249,7 +251,7 @@ def crowded() -> tuple[TouchableFace, ClampPlaces]:
     """A face with forty round zones on it, and where a tip may stand."""
     random = np.random.default_rng(11)
     middles = random.uniform((-3, -3), (63, 43), (40, 2))
-    face = TouchableFace.of(PART.loops, [circle_zone(x, y, 0.6).loop for x, y in middles.tolist()])
+    face = TouchableFace.from_loops(PART.loops, [circle_zone(x, y, 0.6).loop for x, y in middles.tolist()])
     return face, ClampPlaces(face, 3.0, None)
 
 
@@ -258,37 +260,41 @@ def test_zones_some_at_a_time_are_what_they_are_together() -> None:
     face, places = crowded()
     points = np.random.default_rng(12).uniform((-8, -8), (68, 48), (4000, 2))
     assert len(face.zone_groups) > 2
-    _, off = face.rooms(points)
-    assert (face.off_zones(points, 3.0, 0.0) == (off >= 3.0)).all()
-    assert (places.allows(points) == (face.room(points) >= 3.0 - 1e-9)).all()
-    assert 100 < places.allows(points).sum() < 3000
+    _, off = face.measure_rooms(points)
+    assert (face.find_off_zones(points, 3.0, 0.0) == (off >= 3.0)).all()
+    assert (places.find_allowed(points) == (face.measure_room(points) >= 3.0 - 1e-9)).all()
+    assert 100 < places.find_allowed(points).sum() < 3000
 
 
 @pytest.mark.thorough
 def test_free_pieces_hold_all_places_on_borders() -> None:
     """Also where a piece goes on over the angle at which counting begins, and all of a circle without corners."""
     _, places = crowded()
-    alone = TouchableFace.of(PART.loops, [circle_zone(30, 20, 1.0).loop])
+    alone = TouchableFace.from_loops(PART.loops, [circle_zone(30, 20, 1.0).loop])
     for own in (places, ClampPlaces(alone, 3.0, None)):
         assert len(own.bent)
         for curve, (low, high) in zip(own.bent.curves, own.bent.spans, strict=True):
             inner = np.linspace(low, high, 9)[1:-1]
-            assert own.allows(np.stack([find_point_on_curve(curve, at, True) for at in inner])).all()
+            assert own.find_allowed(np.stack([find_point_on_curve(curve, at, True) for at in inner])).all()
         for curve in np.unique(own.bent.curves, axis=0):
             around = np.linspace(-pi, pi, 721)
             points = np.stack([find_point_on_curve(curve, at, True) for at in around])
-            free = points[own.allows(points)]
+            free = points[own.find_allowed(points)]
             mine = np.flatnonzero((own.bent.curves == curve).all(axis=1))
-            kept = own.bent.on_pieces(np.repeat(free[:, None], len(own.bent), axis=1), True)[:, mine, 0]
+            kept = own.bent.mask_points_off_pieces(np.repeat(free[:, None], len(own.bent), axis=1), True)[
+                :, mine, 0
+            ]
             assert np.isfinite(kept).any(axis=1).all()
 
 
 def test_a_disc_rolls_round_corners_alone() -> None:
     """A circle about each corner of a border; none where it goes on smoothly, unless a hollow is too narrow."""
     turns = np.arange(8) * pi / 4
-    octagon = tuple(loop_segments(np.array([(10 * cos(t), 10 * sin(t), 0.0) for t in turns])))
+    octagon = tuple(make_loop_segments(np.array([(10 * cos(t), 10 * sin(t), 0.0) for t in turns])))
     assert len(offset_curves(octagon, 2.0, left=False)[1]) == 8
-    slot = tuple(loop_segments(np.array(make_zone(capsule(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)), 2.0)).loop)))
+    slot = tuple(
+        make_loop_segments(np.array(make_zone(make_capsule(((0.0, 0.0, 0.0), (9.0, 0.0, 0.0)), 2.0)).loop))
+    )
     lines, circles = offset_curves(slot, 3.0, left=False)
     assert (len(lines), len(circles)) == (2, 2) and all(radius == 5.0 for *_, radius in circles)
     # From within the ends are too narrow for the disc, and it may touch their joints.

@@ -14,7 +14,7 @@ from workhold.errors import InputError
 from workhold.model.straps import StrapHardware
 from workhold.model.support_request import SpatialLoad
 from workhold.statics.patches import PressedPolygon
-from workhold.supports.straps import SetSearch, StrapQuestion, StrapSearch, usual_request
+from workhold.supports.straps import SetSearch, StrapQuestion, StrapSearch, make_usual_request
 
 THICK, TIP = 25.0, 6.0
 BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
@@ -37,7 +37,7 @@ def block():
 
 def search_of(fixture, loads=(), count=2, reach=(20.0, 50.0), tip=TIP, **asked):
     query = fixture.listing.result.query
-    request = usual_request(query, THICK, tip, asked.pop("zones", ()))
+    request = make_usual_request(query, THICK, tip, asked.pop("zones", ()))
     return StrapSearch(
         fixture, query, StrapQuestion(StrapHardware(count, tip, reach), request, tuple(loads), **asked)
     )
@@ -58,7 +58,7 @@ def test_the_force_is_that_of_a_program_that_shares_nothing(part):
         load = SpatialLoad(points=[point], force=300, directions=way, axial=axial, heights=height)
         ours = search_of(fixture, [load], safety=1.0)
         chosen = sorted(random.choice(len(search.places), 2, replace=False).tolist())
-        (need,) = ours.needs(chosen)
+        (need,) = ours.compute_needs(chosen)
         turn = np.radians(way + fixture.pose.theta_deg)
         forces = [
             (
@@ -92,16 +92,16 @@ def test_a_push_into_a_locator_asks_for_nothing(block):
 def test_the_best_set_is_the_best_of_all(block):
     loads = [SpatialLoad(points=[(20, 15), (85, 50)], force=200, directions=(-20, 70), axial=(-60, 90))]
     search = search_of(block, loads, reach=(20.0, 30.0), zones=(workhold.circle_zone(50, 30, 25),))
-    clear = search.clear()
+    clear = search.find_compatible_pairs()
     pairs = [
         pair
         for pair in combinations(range(len(search.places)), 2)
-        if clear[pair] and search.press_flat(np.array([pair]))[0]
+        if clear[pair] and search.find_pressing_flat(np.array([pair]))[0]
     ]
     assert len(pairs) > 30
     some = pairs[:: max(1, len(pairs) // 60)]
-    every = [search.needs(pair)[0] for pair in some]
-    found = search.best()
+    every = [search.compute_needs(pair)[0] for pair in some]
+    found = search.find_best()
     assert found.clamp_needed <= min(one for one in every if one is not None) * (1 + 1e-6)
     chosen = [
         next(
@@ -111,22 +111,22 @@ def test_the_best_set_is_the_best_of_all(block):
         )
         for one in found.straps
     ]
-    assert search.needs(chosen)[0] == pytest.approx(found.clamp_needed, rel=1e-9)
+    assert search.compute_needs(chosen)[0] == pytest.approx(found.clamp_needed, rel=1e-9)
 
 
 def test_three_straps_are_the_best_of_all(block):
     loads = [SpatialLoad(points=[(80, 50)], force=200, directions=30, axial=-90)]
     search = search_of(block, loads, count=3, reach=(20.0, 20.0), zones=(workhold.circle_zone(50, 30, 28),))
-    clear = search.clear()
+    clear = search.find_compatible_pairs()
     sets = [
         one
         for one in combinations(range(len(search.places)), 3)
-        if all(clear[pair] for pair in combinations(one, 2)) and search.press_flat(np.array([one]))[0]
+        if all(clear[pair] for pair in combinations(one, 2)) and search.find_pressing_flat(np.array([one]))[0]
     ]
     assert sets
     step = max(1, len(sets) // 300)
-    assert search.best().clamp_needed <= min(
-        need for one in sets[::step] if (need := search.needs(one)[0]) is not None
+    assert search.find_best().clamp_needed <= min(
+        need for one in sets[::step] if (need := search.compute_needs(one)[0]) is not None
     ) * (1 + 1e-6)
 
 
@@ -134,23 +134,23 @@ def test_no_part_of_the_best_set_is_ruled_out_by_a_bound(block):
     loads = [SpatialLoad(points=[(80, 50), (10, 5)], force=200, directions=30, axial=-90)]
     search = search_of(block, loads, count=3, reach=(20.0, 20.0), zones=(workhold.circle_zone(50, 30, 26),))
     sets = SetSearch(search)
-    chosen = sets.least(3)
+    chosen = sets.find_least(3)
     assert chosen is not None
     sets.least_force *= 1.001
     for size in (1, 2):
         for taken in combinations(chosen, size):
-            assert sets.lowest_bound(taken, 3 - size)
+            assert sets.can_improve(taken, 3 - size)
     sets.least_force = 1e-6
-    assert not sets.lowest_bound(chosen[:2], 1)
+    assert not sets.can_improve(chosen[:2], 1)
 
 
 def test_twice_the_load_asks_for_twice_the_force_and_friction_helps(block):
     load = SpatialLoad(points=[(80, 50)], force=200, directions=40, axial=-40)
-    usual = search_of(block, [load]).best().clamp_needed
-    assert search_of(block, [load], safety=4.0).best().clamp_needed == pytest.approx(2 * usual, rel=1e-6)
+    usual = search_of(block, [load]).find_best().clamp_needed
+    assert search_of(block, [load], safety=4.0).find_best().clamp_needed == pytest.approx(2 * usual, rel=1e-6)
     smooth = (("plate", 0.2), ("tip", 0.2))
-    assert search_of(block, [load], friction=smooth).best().clamp_needed < usual
-    assert search_of(block, [load], weight=40.0).best().clamp_needed < usual
+    assert search_of(block, [load], friction=smooth).find_best().clamp_needed < usual
+    assert search_of(block, [load], weight=40.0).find_best().clamp_needed < usual
 
 
 def test_tips_and_bolts_stand_where_they_can(block):
@@ -201,9 +201,9 @@ def test_what_straps_cannot_do_is_said(block):
 
 def test_no_bolt_stands_behind_a_fence():
     fence = workhold.Fence(pitch=20, peg_radius=3, wall_offset=10, clamps=2)
-    search = search_of(first_of(BLOCK, fence), [SpatialLoad.of(LOAD)])
+    search = search_of(first_of(BLOCK, fence), [SpatialLoad.from_planar_load(LOAD)])
     assert search.places.hole[:, 1].min() >= 0
-    assert 500 <= search.best().clamp_needed < 600
+    assert 500 <= search.find_best().clamp_needed < 600
 
 
 def test_integrals_of_a_foot_are_exact():

@@ -14,7 +14,7 @@ from workhold.files.supports_file import read_supports, write_supports
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import LevelRegions, TouchableFace
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 from workhold.verification.support_listing import measure_room_on
 from workhold.verification.supports import verify_supports_file
 
@@ -54,7 +54,7 @@ def test_what_is_listed_is_derived_again(part, toolkit, tmp_path):
     asked = SupportRequest(15, 3, 4, band=(3, 11), inside=3)
     listed = 0
     for fixture in result:
-        found = supports_of(fixture, result.query, asked, LOADS, best=4)
+        found = find_supports(fixture, result.query, asked, LOADS, best=4)
         path = tmp_path / "supports.json"
         write_supports(found, path)
         outcome = verify_supports_file(path)
@@ -68,9 +68,9 @@ def test_points_on_the_diameter_of_a_hole_lie_in_it() -> None:
     """A hole of two half circles holds the points between its ends, on which chords and arcs say nothing."""
     square = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]], dtype=float)
     hole = np.array([[6, 10, -1], [14, 10, -1]], dtype=float)
-    face = TouchableFace.of([square, hole])
+    face = TouchableFace.from_loops([square, hole])
     points = np.array([[9.0, 10.0], [10.0, 10.0], [3.0, 10.0]])
-    assert face.room(points).tolist() == [-3.0, -4.0, 3.0]
+    assert face.measure_room(points).tolist() == [-3.0, -4.0, 3.0]
 
 
 def test_a_clamp_stands_as_near_to_what_rises_as_its_head_lets_it() -> None:
@@ -78,8 +78,10 @@ def test_a_clamp_stands_as_near_to_what_rises_as_its_head_lets_it() -> None:
     plate = np.array([[0, 0, 0], [90, 0, 0], [90, 60, 0], [0, 60, 0]], dtype=float)
     step = np.array([[0, 0, 0], [30, 0, 0], [30, 60, 0], [0, 60, 0]], dtype=float)
     boss = np.array([[58, 30, 1], [64, 30, 1]], dtype=float)
-    rising = LevelRegions.of([step, boss], [20.0, 20.0])
-    places = ClampPlaces(TouchableFace.of([plate], heights=[20.0]), 5.0, None, kept_off=((rising, 7.0),))
+    rising = LevelRegions.from_loops([step, boss], [20.0, 20.0])
+    places = ClampPlaces(
+        TouchableFace.from_loops([plate], heights=[20.0]), 5.0, None, kept_off=((rising, 7.0),)
+    )
     assert sorted(places.corners.tolist()) == [[37, 5], [37, 55], [85, 5], [85, 55]]
     assert places.bent.curves.tolist() == [[61, 30, 10]]
 
@@ -89,10 +91,10 @@ def test_loops_side_by_side_are_faces_of_their_own() -> None:
     one = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]], dtype=float)
     other = one + np.array([30.0, 0.0, 0.0])
     opening = np.array([[34, 4, 0], [36, 4, 0], [36, 6, 0], [34, 6, 0]], dtype=float)
-    face = TouchableFace.of([one, other, opening])
+    face = TouchableFace.from_loops([one, other, opening])
     points = np.array([[10.0, 10.0], [25.0, 10.0], [40.0, 5.0], [35.0, 5.0], [18.0, 10.0]])
     expected = [10.0, -5.0, 4.0, -1.0, 2.0]
-    assert face.room(points).tolist() == expected
+    assert face.measure_room(points).tolist() == expected
     assert [measure_room_on([one, other, opening], [], (x, y)) for x, y in points.tolist()] == expected
     low, high = face.box
     assert (low.tolist(), high.tolist()) == ([0.0, 0.0], [50.0, 20.0])
@@ -107,12 +109,14 @@ def test_faces_that_meet_and_the_top_of_a_boss_are_faces_of_their_own() -> None:
     points = [(10.0, 10.5), (3.0, 10.0), (30.0, 8.0), (16.5, 10.0), (20.0, 5.0), (50.0, 10.0)]
     expected = [3.5, 3.0, 8.0, 2.5, 0.0, -10.0]
     for loops in ([floor, around, boss, step], [step, boss, floor, around], [boss, around, step, floor]):
-        assert TouchableFace.of(loops).room(np.array(points)).tolist() == expected
+        assert TouchableFace.from_loops(loops).measure_room(np.array(points)).tolist() == expected
         assert [measure_room_on(loops, [], point) for point in points] == expected
     pocket = [floor[::-1], [[2, 2, 0], [18, 2, 0], [18, 18, 0], [2, 18, 0]], around[::-1]]
     inside = [[2, 18, 0], [18, 18, 0], [18, 2, 0], [2, 2, 0]]
-    assert TouchableFace.of(pocket).room(np.array(points[:2])).tolist() == [-7.5, -1.0]
-    assert TouchableFace.of([floor, inside, pocket[1], around]).room(np.array(points[:2])).tolist() == [
+    assert TouchableFace.from_loops(pocket).measure_room(np.array(points[:2])).tolist() == [-7.5, -1.0]
+    assert TouchableFace.from_loops([floor, inside, pocket[1], around]).measure_room(
+        np.array(points[:2])
+    ).tolist() == [
         -3.5,
         1.0,
     ]

@@ -13,7 +13,7 @@ from supports.cases import NAMES, case
 from workhold.errors import InputError
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.files.supports_forms import ReadTriple, TripleReader, read_supports_part
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 from workhold.verification.supports import verify_supports_file
 
 CHECKER = Path(__file__).parents[1] / "check_supports.py"
@@ -26,7 +26,7 @@ def named(triple):
 @pytest.mark.parametrize("name", NAMES)
 def test_all_triples_of_the_complete_set_and_no_others(name):
     one = case(name)
-    found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force)
+    found = find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force)
     known = {tuple(map(tuple, row["holes"])): row for row in one.truth["triples"]}
     assert {named(triple) for triple in found.triples} == set(known)
     assert found.count == one.truth["counts"]["triples"]
@@ -47,7 +47,7 @@ def test_all_triples_of_the_complete_set_and_no_others(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_jaw_force_needed_is_that_of_the_plane(name):
     one = case(name)
-    found = supports_of(one.fixture, one.query, one.request, one.loads, best=1)
+    found = find_supports(one.fixture, one.query, one.request, one.loads, best=1)
     assert found.jaw_force == pytest.approx(one.truth["jaw_needed"], rel=1e-9)
 
 
@@ -59,9 +59,9 @@ def test_the_best_few_are_the_first_of_all(name, is_fixed, is_loaded):
     one = case(name)
     request = one.request if is_fixed else evolve(one.request, point=None)
     loads = one.loads if is_loaded else ()
-    everything = supports_of(one.fixture, one.query, request, loads, one.jaw_force)
+    everything = find_supports(one.fixture, one.query, request, loads, one.jaw_force)
     for count in (1, 3, 40):
-        best = supports_of(one.fixture, one.query, request, loads, one.jaw_force, best=count)
+        best = find_supports(one.fixture, one.query, request, loads, one.jaw_force, best=count)
         assert best.triples == everything.triples[:count]
         assert not best.complete
 
@@ -71,7 +71,7 @@ def test_the_best_few_are_the_first_of_all(name, is_fixed, is_loaded):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_is_read_back_and_both_judges_find_nothing(name, tmp_path):
     one = case(name)
-    found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force)
+    found = find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force)
     path, again = tmp_path / "supports.json", tmp_path / "again.json"
     write_supports(found, path)
     read = read_supports(path)
@@ -87,7 +87,7 @@ def test_a_file_is_read_back_and_both_judges_find_nothing(name, tmp_path):
 @pytest.mark.parametrize("key", ["share", "lift", "arm", "clamp_needed", "support_force"])
 def test_a_wrong_figure_is_refuted(key, tmp_path):
     one = case("bracketL")
-    found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=2)
+    found = find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=2)
     first = found.triples[0]
     wrong = evolve(first.best, **{key: getattr(first.best, key) * 1.001 + 1e-3})
     path = tmp_path / "supports.json"
@@ -100,7 +100,7 @@ def test_a_wrong_figure_is_refuted(key, tmp_path):
 @pytest.mark.thorough
 def test_the_command_judges_a_file_of_supports(tmp_path):
     one = case("bracketL")
-    found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=2)
+    found = find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=2)
     path, command = tmp_path / "supports.json", [sys.executable, "-m", "workhold", "verify"]
     write_supports(found, path)
     good = subprocess.run([*command, path], capture_output=True, text=True, check=False)
@@ -122,7 +122,7 @@ def test_triples_are_checked_one_by_one_as_they_are_read(
 ) -> None:
     """They never lie in memory all at once as they are written; what is wrong of one is named with its place."""
     one = case("bracketL")
-    found = supports_of(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=3)
+    found = find_supports(one.fixture, one.query, one.request, one.loads, one.jaw_force, best=3)
     path = tmp_path / "supports.json"
     write_supports(found, path)
     forms = []

@@ -12,7 +12,7 @@ from supports.turned_cases import half_turned, mirrored, turned
 from workhold import circle_zone
 from workhold.errors import InputError
 from workhold.model.support_request import SpatialLoad, SupportRequest
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 from workhold.verification.supports import SupportsJudge
 
 CASES = {name: case(name) for name in NAMES}
@@ -24,7 +24,7 @@ def named(triple):
 
 def found(one, request=None, loads=None, force=None, best=None):
     asked = one.request if request is None else request
-    return supports_of(one.fixture, one.query, asked, one.loads if loads is None else loads, force, best)
+    return find_supports(one.fixture, one.query, asked, one.loads if loads is None else loads, force, best)
 
 
 @pytest.mark.thorough

@@ -12,7 +12,7 @@ from supports.cases import case
 from workhold import Query, Vise
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 
 
 def asked(request: SupportRequest, columns: int | None = None) -> Supports:
@@ -21,7 +21,7 @@ def asked(request: SupportRequest, columns: int | None = None) -> Supports:
     toolkit = one.query.toolkit
     assert isinstance(toolkit, Vise)
     query = one.query if columns is None else Query(one.query.workpiece, evolve(toolkit, columns=columns))
-    return supports_of(one.fixture, query, request)
+    return find_supports(one.fixture, query, request)
 
 
 def test_smaller_pads_that_are_said_to_help_leave_three_holes() -> None:

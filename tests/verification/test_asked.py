@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from workhold import Load, Restrictions, Result, Vise, circle_zone, design, load
-from workhold.listing.ranking import find_usual_errors, order_keys
+from workhold.listing.ranking import find_usual_errors, make_table_keys
 from workhold.model.first_choice import list_ranking_figures
 from workhold.model.quality import FIGURES, fill_figure_rows
 from workhold.verification import Verification, verify
@@ -129,8 +129,8 @@ def test_two_neighbours_that_change_places(limited: Result, place: int) -> None:
     order = np.arange(len(limited))
     order[[place, place + 1]] = place + 1, place
     query = limited.query
-    keys = order_keys(limited.table, query, find_usual_errors(query))
-    equal = np.array_equal(*np.round(keys.make_order_numbers(keys.least)[order[place:][:2]], 9))
+    keys = make_table_keys(limited.table, query, find_usual_errors(query))
+    equal = np.array_equal(*np.round(keys.make_order_numbers(keys.least_error)[order[place:][:2]], 9))
     outcome = verify(attrs.evolve(limited, table=limited.table.take(order)))
     assert (outcome.faults == ()) == equal
     assert outcome.proven == len(limited)

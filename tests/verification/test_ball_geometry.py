@@ -40,7 +40,7 @@ def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: 
                 1e-8,
             )
             if isinstance(segment, Line):
-                normal = segment.normal()
+                normal = segment.compute_normal()
                 gap = (x - segment.start[0]) * normal[0] + (y - segment.start[1]) * normal[1]
             else:
                 gap = segment.sign * (hypot(x - segment.center[0], y - segment.center[1]) - segment.radius)
@@ -55,8 +55,8 @@ def test_slacks_are_the_ways_to_the_ends(workpiece: Workpiece, seed: int) -> Non
     for face in workpiece.faces:
         side, segment, offset = outline.faces[face.number], face.segment, random.uniform(0.0, 3.0)
         parameter = random.uniform(-1.1, 1.1) * segment.half_extent
-        nx, ny = segment.normal(parameter)
-        x, y = segment.at(parameter)
+        nx, ny = segment.compute_normal(parameter)
+        x, y = segment.compute_point(parameter)
         slacks = side.compute_slacks(make_exact_point(x + offset * nx, y + offset * ny), arb(offset))
         scale = 1.0
         if isinstance(segment, Arc):

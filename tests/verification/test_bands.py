@@ -27,7 +27,7 @@ def result() -> Result:
 
 def faults(query: Query, fixture: Fixture, bands: Any, thickness: float = HEIGHT) -> list[str]:
     """What is wrong with some bands."""
-    request = evolve(SupportRequest.of(query.workpiece, thickness), bands=bands)
+    request = evolve(SupportRequest.from_workpiece(query.workpiece, thickness), bands=bands)
     return list(find_band_faults(query, fixture, request))
 
 

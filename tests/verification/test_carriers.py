@@ -9,7 +9,7 @@ import pytest
 
 from workhold import Fence, Fixture, OpeningVise, Peg, Plate, Pose, Vise
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Pair
+from workhold.model.fixture import ClampPair
 from workhold.verification.rules.hardware import ToolkitRules
 
 
@@ -77,7 +77,7 @@ def test_clamps_on_a_plate_and_beside_a_fence(wall: float | None, clamps: int) -
 def test_clamps_stand_in_order_and_on_lines_that_count_from_the_first_hole() -> None:
     """Two in one direction by their lines; one without a stroke has no hole on its line."""
     locators = [Peg("plate", k, 0, 20.0 * k, 0.0, k, 0.1) for k in range(3)]
-    pair = Pair((0.0, 0.0), (0.0, 1.0), ((0.0, 0.0),) * 5, 1)
+    pair = ClampPair((0.0, 0.0), (0.0, 1.0), ((0.0, 0.0),) * 5, 1)
     plate = Plate(20, 3, clamps=2, directions=[("-x", "-x")])
     for rows, words in (
         ((0, 2), []),
@@ -92,4 +92,4 @@ def test_clamps_stand_in_order_and_on_lines_that_count_from_the_first_hole() -> 
     ):
         clamp = Peg("clamp -x", column, 2, 20.0 * column, 40.0, 3, 0.1, "clamp row 3")
         rules = ToolkitRules(Plate(20, 3))
-        assert [found.reason for found in rules.clamp_place_findings("a clamp", clamp)] == words
+        assert [found.reason for found in rules.judge_clamp_place("a clamp", clamp)] == words

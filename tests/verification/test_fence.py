@@ -17,12 +17,12 @@ from judged import faults_of, posed
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fence, Load, Query, Restrictions, Result, Workpiece, answer, circle_zone, design
 from workhold import verify as verify_completely
-from workhold.model.search_report import AT_AN_EDGE, Undecided
+from workhold.model.search_report import AT_AN_EDGE, UndecidedCandidate
 from workhold.search.wall_contacts import PinContacts
 from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
-from workhold.verification.rules.wall import flush_findings, make_wall_contacts
+from workhold.verification.rules.wall import check_flush, make_wall_contacts
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -219,7 +219,7 @@ def test_a_part_tilted_on_the_wall_or_through_it_is_refuted(result: Result) -> N
 def test_undecided_entries_must_name_faces_and_reasons() -> None:
     """Their places are not looked at."""
     query = Query(part(KITE), Fence(10, 3, wall_offset=5))
-    entry = Undecided("edge -x", (1, 0, 0, 3), (0, 0, 0, 0), (0, 0, 0, 2), 0.0, AT_AN_EDGE, 0.0)
+    entry = UndecidedCandidate("edge -x", (1, 0, 0, 3), (0, 0, 0, 0), (0, 0, 0, 2), 0.0, AT_AN_EDGE, 0.0)
     assert faults_of([entry], query) == []
     assert len(faults_of([evolve(entry, faces=(9, 0, 0, 3))], query)) == 1
     assert answer(query).proof is not None
@@ -233,7 +233,7 @@ def test_a_tip_in_the_fence_is_refuted(monkeypatch: pytest.MonkeyPatch) -> None:
 
     query = Query(part(KITE), Fence((10, 8), 2, clamp_radius=6, wall_offset=3))
     true = {one_of(fixture) for fixture in answer(query)}
-    monkeypatch.setattr(WallSearch, "may_press", pushing)
+    monkeypatch.setattr(WallSearch, "find_pressing_tips", pushing)
     low = [fixture for fixture in answer(query) if one_of(fixture) not in true]
     assert low
     for fixture in low:
@@ -291,11 +291,11 @@ def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
     inner = evolve(right, piece=evolve(right.piece, center=outline.faces[5].start), faces=(4,))
     pegs = [workhold.Peg("wall", 0, 0, x, 0.0, face, 0.5) for x, face in ((0.0, 0), (56.0, 8), (32.0, 4))]
     whole = [("left", pegs[0], left), ("right", pegs[1], right)]
-    assert list(flush_findings("fence", whole, pose, outline)) == []
+    assert list(check_flush("fence", whole, pose, outline)) == []
     short = [("left", pegs[0], left), ("right", pegs[2], inner)]
-    (found, *_) = flush_findings("fence", short, pose, outline)
+    (found, *_) = check_flush("fence", short, pose, outline)
     assert "lies on the fence at face 7, beyond its stated ends" in found.reason
     one_foot = [("left", pegs[0], left), ("right", pegs[0], left)]
     assert "the part does not lie flush on the fence" in [
-        f.reason for f in flush_findings("fence", one_foot, pose, outline)
+        f.reason for f in check_flush("fence", one_foot, pose, outline)
     ]

@@ -17,7 +17,7 @@ from toolkit_results import assert_all_proven, part, verify_edited
 from undecided_examples import pairs_undecided
 from workhold import Fence, InputError, Load, Restrictions, Result, circle_zone, design
 from workhold.model.notes import STAGES, NoFixture, NoPair
-from workhold.model.search_report import Undecided
+from workhold.model.search_report import UndecidedCandidate
 from workhold.verification import Verification, verify, verify_fixture
 
 Data = dict[str, Any]
@@ -246,7 +246,7 @@ def test_a_tip_keeps_off_the_wall() -> None:
 def test_an_undecided_pair_is_named_as_it_must_be(results: dict[str, Result]) -> None:
     """By its kind, directions and faces."""
     result = results["best"]
-    entries: list[Undecided] = pairs_undecided(result.table.take(np.arange(3)), result.toolkit)
+    entries: list[UndecidedCandidate] = pairs_undecided(result.table.take(np.arange(3)), result.toolkit)
     assert faults_of(entries, result.query) == []
     single = f"edge {entries[0].type.split()[1]}"
     four = evolve(entries[0], type=single, faces=entries[0].faces[:4], columns=(0,) * 4, rows=(0,) * 4)

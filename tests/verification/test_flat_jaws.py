@@ -9,7 +9,7 @@ from attrs import evolve
 import workhold
 from jaw_examples import DISC, ELL, LOADS, TRIANGLE, held, rectangle, vise
 from workhold import InputError, Load, Restrictions, Workpiece
-from workhold.model.jaw_hold import Patch
+from workhold.model.jaw_hold import JawPatch
 from workhold.verification import verify, verify_file
 from workhold.verification.jaw_forces import HeldBetweenJaws
 
@@ -135,7 +135,7 @@ def test_opening_beyond_the_vise_and_angles_not_asked_for():
 
 
 def test_load_that_no_force_holds_is_none_in_both():
-    point = Patch(((0.0, 0.0, 0.0, 20.0),), (0,))
+    point = JawPatch(((0.0, 0.0, 0.0, 20.0),), (0,))
     held_by_lines = HeldBetweenJaws.from_patches(point, point, 40.0, 0.1, [], 1.0)
     assert held_by_lines.compute_needed_force((0.0, 20.0, 10.0), (50.0, 0.0, 0.0), 0.0) == pytest.approx(
         250.0, rel=1e-6

@@ -17,9 +17,9 @@ import workhold
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
 from workhold import Program, Query, Result, answer, save
-from workhold.model.cutting_forces import forces_on
+from workhold.model.cutting_forces import compute_cutting_forces
 from workhold.model.cutting_tool import CuttingData, CuttingDirection
-from workhold.statics.path_forces import path_forces
+from workhold.statics.path_forces import list_path_forces
 from workhold.verification import verify_file
 from workhold.verification.force_walk import ForceWalk
 
@@ -29,7 +29,7 @@ KINDS = tuple(kinds_of_toolkit(10.0))
 def with_forces(program: Program, direction: CuttingDirection = "any", force: float = 400.0) -> Program:
     """A program whose tools press with a force."""
     cutting = CuttingData(cutting_force=force, cut_depth=2, direction=direction)
-    return evolve(program, forces=forces_on(program.moves, program.tools, cutting))
+    return evolve(program, forces=compute_cutting_forces(program.moves, program.tools, cutting))
 
 
 def result_of(kind: str, seed: int = 5, direction: CuttingDirection = "any", **more: Any) -> Result:
@@ -47,9 +47,9 @@ def test_the_walk_agrees_with_the_closed_form(seed: int, direction: CuttingDirec
     random = Random(seed)
     program = with_forces(random_program(random, random_outline(random, 6)), direction)
     assert program.forces is not None
-    walk, path = ForceWalk.from_program(program, program.forces), path_forces(program, (0.0, 0.0))
+    walk, path = ForceWalk.from_program(program, program.forces), list_path_forces(program, (0.0, 0.0))
     functions = np.random.default_rng(seed).normal(size=(20, 3)) / [1, 1, 40]
-    found = path.worst(functions[:, None])
+    found = path.find_worst(functions[:, None])
     for k, (a, b, c) in enumerate(functions.tolist()):
         ball = walk.find_worst(arb(a), arb(b), arb(c))
         assert ball.overlaps(arb(found.value[k], 1e-9 * found.value[k])) and ball.rad() < 1e-6

@@ -20,12 +20,12 @@ from attrs import evolve, frozen
 from judged import known_in, place_in_order, rules_in
 from workhold import Fixture, InputError, Workpiece
 from workhold.fixels.support_hardware import PinLimits
-from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
+from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, ToolkitLimit, Travel
 from workhold.geometry.segment import Line, measure_distance_to_segment
 from workhold.verification import Ruling, verify_fixture
 from workhold.verification.reading import read_fixtures
 from workhold.verification.repeats import describe_stance
-from workhold.verification.seating import stop_of
+from workhold.verification.seating import find_stop
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -67,7 +67,7 @@ class FlatJaw(Toolkit):
         return None
 
     @property
-    def limits(self) -> tuple[Limit, ...]:
+    def limits(self) -> tuple[ToolkitLimit, ...]:
         """None that matter here."""
         return ()
 
@@ -113,7 +113,7 @@ def on_faces(item: Data, workpiece: Workpiece) -> Data:
         flush = [
             f.number
             for f in touched
-            if isinstance(f.segment, Line) and abs(f.segment.normal()[0] + sin(turn)) < 1e-6
+            if isinstance(f.segment, Line) and abs(f.segment.compute_normal()[0] + sin(turn)) < 1e-6
         ]
         numbers.append(min(flush or [f.number for f in touched]))
     return item["wall"] | {"segments": numbers}
@@ -295,7 +295,7 @@ def test_its_seating_knows_where_it_stops_and_which_pegs_stand_alike(known: Know
     alike: dict[Any, list[tuple[tuple[float, ...], float]]] = {}
     for item in known.items:
         fixture = known.read(item)
-        assert stop_of(fixture.pegs, known.toolkit, fixture.travel) == pytest.approx(3.0)
+        assert find_stop(fixture.pegs, known.toolkit, fixture.travel) == pytest.approx(3.0)
         here = describe_stance(fixture, known.toolkit)
         assert here.anchor == (0.0, 0.0) and here.apart == pytest.approx(
             min((p["x"], p["y"]) for p in item["pegs"])[1]

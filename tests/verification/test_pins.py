@@ -12,7 +12,7 @@ import pytest
 from workhold import Plate, Vise, Workpiece, design, save
 from workhold.fixels.support_hardware import PinLimits
 from workhold.model.quality import PIN_KEYS
-from workhold.model.solid import SolidOutline, run_at
+from workhold.model.solid import SolidOutline, interpolate_run
 from workhold.verification import Verification, verify_file
 from workhold.verification.pins import interpolate_cubic
 
@@ -94,7 +94,7 @@ def test_figures_without_heights_are_superfluous(tmp_path: Path) -> None:
 
 def test_runs_are_followed_along_their_segments() -> None:
     for share in (0.0, 0.1, 0.5, 0.77, 1.0):
-        low, high = run_at(SLIDES, share)
+        low, high = interpolate_run(SLIDES, share)
         assert (interpolate_cubic(SLIDES, share, 1), interpolate_cubic(SLIDES, share, 2)) == pytest.approx(
             (low, high), abs=1e-12
         )

@@ -34,7 +34,7 @@ from workhold.files.result.writer import make_notes_entry
 from workhold.listing.results import join_ways
 from workhold.model.notes import STAGES, LeftUndecided, NoFixture
 from workhold.model.quality import FIGURE_RANKING
-from workhold.model.search_report import GIVEN_UP, Undecided
+from workhold.model.search_report import GIVEN_UP, UndecidedCandidate
 from workhold.verification import Verification, verify, verify_file, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
 
@@ -323,11 +323,11 @@ def bolted_in(fixture: Fixture, hole: tuple[int, int], plate: Plate) -> Fixture:
         for column, row in [hole if peg is fixture.pegs[3] else (peg.column, peg.row)]
     ]
     clamp, carrier = moved[3], plate.find_carrier(moved[3].carrier)
-    at_hole = carrier.place(clamp.column, clamp.row)
+    at_hole = carrier.compute_hole_center(clamp.column, clamp.row)
     along, across = carrier.travel.unit  # type: ignore[union-attr]
     travel = (clamp.x - at_hole[0]) * along + (clamp.y - at_hole[1]) * across
     if min(clamp.column, clamp.row) >= 0:
-        moved[3] = attrs.evolve(clamp, place=carrier.place_name(clamp.column, clamp.row))
+        moved[3] = attrs.evolve(clamp, place=carrier.name_place(clamp.column, clamp.row))
     pose = attrs.evolve(fixture.pose, x=fixture.pose.x - x, y=fixture.pose.y - y)
     return attrs.evolve(fixture, pegs=tuple(moved), pose=pose, travel=travel, quality={})
 
@@ -465,7 +465,7 @@ def test_the_order_is_that_of_the_plate_turned_to_the_clamp() -> None:
 def test_undecided_entries_are_real_places(result: Result) -> None:
     """Where fixtures are there may be undecided ones; not at another orientation, in other holes or of another type."""
 
-    def faults(entry: Undecided) -> list[str]:
+    def faults(entry: UndecidedCandidate) -> list[str]:
         return faults_of([entry], result.query)
 
     tried = 0

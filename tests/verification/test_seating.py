@@ -16,18 +16,18 @@ from toolkit_results import verify_edited
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
 from workhold.completeness import find_first_difference
 from workhold.fixels.carrier import WALL
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 from workhold.verification.ball_geometry import BallOutline
-from workhold.verification.judging import order_faults
-from workhold.verification.listing import Listing, claim_of, read_listing
+from workhold.verification.judging import find_order_faults
+from workhold.verification.listing import WrittenListing, make_claim, read_listing
 from workhold.verification.repeats import describe_stance, find_pattern_faults
 from workhold.verification.seating import (
     FloatOutline,
     PartPlacement,
     SeatingJudge,
     StatedSeating,
+    find_stop,
     make_wall_contact,
-    stop_of,
 )
 from workhold.verification.verify import list_not_shown
 
@@ -59,19 +59,21 @@ def judge(result: Result) -> SeatingJudge:
     return SeatingJudge(result.query)
 
 
-def written(result: Result, path: Path) -> Listing:
+def written(result: Result, path: Path) -> WrittenListing:
     """A result as its file is read."""
     workhold.save(result, path)
     return read_listing(path)
 
 
 @pytest.fixture(scope="module")
-def listing(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Listing:
+def listing(result: Result, tmp_path_factory: pytest.TempPathFactory) -> WrittenListing:
     """The same as it is read from a file."""
     return written(result, tmp_path_factory.mktemp("seating") / "r.json")
 
 
-def fault(listing: Listing, judge: SeatingJudge, change: Callable[[Fields], Any], index: int = 0) -> str:
+def fault(
+    listing: WrittenListing, judge: SeatingJudge, change: Callable[[Fields], Any], index: int = 0
+) -> str:
     """What is wrong with the seating of a fixture after a change of its fields."""
     fixture = listing.fixtures[index]
     fields = deepcopy(dict(fixture.seating.fields))
@@ -82,7 +84,7 @@ def fault(listing: Listing, judge: SeatingJudge, change: Callable[[Fields], Any]
 
 def told(fields: Fields, fixture: Any) -> Any:
     """The seating of fields."""
-    return type(fixture.seating.seating).of_fields(fields, fixture.pose)
+    return type(fixture.seating.seating).from_fields(fields, fixture.pose)
 
 
 @pytest.mark.thorough
@@ -147,7 +149,7 @@ def test_every_number_that_is_off_a_little_is_refuted(part: Workpiece, toolkit: 
 
 
 @pytest.mark.thorough
-def test_words_and_whole_parts_that_are_off_are_refuted(listing: Listing, judge: SeatingJudge) -> None:
+def test_words_and_whole_parts_that_are_off_are_refuted(listing: WrittenListing, judge: SeatingJudge) -> None:
     fields = listing.fixtures[0].seating.fields
     own = next(k for k, seat in enumerate(listing.fixtures[0].seating.seating.seats) if seat.is_own)
     other = next(k for k, seat in enumerate(fields["seats"]) if k != own and seat["kind"] == "fixture")
@@ -231,12 +233,12 @@ def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, 
     keys = [describe_stance(fixture, toolkit).key for fixture in every]
     place = next(k for k, key in enumerate(keys) if keys.count(key) > 1)
     first, query = every[place], workhold.Query(part, toolkit, seating=1)
-    told = Solver(part, toolkit).of(first, with_cage=False).as_fields()
+    told = SeatingSolver(part, toolkit).solve(first, with_cage=False).to_fields()
     others = [stepped(every[k], toolkit) for k in range(len(every)) if k != place]
     assert describe_stance(stepped(first, toolkit), toolkit).key == keys[place]
 
     def faults(fields: Fields) -> list[str]:
-        claim = claim_of(fields, first.pose, query, "the result", 1)
+        claim = make_claim(fields, first.pose, query, "the result", 1)
         return list(find_pattern_faults([attrs.evolve(first, seating=claim), *others], query))
 
     assert not faults(told)
@@ -248,7 +250,7 @@ def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, 
 
 
 @pytest.mark.thorough
-def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
+def test_the_order_is_that_of_the_seating(listing: WrittenListing) -> None:
     """Two fixtures with different warnings exchanged, and one told only behind others."""
     fixtures = list(listing.fixtures)
     hardly = attrs.evolve(fixtures[0].seating.seating, capture_opening=0.5)
@@ -257,7 +259,7 @@ def test_the_order_is_that_of_the_seating(listing: Listing) -> None:
 
     def fault_with(first: Any) -> str:
         asked = listing.query, listing.hardware, listing.least_effective_error
-        return next(order_faults([first, *fixtures[1:]], *asked), "")
+        return next(find_order_faults([first, *fixtures[1:]], *asked), "")
 
     assert fault_with(fixtures[0]) == ""
     assert "is better than" in fault_with(worse)
@@ -270,7 +272,7 @@ def test_a_search_compares_what_a_file_alone_cannot_show(result: Result, tmp_pat
     workhold.save(result, path)
     assert workhold.verify(path, complete=True).holds
     text = path.read_text()
-    fields = result.seating[1].as_fields()
+    fields = result.seating[1].to_fields()
     path.write_text(
         text.replace(f'"way_out": {fields["way_out"]}', f'"way_out": {fields["way_out"] + 0.5}', 1)
     )
@@ -322,7 +324,9 @@ def test_a_seat_with_a_peg_in_the_part_is_refuted(tmp_path: Path) -> None:
     seat = {"kind": "loose", "pose": pose, "difference": 7.496592209, "mirrored": False, "same_place": False}
     seat |= {"jaw_separation": 23.742741256, "contacts": contacts, "forces": []}
     # On the pegs of one of the two, which are the same part held twice, turned by half.
-    found = [list(StatedSeating(judge, one, one.seating).seat_faults(seat, own)) for one in listing.fixtures]
+    found = [
+        list(StatedSeating(judge, one, one.seating).find_seat_faults(seat, own)) for one in listing.fixtures
+    ]
     assert ["has a peg in the part"] in found
 
 
@@ -336,7 +340,7 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
     )
 
     def faults(**changes: Any) -> list[str]:
-        return list(StatedSeating(judge, fixture, fixture.seating).seat_faults(own | changes, own))
+        return list(StatedSeating(judge, fixture, fixture.seating).find_seat_faults(own | changes, own))
 
     assert not faults()
     for off in (-1e-3, 1e-3):
@@ -374,7 +378,7 @@ def test_the_lowest_point_of_a_part_is_that_of_its_box(mirrored: bool) -> None:
     rough = FloatOutline.from_segments(BallOutline.from_workpiece(BOWED).segments, BOWED)
     part = BOWED.turned_over if mirrored else BOWED
     for theta in range(0, 360, 7):
-        low = part.placed(Pose(theta, 3.0, 5.0)).bounds[1]
+        low = part.apply_pose(Pose(theta, 3.0, 5.0)).bounds[1]
         assert rough.compute_lowest_height(PartPlacement(theta, 3.0, 5.0, mirrored)) == pytest.approx(
             low, abs=1e-9
         )
@@ -386,7 +390,7 @@ def test_what_stops_a_clamp_or_jaws() -> None:
     locator, on_wall = Peg("plate", 0, 0, 0.0, 10.0, 0, 0.0), Peg(WALL, 0, 0, 5.0, 0.0, 0, 0.0)
 
     def stop(toolkit: Any, tip: Peg) -> float | None:
-        return stop_of([locator, *([on_wall] if toolkit is fence else []), tip], toolkit, -20.0)
+        return find_stop([locator, *([on_wall] if toolkit is fence else []), tip], toolkit, -20.0)
 
     assert stop(fence, Peg("clamp -y", 1, 3, 20.0, 50.0, 0, 0.0)) == -50.0
     # From hole 2 up at 50, the tip at 30: it goes 26 farther.
@@ -398,6 +402,6 @@ def test_what_stops_a_clamp_or_jaws() -> None:
     assert stop(plate, Peg("clamp +x", 0, 2, 10.0, 10.0, 0, 0.0)) is None
     assert stop(plate, Peg("clamp +x", 0, 2, -10.0, 14.0, 0, 0.0)) == pytest.approx(-20.0 - 10.0 + 20.0**0.5)
     jaws = [Peg("left", 0, 0, 0.0, 0.0, 0, 0.0), Peg("right", 0, 0, 40.0, 0.0, 0, 0.0)]
-    assert stop_of(jaws, Vise(20, 2, 3, min_gap=15), 18.0) == pytest.approx(-7.0)
-    assert stop_of(jaws, OpeningVise(20, 2, 3, max_opening=70), 18.0) == 70.0
-    assert stop_of(jaws, OpeningVise(20, 2, 3), 18.0) is None
+    assert find_stop(jaws, Vise(20, 2, 3, min_gap=15), 18.0) == pytest.approx(-7.0)
+    assert find_stop(jaws, OpeningVise(20, 2, 3, max_opening=70), 18.0) == 70.0
+    assert find_stop(jaws, OpeningVise(20, 2, 3), 18.0) is None

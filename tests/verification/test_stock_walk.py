@@ -14,7 +14,7 @@ from attrs import evolve
 from slow_program import PEG_HEIGHT, kinds_of_toolkit, random_program
 from strategies import random_outline
 from workhold import Program, Query, Workpiece, answer, save
-from workhold.model.cutting_forces import forces_on
+from workhold.model.cutting_forces import compute_cutting_forces
 from workhold.model.cutting_tool import CuttingData
 from workhold.model.stock import Stock, StockShape
 from workhold.verification import verify_file
@@ -26,7 +26,7 @@ def asked(seed: int, side: float = 5.0, shape: StockShape = "outline") -> Query:
     random = Random(seed)
     part = random_outline(random, 6)
     program = random_program(random, part)
-    forces = forces_on(program.moves, program.tools, CuttingData(cutting_force=400, cut_depth=2))
+    forces = compute_cutting_forces(program.moves, program.tools, CuttingData(cutting_force=400, cut_depth=2))
     program = evolve(program, forces=forces, stock=Stock(side, 2.0, shape, 8.0))
     return Query(part, kinds_of_toolkit(10.0)["vise"], program=program, peg_height=PEG_HEIGHT, best=3)
 
@@ -109,7 +109,7 @@ def test_a_file_without_a_stock_is_read_as_it_stands(tmp_path: Path) -> None:
     query = asked(1)
     assert query.program is not None
     bare = evolve(query.program, stock=None, is_placed=False)
-    forces = forces_on(bare.moves, bare.tools, CuttingData(cutting_force=400, cut_depth=2))
+    forces = compute_cutting_forces(bare.moves, bare.tools, CuttingData(cutting_force=400, cut_depth=2))
     save(answer(evolve(query, program=evolve(bare, forces=forces)), threads=1), path)
     data = json.loads(path.read_text())
     assert "stock" not in data["program"]

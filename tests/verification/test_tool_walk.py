@@ -16,7 +16,7 @@ from slow_program import OFF, PEG_HEIGHT, kinds_of_toolkit, low_points, random_p
 from strategies import random_outline
 from workhold import Program, Query, Result, answer, save
 from workhold.verification import Judge, verify, verify_file
-from workhold.verification.tool_walk import Element, find_program_fault, list_elements, walk_of
+from workhold.verification.tool_walk import HoldingElement, find_program_fault, list_elements, make_walk
 
 KINDS = tuple(kinds_of_toolkit(10.0))
 
@@ -72,7 +72,7 @@ def test_the_walk_is_between_its_bounds_and_they_are_near(rapid: Any) -> None:
     program = evolve(program_of_result(result), rapid=rapid)
     low, rules = low_points(program, PEG_HEIGHT), Judge(result.query).hardware
     for fixture in result[:40]:
-        nearest = [walk_of(program).find_nearest(one) for one in list_elements(fixture, rules, PEG_HEIGHT)]
+        nearest = [make_walk(program).find_nearest(one) for one in list_elements(fixture, rules, PEG_HEIGHT)]
         least = min(one.low for one in nearest)
         assert all(one.low <= one.high + 1e-12 <= one.low + 1.1e-7 for one in nearest)
         walked = slow_clearance(fixture, result.toolkit, low)
@@ -87,7 +87,7 @@ def test_a_helix_is_walked_down_to_the_height_of_an_element() -> None:
     program = program_of([(END_MILL, True, (10.0, 0.0, 10.0), (-10.0, 0.0, 4.0), 1.0)])
     for angle, low in ((0.0, False), (0.25, False), (0.75, True)):
         x, y = 14.0 * np.cos(angle * np.pi), 14.0 * np.sin(angle * np.pi)
-        near = walk_of(program).find_nearest(Element("peg", "", (x, y), (x, y), 1.0, 7.0))
+        near = make_walk(program).find_nearest(HoldingElement("peg", "", (x, y), (x, y), 1.0, 7.0))
         # Down to 7 mm the tool comes at a quarter turn.
         there = 4.0 if low else np.hypot(x, y - 10.0)
         assert near.high == pytest.approx(there - 4.0, abs=1e-6)

@@ -31,17 +31,23 @@ from workhold import (
     circle_zone,
     design,
 )
-from workhold.model.fixture import Pair
+from workhold.model.fixture import ClampPair
 from workhold.model.notes import NoPair
-from workhold.model.search_report import AT_AN_EDGE, Undecided
+from workhold.model.search_report import AT_AN_EDGE, UndecidedCandidate
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.account import has_too_few_contacts
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
 from workhold.verification.listing import collect_claims
-from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
-from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, compute_closure_margin, find_ratio
+from workhold.verification.rules.travel import WAYS, ClampStroke, name_clamp_place
+from workhold.verification.seat import (
+    ClampPush,
+    LocatorWrenches,
+    SeatBalance,
+    compute_closure_margin,
+    find_ratio,
+)
 from workhold.verification.seat_clamps import SeatClamp, SeatOnPlate
 
 Data = dict[str, Any]
@@ -314,13 +320,13 @@ def with_clamps(fixture: Fixture, *clamps: SeatClamp) -> Fixture:
         along_x = clamp.direction.endswith("x")
         column, row = (0, clamp.line) if along_x else (clamp.line, 0)
         x, y = (float(value.mid()) for value in clamp.tip)
-        called = clamp_place("plate", clamp.direction, column, row, False)
+        called = name_clamp_place("plate", clamp.direction, column, row, False)
         pegs.append(Peg(f"clamp {clamp.direction}", column, row, x, y, clamp.face, 0.0, called))
     travels = tuple(
         sum(v * w for v, w in zip((peg.x, peg.y), WAYS[clamp.direction], strict=True))
         for peg, clamp in zip(pegs[3:], clamps, strict=True)
     )
-    pair = Pair((travels[0], travels[1]), (0.0, inf), ((0.0, 0.0),) * 5, 1)
+    pair = ClampPair((travels[0], travels[1]), (0.0, inf), ((0.0, 0.0),) * 5, 1)
     directions = " ".join(clamp.direction for clamp in clamps)
     return attrs.evolve(fixture, type="clamp2", pegs=tuple(pegs), direction=directions, pair=pair)
 
@@ -384,16 +390,17 @@ def test_bodies_of_clamps_keep_clear_of_each_other_as_well(radius: float, overla
     lying = BallContact((arb(30), arb(0)), (arb(1), arb(0)), side, thick)
     upright = BallContact((arb(20), arb(50)), (arb(0), arb(1)), side, thick, travel=1)
     found = [
-        finding.reason for finding in Stroke((10.0, 50.0), None).judge_clearance_between(lying, upright, pose)
+        finding.reason
+        for finding in ClampStroke((10.0, 50.0), None).judge_clearance_between(lying, upright, pose)
     ]
     assert found == (["the clamps meet: they overlap by 0.002 mm"] if overlap else [])
-    assert list(Stroke(None, None).judge_clearance_between(lying, upright, pose)) == []
+    assert list(ClampStroke(None, None).judge_clearance_between(lying, upright, pose)) == []
 
 
-def push(taken: tuple[float, float, float], share: float = 1.0) -> Push:
+def push(taken: tuple[float, float, float], share: float = 1.0) -> ClampPush:
     """A clamp of which the locators take up so much."""
     a, b, c = (arb(value) for value in taken)
-    return Push((a, b, c), arb(share))
+    return ClampPush((a, b, c), arb(share))
 
 
 @pytest.mark.parametrize(
@@ -411,7 +418,7 @@ def push(taken: tuple[float, float, float], share: float = 1.0) -> Push:
         (40.0, push((0.5, 0.5, 0.5)), "clamp 1 holds the part without the other"),
     ],
 )
-def test_what_clamps_may_do_at_a_seat(apart: float, first: Push, words: str) -> None:
+def test_what_clamps_may_do_at_a_seat(apart: float, first: ClampPush, words: str) -> None:
     """Two locators so far apart below the part and one beside it, whose determinant that is; another clamp keeps all."""
     points = [(arb(0), arb(0)), (arb(apart), arb(0)), (arb(0), arb(5))]
     normals = [(arb(0), arb(1)), (arb(0), arb(1)), (arb(1), arb(0))]
@@ -437,7 +444,7 @@ def test_ratio_and_margin_in_closed_form() -> None:
     # Less than 1e-9 is nothing, and just that is undecided.
     nothing = find_ratio(push((1.0, -5e-10, 0.0)), push((0.0, 0.5, 0.5)))
     assert nothing is not None and nothing.low == 0
-    edge = Push((arb(1), arb(-1e-9, 1e-20), arb(0)), arb(1))
+    edge = ClampPush((arb(1), arb(-1e-9, 1e-20), arb(0)), arb(1))
     assert find_ratio(edge, between) is None
 
 
@@ -468,7 +475,7 @@ def test_an_undecided_pair_is_a_place_or_a_fault(results: dict[str, Result]) -> 
         {"type": "clamp -x"},
         {"faces": entries[0].faces[:4]},
     ):
-        entry: Undecided = attrs.evolve(entries[0], **edit)
+        entry: UndecidedCandidate = attrs.evolve(entries[0], **edit)
         assert len(faults_of([entry], result.query)) == 1, edit
     assert degrees(table.theta[0]) % 360 == pytest.approx(entries[0].theta_deg)
     assert {peg.carrier for peg in result[0].pegs[:3]} == {"plate"}

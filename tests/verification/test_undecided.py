@@ -12,11 +12,11 @@ from judged import faults_of
 from undecided_examples import as_undecided
 from workhold import Fixture, OpeningVise, Query, Result, StrapPlate, Vise, Workpiece, design
 from workhold.model.notes import LeftUndecided
-from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
+from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, UndecidedCandidate
 from workhold.verification import verify
 
 
-def as_chords(fixture: Fixture) -> Undecided:
+def as_chords(fixture: Fixture) -> UndecidedCandidate:
     """Its first two pegs and the others, or of three left pegs those that share the first, as chords that were given up."""
     entry, kind = as_undecided(fixture), fixture.type
     order = (0, 1, 2, 3) if kind == "I" else (0, 1, 0, 2)
@@ -26,10 +26,10 @@ def as_chords(fixture: Fixture) -> Undecided:
         tuple(entry.columns[k] for k in order),
         (0, rows[1], 0, rows[3] - rows[2]),
     ]
-    return Undecided(kind, *quartets, entry.theta_deg, GIVEN_UP)
+    return UndecidedCandidate(kind, *quartets, entry.theta_deg, GIVEN_UP)
 
 
-def faults(entry: Undecided, result: Result) -> list[str]:
+def faults(entry: UndecidedCandidate, result: Result) -> list[str]:
     """What is wrong with one entry."""
     return faults_of([entry], result.query)
 
@@ -127,7 +127,7 @@ def test_what_is_undecided_need_not_be_a_solution(
     ]
     part = Workpiece.from_loops("plate", [[[0, 0, 0], [100, 0, 0], [100, 80, 0], [0, 80, 0]], *holes])
     query = Query(part, OpeningVise(pitch=10, columns=4, peg_radius=3))
-    entry = Undecided("II", faces, columns, rows, theta, NEARLY_DOUBLE, reach)
+    entry = UndecidedCandidate("II", faces, columns, rows, theta, NEARLY_DOUBLE, reach)
     assert faults_of([entry], query) == []
     known = attrs.evolve(entry, reach_deg=1e-8)
     assert "is no place where" in faults_of([known], query)[0]
@@ -140,7 +140,7 @@ def test_pegs_at_both_ends_may_miss_by_what_they_move_against_each_other(farther
     query = Query(rod, Vise(pitch=(20.0, 10.0 + farther / 3), columns=2, peg_radius=5))
     flat, top, bottom = 0, 1, 3
     faces, rows = (bottom, top, flat, flat), (0, 3, 1, 2)
-    entry = Undecided("I", faces, (0, 0, 0, 0), rows, 0.0, NEARLY_DOUBLE, degrees(1e-3))
+    entry = UndecidedCandidate("I", faces, (0, 0, 0, 0), rows, 0.0, NEARLY_DOUBLE, degrees(1e-3))
     assert (faults_of([entry], query) == []) == real
 
 

@@ -30,10 +30,12 @@ def contact(workpiece: Workpiece, vise: Vise, holes: list[Hole], z: Array) -> tu
     turn = np.array([[cos(z[0]), sin(z[0])], [-sin(z[0]), cos(z[0])]])
     gaps, points, normals = [], [], []
     for jaw, column, row, face in holes:
-        point = turn @ (np.array(vise.carriers[int(jaw == "right")].place(column, row, z[3])) - z[1:3])
+        point = turn @ (
+            np.array(vise.carriers[int(jaw == "right")].compute_hole_center(column, row, z[3])) - z[1:3]
+        )
         segment = segments[face]
         if isinstance(segment, Line):
-            normal = np.array(segment.normal())
+            normal = np.array(segment.compute_normal())
             gap = (point - segment.start) @ normal
         else:
             ray = point - segment.center
@@ -73,7 +75,7 @@ def fixture_of(workpiece: Workpiece, vise: Vise, holes: list[Hole], z: Array) ->
         force = np.nan_to_num(null / clamping_force(null, normals[None], z[:1], left[None]))
     pegs = []
     for (jaw, column, row, face), push in zip(holes, force[0], strict=True):
-        x, y = vise.carriers[int(jaw == "right")].place(column, row, z[3])
+        x, y = vise.carriers[int(jaw == "right")].compute_hole_center(column, row, z[3])
         pegs.append(Peg(jaw, column, row, float(x), float(y), face, float(push)))  # type: ignore[arg-type]
     pose = Pose(float(np.degrees(z[0])), float(z[1]), float(z[2]))
     quality = {"closure_margin": float(null.min())}

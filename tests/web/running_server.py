@@ -17,8 +17,8 @@ from warm_worker import warm_context
 
 from reading_here import work_reading_here
 from workhold import load
-from workhold.web.guard import Hosts, ServerLimits
-from workhold.web.origins import Origins
+from workhold.web.guard import AllowedHosts, ServerLimits
+from workhold.web.origins import AllowedOrigins
 from workhold.web.serve import Server, bound_socket, make_server
 from workhold.web.state import ServerState
 
@@ -133,7 +133,7 @@ def served(
     listening = threading.Event()
     socket = bound_socket("127.0.0.1", 0)
     given = ServerLimits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
-    server = make_server(given, Hosts(), listening.set, proxies, token, Origins(origins))
+    server = make_server(given, AllowedHosts(), listening.set, proxies, token, AllowedOrigins(origins))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
     thread.start()
     try:

@@ -10,7 +10,7 @@ from running_server import LONG, RunningServer, request
 
 from family_parts import shop_parts
 from workhold import Query, Vise
-from workhold.family.family import Asked, make_family, write_family_json
+from workhold.family.family import MemberRequest, make_family, write_family_json
 from workhold.family.members import RANKINGS
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
@@ -47,7 +47,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     answer = server.client.get(f"{job}/family").json()
     vise = Vise(pitch=10, columns=1, peg_radius=3)
     family = make_family(
-        [Asked(part.name, Query(part, vise, rank_by=RANKINGS[1])) for part in PARTS], threads=1
+        [MemberRequest(part.name, Query(part, vise, rank_by=RANKINGS[1])) for part in PARTS], threads=1
     )
     assert [(one["setups"], one["loss"]) for one in answer["points"]] == [
         (p.setups, p.loss) for p in family.points

@@ -18,7 +18,7 @@ from workhold import Load, Result, Tolerance, Vise, design, load
 from workhold.files.result.fixture_text import write_result_csv
 from workhold.files.result.writer import write_result_text
 from workhold.model.quality import FIGURES, PIN_KEYS
-from workhold.statics.loads import load_cases
+from workhold.statics.loads import compute_load_cases
 
 LOAD = {"points": [[10, 5]], "force": 200, "directions": [-30, 30]}
 
@@ -178,7 +178,7 @@ def test_loads_are_answered_as_by_the_program(server: RunningServer, job: str, r
     body = {"loads": [LOAD], "jaw_force": 1000, "friction": 0.1}
     answer = server.client.post(f"{job}/fixtures/7/loads", json=body).json()
     load_asked = Load(points=[(10, 5)], force=200, directions=(-30, 30))
-    (case,) = load_cases(result[6], result.workpiece, result.toolkit, [load_asked], 1000, 0.1)
+    (case,) = compute_load_cases(result[6], result.workpiece, result.toolkit, [load_asked], 1000, 0.1)
     (told,) = answer["cases"]
     assert told["smallest"] == pytest.approx(list(case.smallest)) and told["largest"] == pytest.approx(
         list(case.largest)

@@ -17,10 +17,10 @@ from fakes import fake_result
 from workhold.files.step.part_shape import PartShape
 from workhold.model.notes import BestOnly, Many
 from workhold.web import jobs as kept_jobs
-from workhold.web.families import FamilyFound
+from workhold.web.families import FoundFamily
 from workhold.web.guard import ServerLimits
-from workhold.web.jobs import Jobs, ServerJob, TooManyError
-from workhold.web.searching import AskedQueries, Found
+from workhold.web.jobs import JobRegistry, ServerJob, TooManyError
+from workhold.web.searching import AskedQueries, SearchOutcome
 
 LIMITS = ServerLimits(jobs=2, kept_jobs=4, kept_bytes=1_000, life_seconds=100.0, left_seconds=0.05)
 
@@ -47,14 +47,20 @@ class FakePool:
 
 
 @pytest.fixture
-def jobs(monkeypatch: pytest.MonkeyPatch) -> Iterator[Jobs]:
+def jobs(monkeypatch: pytest.MonkeyPatch) -> Iterator[JobRegistry]:
     """Jobs in a pool that does nothing, which leave the memory of the process alone."""
-    monkeypatch.setattr(Jobs, "free_memory", lambda self: None)
-    yield Jobs(FakePool(), LIMITS)  # type: ignore[arg-type]
+    monkeypatch.setattr(JobRegistry, "free_memory", lambda self: None)
+    yield JobRegistry(FakePool(), LIMITS)  # type: ignore[arg-type]
 
 
 def job(
-    jobs: Jobs, name: str, *, state: str = "done", unused: float = 0.0, asked: Any = None, **values: Any
+    jobs: JobRegistry,
+    name: str,
+    *,
+    state: str = "done",
+    unused: float = 0.0,
+    asked: Any = None,
+    **values: Any,
 ) -> ServerJob:
     """A job that was used some seconds ago."""
     made = ServerJob(name, {}, asked, values.pop("address", "a"), values.pop("kind", "design"), **values)
@@ -63,7 +69,7 @@ def job(
     return made
 
 
-def test_searches_of_an_address_count_until_they_are_over(jobs: Jobs) -> None:
+def test_searches_of_an_address_count_until_they_are_over(jobs: JobRegistry) -> None:
     """Those of others do not."""
     job(jobs, "one", state="running")
     job(jobs, "two", state="queued")
@@ -78,7 +84,7 @@ def test_searches_of_an_address_count_until_they_are_over(jobs: Jobs) -> None:
     jobs.refuse_more("a")
 
 
-def test_the_longest_unused_go_first_and_no_more_than_must(jobs: Jobs) -> None:
+def test_the_longest_unused_go_first_and_no_more_than_must(jobs: JobRegistry) -> None:
     """By bytes of what is over, and by number of all; a job that runs stays."""
     for name, unused, weight in (("b", 30, 400), ("a", 40, 400), ("d", 10, 400), ("c", 20, 400)):
         job(jobs, name, unused=unused, weight=weight)
@@ -93,7 +99,7 @@ def test_the_longest_unused_go_first_and_no_more_than_must(jobs: Jobs) -> None:
     assert set(jobs.by_name) == {"d", "e", "f", "g"}
 
 
-def test_the_newest_stays_whatever_its_size(jobs: Jobs) -> None:
+def test_the_newest_stays_whatever_its_size(jobs: JobRegistry) -> None:
     job(jobs, "large", weight=5_000)
     jobs.make_room()
     assert set(jobs.by_name) == {"large"}
@@ -102,7 +108,7 @@ def test_the_newest_stays_whatever_its_size(jobs: Jobs) -> None:
     assert set(jobs.by_name) == {"large"}
 
 
-def test_a_job_is_forgotten_after_its_life(jobs: Jobs) -> None:
+def test_a_job_is_forgotten_after_its_life(jobs: JobRegistry) -> None:
     """Where there is room for it, too."""
     for name, unused in (("old", 101.0), ("older", 500.0), ("new", 90.0)):
         job(jobs, name, unused=unused)
@@ -112,7 +118,7 @@ def test_a_job_is_forgotten_after_its_life(jobs: Jobs) -> None:
 
 
 def test_shapes_and_orders_count_and_few_orders_and_seatings_are_kept(
-    jobs: Jobs, monkeypatch: pytest.MonkeyPatch
+    jobs: JobRegistry, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The oldest go first."""
     positions, triangles = np.zeros((6, 3)), np.zeros((2, 3), dtype=np.int64)
@@ -139,9 +145,9 @@ class SimpleNamespaceWithHash(SimpleNamespace):
 
 @pytest.mark.parametrize("is_deleted", [False, True])
 def test_a_job_is_used_until_its_end_and_nothing_is_kept_of_one_that_was_deleted(
-    jobs: Jobs, is_deleted: bool
+    jobs: JobRegistry, is_deleted: bool
 ) -> None:
-    family = FamilyFound(None, (), "")  # type: ignore[arg-type]
+    family = FoundFamily(None, (), "")  # type: ignore[arg-type]
 
     async def work(task: Any) -> Any:
         task.begun()
@@ -161,7 +167,7 @@ def test_a_job_is_used_until_its_end_and_nothing_is_kept_of_one_that_was_deleted
     assert made.family is (None if is_deleted else family)
 
 
-def test_a_job_that_is_left_is_cancelled_unless_somebody_watches_it(jobs: Jobs) -> None:
+def test_a_job_that_is_left_is_cancelled_unless_somebody_watches_it(jobs: JobRegistry) -> None:
     """The time counts from its last use."""
 
     async def whole(watched: bool, unused: float) -> bool:
@@ -182,13 +188,13 @@ def test_a_job_that_is_left_is_cancelled_unless_somebody_watches_it(jobs: Jobs) 
     assert run_alone(whole(False, 50.0))
 
 
-def test_how_many_there_are_about_is_said_beside_the_best(jobs: Jobs) -> None:
+def test_how_many_there_are_about_is_said_beside_the_best(jobs: JobRegistry) -> None:
     """Not that nobody counted them, which the kept result says, as it is one of the best alone."""
     whole = fake_result(5)
     limited = evolve(whole, query=evolve(whole.query, best=5), notes=(BestOnly(5),))
     made = job(jobs, "one", asked=AskedQueries.from_queries((("", whole.query),)))
-    jobs.keep(made, Found(limited, 0, (Many(4_240_000, 5),)))
+    jobs.keep(made, SearchOutcome(limited, 0, (Many(4_240_000, 5),)))
     assert tuple(map(str, made.notes)) == ("There are about 4,200,000 fixtures: these are the best 5.",)
     assert made.result is not None and made.result.query.best == 5 and made.result.notes == (BestOnly(5),)
-    jobs.keep(made, Found(evolve(whole, notes=(BestOnly(5),)), 0))
+    jobs.keep(made, SearchOutcome(evolve(whole, notes=(BestOnly(5),)), 0))
     assert made.notes == (BestOnly(5),) and made.result.query.best is None

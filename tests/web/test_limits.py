@@ -102,13 +102,13 @@ def test_what_is_wrong_in_very_many_places_is_found_out_by_a_worker(
 ) -> None:
     """The process that hears all clients never looks at it; small requests it does."""
     by_worker: list[str] = []
-    whole = pool.Pool.run
+    whole = pool.WorkerPool.run
 
-    async def run(self: pool.Pool, task: pool.PoolTask) -> object:
+    async def run(self: pool.WorkerPool, task: pool.PoolTask) -> object:
         by_worker.append(task.name)
         return await whole(self, task)
 
-    monkeypatch.setattr(pool.Pool, "run", run)
+    monkeypatch.setattr(pool.WorkerPool, "run", run)
     few = {"name": "m", "loops": [SQUARE], **{f"k{k}": 1 for k in range(5_000)}}
     many = {"name": "m", "loops": [SQUARE], **{f"k{k}": 1 for k in range(250_000)}}
     long_part = {"name": "m", "loops": [[[k, k * k, 0] for k in range(3_000)]]}

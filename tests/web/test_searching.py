@@ -12,8 +12,8 @@ from attrs import evolve
 import workhold.search.design as designing
 from workhold import Query, Result, Vise, load
 from workhold.search import estimate
-from workhold.web.searching import FIRST, AskedQueries, mark_of, put_best_first, search
-from workhold.web.worker import Order
+from workhold.web.searching import FIRST, AskedQueries, make_fixture_mark, put_best_first, search
+from workhold.web.worker import TaskContext
 
 SECONDS = 600.0
 
@@ -57,12 +57,12 @@ def run(
     reports: list[Any] = []
     return search(
         (AskedQueries.from_queries((("", query),)), most, every),
-        Order(reports.append, cancel or Event(), SECONDS),
+        TaskContext(reports.append, cancel or Event(), SECONDS),
     ), reports
 
 
 def marks(result: Result) -> list[Any]:
-    return [mark_of(result.table, k) for k in range(len(result))]
+    return [make_fixture_mark(result.table, k) for k in range(len(result))]
 
 
 @pytest.mark.thorough
@@ -116,15 +116,17 @@ def test_a_search_that_is_stopped_among_the_best_keeps_those_found(
         if value[0] == "progress" and value[2] > FIRST:
             cancel.set()
 
-    found = search((AskedQueries.from_queries((("", query),)), 10_000, False), Order(report, cancel, SECONDS))
+    found = search(
+        (AskedQueries.from_queries((("", query),)), 10_000, False), TaskContext(report, cancel, SECONDS)
+    )
     assert asked == [FIRST] and not found.result.complete
     assert 0 < len(found.result) <= FIRST and found.result.query == query
 
 
 def test_a_search_that_is_stopped_keeps_the_best_first(whole: Result) -> None:
     """Before what else was found, each once, and it is not whole all the same."""
-    best = evolve(whole.part(slice(0, 5)), distinct=dict.fromkeys(whole.distinct, 1))
-    later = evolve(whole.part(slice(3, 9)), complete=False, found=dict.fromkeys(whole.found, 0))
+    best = evolve(whole.slice_rows(slice(0, 5)), distinct=dict.fromkeys(whole.distinct, 1))
+    later = evolve(whole.slice_rows(slice(3, 9)), complete=False, found=dict.fromkeys(whole.found, 0))
     joined = put_best_first(later, best)
     assert marks(joined) == marks(whole)[:9] and not joined.complete
     assert sum(joined.found.values()) == 9

@@ -18,7 +18,7 @@ from workhold import Plate, Result, Vise, Workpiece
 from workhold.model.notes import PushedByHand
 from workhold.model.seating import Seating
 from workhold.web.fixture_tasks import ClosingForm, ClosingOrder, close
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
 CORNERS = [[0, 0, 0], [70, 0, 0], [25, 55, 0]]
 WEDGE = {"name": "wedge", "loops": [CORNERS]}
@@ -59,7 +59,7 @@ def put(result: Result, turn: float, dx: float, dy: float, turned_over: bool = F
 
 def test_figures_and_sentences_are_the_programs(server: RunningServer, place: str, told: Seating) -> None:
     answer = server.client.get(f"{place}/seating").json()
-    fields = told.as_fields()
+    fields = told.to_fields()
     assert {key: answer[key] for key in fields} == json.loads(json.dumps(fields))
     assert told.seats[answer["own"]].is_own
     off = [abs(answer["seats"][k]["difference"]) for k in answer["nearest"]]
@@ -82,7 +82,7 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
     told = json.loads(server.client.get(f"{job}/result.json").content)
     assert (told["seating"], told["opening"], told["foolproof"]) == (3, 0.5, False)
     fields = [fixture["seating"] for fixture in told["fixtures"]]
-    assert fields == json.loads(json.dumps([one.as_fields() for one in made.seating])) and len(fields) > 1
+    assert fields == json.loads(json.dumps([one.to_fields() for one in made.seating])) and len(fields) > 1
     rows = server.client.get(f"{job}/fixtures", params={"limit": 9}).json()["rows"]
     openings = [one["capture_opening"] for one in fields]
     assert [row["caught"] for row in rows] == [{"opening": one} for one in openings]
@@ -103,7 +103,7 @@ def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) ->
     made = workhold.design(Workpiece.from_loops("wedge", [CORNERS]), Plate(20, 3, clamps=2), seating=3)
     [told] = workhold.seatings(made, [made[1]])
     answer = server.client.get(f"{job}/fixtures/2/seating").json()
-    assert answer == {"rank": 2, "by_hand": json.loads(json.dumps(told.as_fields()))}
+    assert answer == {"rank": 2, "by_hand": json.loads(json.dumps(told.to_fields()))}
     inches = server.client.get(f"{job}/fixtures/2/seating", params={"unit": "inch"}).json()["by_hand"]
     assert " in at clamp" in inches["steps"][-1] and inches["steps"][:-1] == answer["by_hand"]["steps"][:-1]
     assert PushedByHand().words in server.client.get(job).json()["notes"]
@@ -253,7 +253,7 @@ def test_a_closing_that_is_stopped_has_no_answer(result: Result, told: Seating) 
     stopped = Event()
     held = result[1], result.workpiece, result.toolkit
     form = ClosingForm(**put(result, 1.0, 1.0, 0.0), opening=3.0)
-    order = Order(lambda _: None, stopped, 1.0)
+    order = TaskContext(lambda _: None, stopped, 1.0)
     answer = close(ClosingOrder(held, told, form), order)
     assert answer is not None and answer["ending"] == "right"
     stopped.set()

@@ -20,7 +20,7 @@ from glb_reading import ReadBody, read_glb
 from workhold import Plate, Result, Workpiece
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
-from workhold.supports.listing import supports_of
+from workhold.supports.listing import find_supports
 
 CORNERS = [[0, 0, 0], [100, 0, 0], [100, 60, 0], [10, 70, 0]]
 BLOCK = {"name": "block", "loops": [CORNERS]}
@@ -42,8 +42,8 @@ def place(server: RunningServer) -> str:
 
 def found(result: Result, **more: Any) -> Supports:
     """The best three sets that the program finds under the second fixture."""
-    asked = SupportRequest.of(result.workpiece, 12.0, toolkit=result.toolkit)
-    return supports_of(result[1], result.query, asked, [SpatialLoad(**LOAD)], best=3, **more)
+    asked = SupportRequest.from_workpiece(result.workpiece, 12.0, toolkit=result.toolkit)
+    return find_supports(result[1], result.query, asked, [SpatialLoad(**LOAD)], best=3, **more)
 
 
 def told(server: RunningServer, place: str, **form: Any) -> dict[str, Any]:
@@ -112,7 +112,7 @@ def test_what_shows_from_the_side(server: RunningServer, place: str, result: Res
     """The boxes hold the part over its thickness, and a peg at its place."""
     answer = told(server, place, loads=[])
     [part] = [box for box in answer["boxes"][0] if box["kind"] == "part"]
-    x0, y0, x1, y1 = result.workpiece.placed(result[1].pose).bounds
+    x0, y0, x1, y1 = result.workpiece.apply_pose(result[1].pose).bounds
     assert [*part["x"], *part["y"]] == pytest.approx([x0, x1, y0, y1])
     assert part["z"][1] - part["z"][0] == pytest.approx(12)
     pegs = {box["name"].rpartition(" ")[2]: box for box in answer["boxes"][0] if box["kind"] == "peg"}

@@ -18,7 +18,7 @@ from workhold.fixels.kinds import ALIASES, KINDS, make_toolkit, resolve_kind
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.web.answers import describe_fixture
 from workhold.web.forms import JobForm
-from workhold.web.toolkits import DESCRIBED, Described
+from workhold.web.toolkits import DESCRIBED, DescribedToolkit
 
 RECTANGLE = {"name": "plate", "loops": [[[0, 0, 0], [90, 0, 0], [90, 50, 0], [0, 50, 0]]]}
 PLATE = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "directions": ["-x", "-y"]}
@@ -39,7 +39,7 @@ def test_every_kind_is_on_the_page() -> None:
 
 
 @pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
-def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
+def test_every_field_of_a_kind_is_on_the_page(one: DescribedToolkit) -> None:
     """Once for each set of other values, but for those that the name says; what must be filled in begins with a value."""
     kind = KINDS[resolve_kind(one.name)[0]]
     shown = [field.name for field in one.fields]
@@ -53,7 +53,7 @@ def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
 
 
 @pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
-def test_every_choice_can_be_asked_for(one: Described) -> None:
+def test_every_choice_can_be_asked_for(one: DescribedToolkit) -> None:
     """A field's choices are values that the toolkit takes."""
     for field in one.fields:
         for choice in field.choices:
@@ -77,7 +77,7 @@ def test_every_figure_of_hardware_is_on_the_page(server: RunningServer) -> None:
 
 
 @pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
-def test_the_role_of_every_field_of_heights_is_told(one: Described) -> None:
+def test_the_role_of_every_field_of_heights_is_told(one: DescribedToolkit) -> None:
     """So that the page asks for the outlines of the carriers that it gives heights."""
     named = {name: [2.0 + k, 9.0] for k, name in enumerate(one.roles)}
     assert set(named) == {field.name for field in one.fields if field.name.endswith("_heights")}

@@ -17,7 +17,7 @@ from running_server import LONG, PATIENCE, RunningServer, arriving, request, run
 from workhold.cli.main import app
 from workhold.web import serve
 from workhold.web.guard import ServerLimits, compute_usual_memory
-from workhold.web.pool import BusyError, Pool, PoolTask
+from workhold.web.pool import BusyError, PoolTask, WorkerPool
 from workhold.web.serve import list_hosts
 
 T = TypeVar("T")
@@ -29,7 +29,7 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
     """Whose turn it was, one after the other, when each worker ends the oldest of its tasks before the next is begun."""
 
     async def play() -> list[str]:
-        pool = Pool("search", size, 1 << 30, len(clients) + 1)
+        pool = WorkerPool("search", size, 1 << 30, len(clients) + 1)
         pool.waiting = [PoolTask("x", None, 1.0, client) for client in clients]
         order, running = [], []
         while pool.waiting:
@@ -64,7 +64,7 @@ def test_nobody_has_all_workers() -> None:
     """One worker of several is kept for the next who comes; who has a worker has it until it is free again."""
 
     async def play() -> None:
-        pool = Pool("search", 3, 1 << 30, 64)
+        pool = WorkerPool("search", 3, 1 << 30, 64)
         pool.waiting = [PoolTask("x", None, 1.0, "greedy") for _ in range(5)]
         mine = [await pool.wait_for_task() for _ in range(2)]
         assert pool.turn() is None
@@ -81,7 +81,7 @@ def test_some_places_in_the_queue_are_kept_from_each_client() -> None:
     """Who has filled three quarters of the queue is refused; another still finds a place."""
 
     async def play() -> None:
-        pool = Pool("search", 1, 1 << 30, 8)
+        pool = WorkerPool("search", 1, 1 << 30, 8)
         pool.waiting = [PoolTask("x", None, 1.0, "greedy") for _ in range(5)]
         pool.refuse_more("greedy")
         pool.waiting.append(PoolTask("x", None, 1.0, "greedy"))

@@ -27,7 +27,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.resultants import ArrayTable
-from workhold.contact.problem import Frame
+from workhold.contact.problem import SearchFrame
 from workhold.conventions import PARALLEL, WEDGE_SLACK
 from workhold.errors import InputError
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
@@ -36,11 +36,11 @@ from workhold.limits import MOST_PEG_PAIRS
 __all__ = [
     "SECTORS",
     "PegPairs",
-    "Systems",
-    "facing",
-    "lattice_steps",
+    "EquationSystems",
+    "are_facing_sectors",
+    "list_lattice_steps",
     "list_peg_pairs",
-    "pieces_of",
+    "cut_into_pieces",
     "find_sector",
     "list_type_one_systems",
     "list_type_two_systems",
@@ -58,12 +58,16 @@ PIECE = 1 / 16
 
 
 def find_sector(psi: Array) -> IntArray:
-    """Sectors of orientations in radians."""
+    """Return the sector numbers (0 to SECTORS - 1) of orientations in radians, of any shape."""
     return np.floor(np.mod(psi, tau) * SECTORS / tau).astype(np.int64) % SECTORS
 
 
-def facing(rows: Array, spread: float) -> BoolArray:
-    """Whether features (F, 10) have a normal within ``spread`` radians of a sector's middle, (F, SECTORS)."""
+def are_facing_sectors(rows: Array, spread: float) -> BoolArray:
+    """Return whether features (F, 10) have an outward normal within
+    ``spread`` radians of a sector's middle, (F, SECTORS).
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     straight = rows[:, IS_ARC] == 0.0
     x, y = rows[:, AXIS_X], rows[:, AXIS_Y]
     middle = np.where(straight, np.arctan2(-x, y), np.arctan2(y, x))
@@ -75,11 +79,11 @@ def facing(rows: Array, spread: float) -> BoolArray:
 
 @define(frozen=True, eq=False)
 class FeaturePieces:
-    """Pieces of one feature.
+    """The pieces of one feature.
 
     Parameters
     ----------
-    middle : (P,) centres of the discs as complex numbers, in mm.
+    middle : (P,) centres of the discs as complex numbers x + i y, in mm.
     radius : (P,) radii of the discs in mm.
     """
 
@@ -87,8 +91,8 @@ class FeaturePieces:
     radius: Array
 
 
-def pieces_of(row: Array, size: float) -> FeaturePieces:
-    """Cuts a feature into pieces of about ``size`` mm."""
+def cut_into_pieces(row: Array, size: float) -> FeaturePieces:
+    """Return the pieces of a feature row, cut to lengths of at most about ``size`` mm."""
     straight = row[IS_ARC] == 0.0
     length = 2.0 * row[HALF_EXTENT] * (1.0 if straight else row[RADIUS])
     count = max(2 if straight else 4, ceil(length / size))
@@ -101,8 +105,12 @@ def pieces_of(row: Array, size: float) -> FeaturePieces:
     return FeaturePieces(middle, np.full(count, 2.0 * row[RADIUS] * sin(half / 2.0)))
 
 
-def lattice_steps(frame: Frame, longest: float) -> list[tuple[int, int]]:
-    """Steps (columns, rows) from the first peg of a pair to the second, up to ``longest`` mm."""
+def list_lattice_steps(frame: SearchFrame, longest: float) -> list[tuple[int, int]]:
+    """Return the steps (columns, rows) from the first peg of a pair
+    to the second, of lengths up to ``longest`` mm.
+
+    Rows are positive, or 0 with positive columns.
+    """
     most_rows = int(longest / frame.lattice.pitch_y)
     if frame.standing.rows is not None:
         most_rows = min(most_rows, frame.standing.rows - 1)
@@ -126,7 +134,8 @@ class PegPairs:
     column, row : (N,) the step between them.
     tails : (N, P, SECTORS) whether the first peg can be on a piece of its feature at an orientation; P is the
         largest number of pieces of a feature.
-    low, high : (N, SECTORS, 2) bounds in mm on where the first peg is along the frame's x and y.
+    low, high : (N, SECTORS, 2) bounds in mm of the first peg's place along the frame's x and y; inf and -inf
+        at orientations without one.
     """
 
     tail: IntArray
@@ -142,17 +151,18 @@ class PegPairs:
 
     @property
     def sectors(self) -> BoolArray:
-        """Orientations that each pair allows, (N, SECTORS)."""
+        """Whether each pair allows an orientation, (N, SECTORS)."""
         return np.asarray(self.tails.any(axis=1))
 
 
 def find_wedge_sectors(
     one: FeaturePieces, two: FeaturePieces, distance: float, direction: float
 ) -> BoolArray | None:
-    """Orientations (P, SECTORS) at which a peg pair fits each piece of the first feature.
+    """Return the sectors at which a peg pair may fit each of P pieces
+    of the first feature, (P, SECTORS) of bool.
 
-    See sections 3.3 and 3.4. The step from the first peg to the second has a length in mm and a direction in
-    radians. None where no wedge holds its length.
+    See sections 3.3 and 3.4. The step from the first peg to the second has a length (``distance``) in mm and
+    a direction in radians. Return None where no wedge holds its length.
     """
     between = two.middle[None, :] - one.middle[:, None]
     spread = one.radius[:, None] + two.radius[None, :] + WEDGE_SLACK
@@ -172,7 +182,11 @@ def find_wedge_sectors(
 
 
 def bound_first_peg(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]:
-    """Bounds (SECTORS, 2) on the first peg along x and y at each orientation; inf, -inf where it has none."""
+    """Return lower and upper bounds, (SECTORS, 2) each, of the first
+    peg's x and y in mm in the frame of the pegs.
+
+    ``tails`` (P, SECTORS) says on which pieces it can be; inf and -inf at orientations without any.
+    """
     seen = one.middle[:, None] * np.exp(-1j * CENTERS)
     slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + WEDGE_SLACK)[:, None]
     low, high = np.empty((SECTORS, 2)), np.empty((SECTORS, 2))
@@ -182,17 +196,26 @@ def bound_first_peg(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]
     return low, high
 
 
-def list_peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
-    """Every peg pair that its annulus wedges allow (section 3.4); refuses too many of them.
+def list_peg_pairs(rows: Array, frame: SearchFrame, diameter: float) -> PegPairs:
+    """Return all peg pairs that their annulus wedges allow (section 3.4).
 
-    Features (F, 10) are about the centre of the part. ``diameter`` is the largest distance in mm between two
-    peg centres.
+    See ``kernels.base.feature`` for the layout of rows.
+
+    Parameters
+    ----------
+    rows : (F, 10) features about the centre of the part.
+    diameter : largest distance in mm between two peg centres.
+
+    Raises
+    ------
+    InputError
+        When there are more than ``MOST_PEG_PAIRS``.
     """
-    pieces = [pieces_of(row, diameter * PIECE) for row in rows]
+    pieces = [cut_into_pieces(row, diameter * PIECE) for row in rows]
     most = max(len(p.middle) for p in pieces)
     whole: list[tuple[int, int, int, int]] = []
     tails, lows, highs = [], [], []
-    for column, row in lattice_steps(frame, diameter + WEDGE_SLACK):
+    for column, row in list_lattice_steps(frame, diameter + WEDGE_SLACK):
         step = complex(column * frame.lattice.pitch_x, row * frame.lattice.pitch_y)
         for a, one in enumerate(pieces):
             for b, two in enumerate(pieces):
@@ -222,14 +245,14 @@ def list_peg_pairs(rows: Array, frame: Frame, diameter: float) -> PegPairs:
 
 
 @define(frozen=True, eq=False)
-class Systems(ArrayTable):
+class EquationSystems(ArrayTable):
     """N systems of contact equations: for Type I four pegs, for Type II the three on the left jaw.
 
     Parameters
     ----------
-    feature, column, row : (N, 4) or (N, 3); rows count from the first peg, columns from the first peg of the
-        same jaw. The left pegs come first.
-    sectors : (N, SECTORS) orientations not excluded.
+    feature, column, row : (N, 4) or (N, 3); rows are counted from the first peg, columns from the first peg
+        of the same jaw. The left pegs come first.
+    sectors : (N, SECTORS) whether an orientation is not excluded.
     """
 
     feature: IntArray
@@ -242,13 +265,13 @@ class Systems(ArrayTable):
 
 
 @define(frozen=True, eq=False)
-class Facings:
-    """What directions features face.
+class FacingDirections:
+    """The directions that features face.
 
     Parameters
     ----------
-    left, right : (F, SECTORS) whether a feature can be pushed so as to clamp by a left peg, or by a right
-        peg, at an orientation. These are the two parts of the valid orientations (section 3.2).
+    left, right : (F, SECTORS) whether a left peg, or a right peg, can push the feature so as to clamp at an
+        orientation. These are the two parts of the valid orientations (section 3.2).
     resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction. Four features
         can close only if every direction is resisted by one of them (section 3).
     """
@@ -258,22 +281,28 @@ class Facings:
     resists: BoolArray
 
     @classmethod
-    def of(cls, rows: Array, clamping: int) -> Facings:
-        """The facings of feature rows (F, 10) for right pegs that clamp by pushing left (1) or right (-1)."""
-        right = facing(rows, pi / 2 + HALF_SECTOR)
+    def from_features(cls, rows: Array, clamping: int) -> FacingDirections:
+        """Return the directions of feature rows (F, 10), where right pegs clamp by pushing left
+        (``clamping`` 1) or right (-1).
+
+        See ``kernels.base.feature`` for the layout of rows.
+        """
+        right = are_facing_sectors(rows, pi / 2 + HALF_SECTOR)
         left, right = (np.roll(right, -SECTORS // 2, axis=1), right)[::clamping]
-        return cls(left, right, facing(rows, pi / 2))
+        return cls(left, right, are_facing_sectors(rows, pi / 2))
 
 
 def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
+    """Return, for each pair of feature indices in a and b, whether both are lines, and parallel."""
     turn = rows[a, 3] * rows[b, 4] - rows[a, 4] * rows[b, 3]
     return np.asarray((rows[a, 0] == 0.0) & (rows[b, 0] == 0.0) & (np.abs(turn) <= PARALLEL))
 
 
 def rank_peg_pairs(pairs: PegPairs, rows: Array) -> IntArray:
-    """A rank (N,) of each peg pair, the same with its features exchanged, higher with more arcs.
+    """Return a rank (N,) of each peg pair, higher with more arcs;
+    exchanging a pair's features does not change it.
 
-    Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to look at
+    Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to examine
     quartets whose left pair ranks at least as high as the right one.
     """
     arcs = (rows[pairs.tail, 0] != 0.0).astype(np.int64) + (rows[pairs.head, 0] != 0.0)
@@ -287,9 +316,13 @@ def rank_peg_pairs(pairs: PegPairs, rows: Array) -> IntArray:
     return rank
 
 
-def list_type_one_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
-    """Quartets with two pegs on each jaw, but those with parallel lines on one jaw (section 3.5.1)."""
-    facings = Facings.of(rows, frame.toolkit.clamping)
+def list_type_one_systems(pairs: PegPairs, rows: Array, frame: SearchFrame) -> Iterator[EquationSystems]:
+    """Yield the systems with two pegs on each jaw, except those with
+    parallel lines on one jaw (section 3.5.1).
+
+    A system and that after half a turn, with the jaws exchanged, are listed once.
+    """
+    facings = FacingDirections.from_features(rows, frame.toolkit.clamping)
     generic = np.flatnonzero(~are_parallel(rows, pairs.tail, pairs.head))
     rank, sectors = rank_peg_pairs(pairs, rows), pairs.sectors
     resists = facings.resists[pairs.tail] | facings.resists[pairs.head]
@@ -305,11 +338,17 @@ def list_type_one_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterato
         shared = as_left[one] & as_right[two] & (room >= frame.gap - WEDGE_SLACK)
         keep = shared.any(axis=1)
         if keep.any():
-            yield from with_rows(pairs, int(one), two[keep], shared[keep], frame)
+            yield from pair_with_rows(pairs, int(one), two[keep], shared[keep], frame)
 
 
-def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame: Frame) -> Iterator[Systems]:
-    """Systems of one left pair with right pairs, for every row of the right jaw that the wedges allow."""
+def pair_with_rows(
+    pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame: SearchFrame
+) -> Iterator[EquationSystems]:
+    """Yield the systems of left pair ``one`` with right pairs
+    ``two``, for each row of the right jaw that wedges allow.
+
+    ``shared`` (len(two), SECTORS) are the orientations that both pairs allow.
+    """
     pitch, offset = frame.lattice.pitch_y, frame.lattice.row_offset
     low = np.where(shared, (pairs.low[two, :, 1] - pairs.high[one, :, 1] - offset) / pitch, np.inf)
     high = np.where(shared, (pairs.high[two, :, 1] - pairs.low[one, :, 1] - offset) / pitch, -np.inf)
@@ -325,15 +364,16 @@ def with_rows(pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame
         )
         column = np.stack([zero, zero + pairs.column[one], zero, pairs.column[right]], axis=1)
         row = np.stack([zero, zero + pairs.row[one], zero + line, pairs.row[right] + line], axis=1)
-        yield Systems(feature, column, row, inside[keep])
+        yield EquationSystems(feature, column, row, inside[keep])
 
 
-def list_type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterator[Systems]:
-    """Triples of left pegs, also on parallel lines; the fourth peg follows the pose (section 3.5).
+def list_type_two_systems(pairs: PegPairs, rows: Array, frame: SearchFrame) -> Iterator[EquationSystems]:
+    """Yield the systems of three left pegs, also on parallel lines;
+    the fourth peg follows from the pose (section 3.5).
 
     The third peg lies in the wedges from the first and from the second peg.
     """
-    facings = Facings.of(rows, frame.toolkit.clamping)
+    facings = FacingDirections.from_features(rows, frame.toolkit.clamping)
     count = len(rows)
     names = (pairs.tail, pairs.head, pairs.column, pairs.row)
     number = {key: k for k, key in enumerate(zip(*(name.tolist() for name in names), strict=True))}
@@ -357,7 +397,7 @@ def list_type_two_systems(pairs: PegPairs, rows: Array, frame: Frame) -> Iterato
         keep = shared.any(axis=1)
         two = two[keep]
         zero = np.zeros(len(two), np.int64)
-        yield Systems(
+        yield EquationSystems(
             np.stack([zero + a, zero + b, pairs.head[two]], axis=1),
             np.stack([zero, zero + pairs.column[one], pairs.column[two]], axis=1),
             np.stack([zero, zero + pairs.row[one], pairs.row[two]], axis=1),

@@ -14,7 +14,7 @@ from attrs import define
 from numpy.typing import NDArray
 
 from workhold.algebra.resultants import ArrayTable, Complex
-from workhold.contact.problem import Frame
+from workhold.contact.problem import SearchFrame
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_SPAN, RISES, ROW_SLACK
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -43,15 +43,15 @@ STEEPEST = 1e6
 
 @define(frozen=True, eq=False)
 class SimultaneousContacts(ArrayTable):
-    """N parts touched by four pegs, lengths in mm.
+    """N poses of the part at which all pegs touch it; lengths in mm.
 
     Parameters
     ----------
     standing : how many pegs, the first ones, are on the jaw that stands still.
-    feature, column, row : (N, 4), see ``Systems``.
+    feature, column, row : (N, 4), or (N, 3) before the fourth peg is found, see ``EquationSystems``.
     psi : (N,) orientation of the pegs in radians.
-    reach : (N,) how far psi may be off in radians, and the centres in parts of the part's size.
-    center : (N, 4) peg centres in the workpiece's frame as complex numbers.
+    reach : (N,) how far psi may be off in radians, and the centres as a fraction of the part's size.
+    center : (N, 4) or (N, 3) peg centres in the workpiece's frame as complex numbers.
     """
 
     standing: int
@@ -64,11 +64,11 @@ class SimultaneousContacts(ArrayTable):
 
 
 def are_within_ends(rows: Array, center: Complex, margin: float, radius: Array) -> BoolArray:
-    """Whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
+    """Return whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
 
-    Not ``contact.features.measure_end_distances``: the algebra is a second opinion and asks the rules by itself. The
-    last two entries of rows (..., 12) are how far in mm a contact may lie past the low and the high end. Peg
-    centres (...) may be off by ``radius`` mm.
+    This is not ``contact.features.measure_end_distances``: the algebra is a second opinion and evaluates the
+    rules on its own. ``rows`` (..., 12) end with how far in mm a contact may lie past the low and the high
+    end. Peg centres ``center`` (...) may be off by ``radius`` mm.
     """
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
     straight = rows[..., IS_ARC] == 0.0
@@ -80,13 +80,19 @@ def are_within_ends(rows: Array, center: Complex, margin: float, radius: Array) 
 
 
 def make_records(
-    held: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float
+    held: SimultaneousContacts, rows: Array, frame: SearchFrame, margin: float, length: float
 ) -> Array:
-    """What may be fixtures among parts touched by four pegs, as records (``kernels.contact.record``).
+    """Return those simultaneous contacts that may be fixtures as
+    records (M, 19), see ``kernels.contact.record``.
 
-    Features (F, 12) are about the centre of the part with the slack of their ends. ``margin`` is the smallest
-    distance in mm from a contact to the end of its feature. ``length`` is L of the wrenches in mm, half the
-    part's size.
+    See ``kernels.base.feature`` for the layout of rows.
+
+    Parameters
+    ----------
+    held : with four pegs each.
+    rows : (F, 12) features about the centre of the part, with the slack of their ends.
+    margin : smallest distance in mm from a contact to the end of its feature.
+    length : L of the wrenches in mm, half the part's size.
     """
     radius = 4.0 * length * held.reach
     inside = are_within_ends(rows[held.feature], held.center, margin, radius[:, None])
@@ -116,9 +122,16 @@ def make_records(
 def may_close(
     held: SimultaneousContacts, held_rows: Array, normals: Array, points: Array, length: float, clamping: int
 ) -> BoolArray:
-    """Whether the forces may close and clamp (model: conditions 4 and 5), (N,).
+    """Return whether the forces may close and clamp (model: conditions 4 and 5), (N,).
 
-    Normals on arcs of radius R are off by at most radius / R, and every minor by ``closure.minor_band``.
+    Normals on arcs of radius R are off by at most radius / R, and every minor by ``contact.rules.bound_minor_error``.
+
+    Parameters
+    ----------
+    held_rows : (N, 4, 10) rows of the features touched.
+    normals, points : (N, 4, 2) outward unit normals, and peg centres in mm.
+    length : L in mm, by which moments are divided.
+    clamping : 1 or -1, see ``Limits``.
     """
     radius = 4.0 * length * held.reach
     curvature = np.where(
@@ -128,7 +141,7 @@ def may_close(
     )
     swing = radius * curvature.max(axis=1, initial=0.0)
     band = 20.0 * swing + 4.0 * radius / length + rules.ROUNDING
-    minors = wrench_minors(points, normals, length)
+    minors = compute_wrench_minors(points, normals, length)
     minors = minors * np.where(minors.max(axis=1) >= -minors.min(axis=1), 1.0, -1.0)[:, None]
     size = np.abs(minors).sum(axis=1)
     facing = normals[..., 0] * np.cos(held.psi)[:, None] + normals[..., 1] * np.sin(held.psi)[:, None]
@@ -140,11 +153,13 @@ def may_close(
     )
 
 
-def wrench_minors(points: Array, normals: Array, length: float) -> Array:
-    """Null vectors (N, 4) of wrenches (n, (q - c) x n / L), not scaled: signed 3x3 minors (Cramer's rule).
+def compute_wrench_minors(points: Array, normals: Array, length: float) -> Array:
+    """Return null vectors (N, 4) of wrenches (n, (q - c) x n / L),
+    not scaled: signed 3x3 minors (Cramer's rule).
 
-    Not ``kernels.contact.rules.minors``: the algebra is a second opinion and asks for closure by itself. Peg
-    centres (N, 4, 2) are about c in mm, normals (N, 4, 2) are outward and of length 1, L is in mm.
+    This is not ``kernels.contact.rules.minors``: the algebra is a second opinion and tests closure on its
+    own. ``points`` (N, 4, 2) are peg centres about c in mm, ``normals`` (N, 4, 2) outward unit normals,
+    ``length`` is L in mm, by which moments are divided.
     """
     moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
     out = np.empty(moments.shape)
@@ -159,11 +174,18 @@ def wrench_minors(points: Array, normals: Array, length: float) -> Array:
 
 
 def find_row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Complex, Array]:
-    """Where a feature's line or circle meets horizontals of the frame.
+    """Return the points where a feature's whole line or circle meets horizontals of the frame.
 
-    Given are a feature row (8,), orientations of the pegs (N,) in radians, and heights (N,) along the frame's
-    y axis in mm. Returned are indices of horizontals, points in the workpiece's frame, and how much they move
-    when height and psi do.
+    Parameters
+    ----------
+    row : the feature.
+    psi : (N,) orientations of the pegs in radians.
+    height : (N,) of the horizontals along the frame's y axis, in mm.
+
+    Returns
+    -------
+    (indices (M,) of horizontals, points (M,) in the workpiece's frame as complex numbers, bounds (M,) of how
+        much they move per change of height or psi)
     """
     z = np.exp(1j * psi)
     middle = (row[X] + 1j * row[Y]) / z
@@ -182,12 +204,12 @@ def find_row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Co
 
 
 def find_fourth_pegs(
-    triples: SimultaneousContacts, rows: Array, frame: Frame, margin: float, length: float
+    triples: SimultaneousContacts, rows: Array, frame: SearchFrame, margin: float, length: float
 ) -> SimultaneousContacts:
-    """Type II: the fourth pegs on rows that overlap the transformed fourth features (section 3.5).
+    """Return triples of left pegs completed by each fourth peg, on a
+    row that meets a feature (Type II, section 3.5).
 
-    Triples are of three left pegs each, ``center`` and the others of shape (N, 3). For the rest see
-    :func:`make_records`.
+    ``triples`` have three pegs each. Other parameters are those of :func:`make_records`.
     """
     radius = 4.0 * length * triples.reach
     inside = are_within_ends(rows[triples.feature], triples.center, margin, radius[:, None])
@@ -219,4 +241,4 @@ def find_fourth_pegs(
                 np.column_stack([chosen.center, point]),
             )
         )
-    return SimultaneousContacts.joined(found)
+    return SimultaneousContacts.concatenate(found)

@@ -27,11 +27,11 @@ from workhold.algebra.resultants import (
     Complex,
     ContactSystems,
     TrigPolynomial,
-    coefficients,
     compute_circle_constraint,
     compute_line_constraint,
+    compute_pair_constraint,
+    compute_resultant_coefficients,
     have_no_separation,
-    pair_constraint,
 )
 from workhold.conventions import (
     COINCIDENT,
@@ -55,7 +55,7 @@ from workhold.conventions import (
 __all__ = [
     "Poses",
     "find_hard_roots",
-    "orientations",
+    "find_candidate_orientations",
     "locate_peg_centers",
     "find_poses_at",
 ]
@@ -68,14 +68,17 @@ PRECISIONS = (64, 128, 256, 512)
 
 
 def find_sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArray]:
-    r"""Sectors of orientations in which roots cannot be excluded, and those where rounding may hide them.
+    r"""Return the sectors that may have roots, and the sectors where
+    rounding may hide roots, (N, SECTORS) of bool each.
 
     By Taylor's theorem \|f(c + h) - f(c) - h f'(c)\| <= h^2 / 2 max \|f''\|, and max \|f''\| is at most the
     sum of the sizes of its coefficients. Far more than rounding is allowed for. Where the polynomial and its
     first derivatives are tiny, roots are crowded, and rounding moves them far.
 
-    Values (N, 2 d + 1) are those of z^-d ... z^d, ``size`` (N,) is the size of the terms they were summed
-    from. Both arrays are (N, SECTORS).
+    Parameters
+    ----------
+    values : (N, 2 d + 1) coefficients of z^-d ... z^d.
+    size : (N,) size of the terms they were summed from.
     """
     bound = values.shape[1] // 2
     exponents = np.arange(-bound, bound + 1)
@@ -91,7 +94,7 @@ def find_sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, Bo
 
 
 def isolate_roots_in_balls(values: Complex) -> Complex:
-    """All roots of a polynomial, coefficients from the constant up, isolated in ball arithmetic."""
+    """Return all roots of a polynomial, isolated in ball arithmetic; coefficients begin with the constant."""
     polynomial = acb_poly([acb(c.real, c.imag) for c in values])
     for bits in PRECISIONS:
         with ctx.workprec(bits), suppress(ValueError):
@@ -101,7 +104,9 @@ def isolate_roots_in_balls(values: Complex) -> Complex:
 
 
 def find_companion_roots(values: Complex) -> Complex:
-    """Roots (N, 2 d) of N polynomials with well-conditioned outermost coefficients, (N, 2 d + 1)."""
+    """Return the roots (N, 2 d) of N polynomials with coefficients
+    (N, 2 d + 1), well-conditioned at both ends.
+    """
     degree = values.shape[1] - 1
     matrix = np.zeros((len(values), degree, degree), np.complex128)
     matrix[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
@@ -110,38 +115,47 @@ def find_companion_roots(values: Complex) -> Complex:
 
 
 def count_vanishing_ends(values: Complex, largest: Array) -> IntArray:
-    """(N,) numbers of coefficients that vanish at either end of polynomials (N, 2 d + 1)."""
+    """Return how many coefficients vanish at both ends of each
+    polynomial (N, 2 d + 1): the number to cut off at either end.
+
+    ``largest`` (N,) is the size of the largest coefficient.
+    """
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
     return np.asarray((np.maximum.accumulate(size, axis=1) <= VANISHING * largest[:, None]).sum(axis=1))
 
 
 def find_hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
-    """Roots of one system's resultant (a set of one) in ball arithmetic; None if they are not isolated."""
+    """Return the roots z of one system's resultant in ball arithmetic; None if they are not isolated.
+
+    ``contacts`` holds only this system, ``values`` are its coefficients; see ``resultants.compute_resultant`` for the
+    case.
+    """
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())
         return isolate_roots_in_balls(values[kept[0] : kept[-1] + 1])
     return find_exact_roots(contacts, case, case[1] == 2 and bool(have_no_separation(contacts)[0]))
 
 
-def nearly_sliding(contacts: ContactSystems) -> BoolArray:
-    """Which systems have pairs of arcs on one jaw that nearly slide, which crowds the roots."""
+def are_nearly_sliding(contacts: ContactSystems) -> BoolArray:
+    """Return, for each system, whether pairs of arcs on one jaw nearly slide, which crowds the roots."""
     product = np.ones(len(contacts.rows))
     for k, m in ((0, 1), (2, 3)) if contacts.rows.shape[1] == 4 else ((0, 1), (0, 2), (1, 2)):
-        misfit = contacts.misfit(k, m)
+        misfit = contacts.compute_arc_misfit(k, m)
         product *= np.where(misfit <= COINCIDENT, 1.0, np.minimum(misfit, 1.0))
     return np.asarray(product <= NEARLY_SLIDING)
 
 
-def orientations(
+def find_candidate_orientations(
     contacts: ContactSystems, case: tuple[int, int], sectors: BoolArray
 ) -> tuple[IntArray, Array, IntArray]:
-    """Candidates for the orientations of N systems of one case, where they are wanted, (N, SECTORS).
+    """Return candidates for the orientations of N systems of one case
+    in the sectors that are wanted, (N, SECTORS).
 
-    They are indices of systems, orientations in radians, and indices of systems that their resultants leave
-    undecided. For systems and case see ``resultants.resultant``.
+    Return (indices (M,) of systems, orientations (M,) in radians, indices of systems that their resultants
+    leave undecided). For systems and case see ``resultants.compute_resultant``.
     """
-    values, size = coefficients(contacts, case)
+    values, size = compute_resultant_coefficients(contacts, case)
     largest = np.abs(values).max(axis=1)
     vanishing = largest <= IDENTICALLY_ZERO * size
     possible, crowded = find_sectors_with_roots(values, size)
@@ -150,7 +164,7 @@ def orientations(
     outermost = np.abs(values[index, values.shape[1] - 1 - trimmed])
     flat = contacts.rows[index][..., 6].max(axis=1, initial=0.0) > NEARLY_STRAIGHT
     hard = (outermost <= ILL_CONDITIONED * largest[index]) | (sectors & crowded)[index].any(axis=1) | flat
-    hard |= nearly_sliding(contacts.take(index))
+    hard |= are_nearly_sliding(contacts.take(index))
     owners, found = [], []
     for cut in np.unique(trimmed[~hard]):
         steady = index[~hard & (trimmed == cut)]
@@ -186,15 +200,16 @@ LAST_STEPS = 16.0
 
 @define(frozen=True, eq=False)
 class Poses(ArrayTable):
-    """N poses.
+    """N poses of systems.
 
     Parameters
     ----------
     owner : (N,) index of the system that a pose solves.
     psi : (N,) orientation in radians.
-    place : (N,) where the first peg is in the workpiece's frame, a complex number in mm.
-    separation : (N,) x distance in mm from the first left to the first right peg (0 for three left pegs).
-    reach : (N,) how far off the others may be, in radians and in parts of the part's size.
+    place : (N,) the first peg in the workpiece's frame, a complex number; lengths are fractions of the part's
+        size.
+    separation : (N,) x distance from the first left to the first right peg (0 for three left pegs).
+    reach : (N,) how far off the others may be, in radians and as a fraction of the part's size.
     """
 
     owner: IntArray
@@ -205,14 +220,16 @@ class Poses(ArrayTable):
 
 
 def locate_peg_centers(contacts: ContactSystems, poses: Poses) -> Complex:
-    """Peg centres (N, K) in the workpiece's frame."""
+    """Return the peg centres (N, K) in the workpiece's frame as complex numbers."""
     moving = np.arange(contacts.rows.shape[1]) >= 2 if contacts.rows.shape[1] == 4 else np.zeros(3)
     reach = contacts.point[poses.owner] + poses.separation[:, None] * moving
     return np.asarray(poses.place[:, None] + np.exp(1j * poses.psi)[:, None] * reach)
 
 
-def distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, Complex]:
-    """Signed distances (N, K) of pegs from their lines or circles, directions across, and peg centres."""
+def measure_distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, Complex]:
+    """Return signed distances (N, K) of pegs from their lines or
+    circles, unit directions of increase, and peg centres.
+    """
     center = locate_peg_centers(contacts, poses)
     off = center - contacts.middle[poses.owner]
     straight = contacts.rows[poses.owner][..., 0] == 0.0
@@ -222,10 +239,11 @@ def distances(contacts: ContactSystems, poses: Poses) -> tuple[Array, Complex, C
     return along, across, center
 
 
-def refined(contacts: ContactSystems, poses: Poses) -> Poses:
-    """Newton's method on the contact equations; drops divergent poses and double solutions.
+def refine_poses(contacts: ContactSystems, poses: Poses) -> Poses:
+    """Return poses refined by Newton's method on the contact
+    equations, without divergent poses and double solutions.
 
-    Lengths are in parts of the part's size.
+    Lengths are fractions of the part's size.
     """
     pegs = contacts.rows.shape[1]
     for _ in range(ROUNDS):
@@ -245,17 +263,22 @@ def refined(contacts: ContactSystems, poses: Poses) -> Poses:
 
 
 def linearize_contacts(contacts: ContactSystems, poses: Poses) -> tuple[Array, Array]:
-    """Distances (N, K) of pegs from lines or circles; their Jacobian over psi, place and separation."""
+    """Return the signed distances (N, K) of pegs from lines or circles, and their Jacobian (N, K, K).
+
+    Columns of the Jacobian: psi, place x, place y and, for four pegs, separation.
+    """
     pegs = contacts.rows.shape[1]
-    off, across, center = distances(contacts, poses)
+    off, across, center = measure_distances(contacts, poses)
     columns = [(np.conj(across) * 1j * (center - poses.place[:, None])).real, across.real, across.imag]
     if pegs == 4:
         columns.append((np.conj(across) * np.exp(1j * poses.psi)[:, None]).real * (np.arange(4) >= 2))
     return off, np.stack(columns, axis=-1)
 
 
-def angles_of(ring: TrigPolynomial) -> tuple[Complex, Complex]:
-    """The two points w of the unit circle where trigonometric polynomials vanish or come nearest to it."""
+def find_unit_circle_roots(ring: TrigPolynomial) -> tuple[Complex, Complex]:
+    """Return two points w of the unit circle where trigonometric
+    polynomials vanish, or the nearest to vanishing.
+    """
     size = 2.0 * np.abs(ring.first)
     cosine = -ring.middle / np.where(size == 0.0, 1.0, size)
     spread = np.arccos(np.clip(cosine, -1.0, 1.0))
@@ -263,8 +286,13 @@ def angles_of(ring: TrigPolynomial) -> tuple[Complex, Complex]:
     return np.exp(1j * (turn + spread)), np.exp(1j * (turn - spread))
 
 
-def separations(contacts: ContactSystems, case: tuple[int, int], psi: Array, w: Complex) -> list[Array]:
-    """Possible separations at orientations (N, 1) and phi (N, 1), from the right pegs' constraints."""
+def list_possible_separations(
+    contacts: ContactSystems, case: tuple[int, int], psi: Array, w: Complex
+) -> list[Array]:
+    """Return one or two arrays of possible separations at orientations (N, 1) and w = exp(i phi) (N, 1).
+
+    They follow from the right pegs' constraints; zeros for three left pegs.
+    """
     if case[1] == -1:
         return [np.zeros(w.shape)]
     if case[1] == 0:
@@ -274,14 +302,19 @@ def separations(contacts: ContactSystems, case: tuple[int, int], psi: Array, w: 
         )
         steep = np.abs(one) >= np.abs(two)
         factor = np.where(steep, one, two)
-        return [-np.where(steep, rest_one.at(w), rest_two.at(w)) / np.where(factor == 0.0, 1.0, factor)]
-    linear, constant = (ring.at(w) for ring in compute_circle_constraint(contacts, 2, psi))
+        return [
+            -np.where(steep, rest_one.evaluate(w), rest_two.evaluate(w))
+            / np.where(factor == 0.0, 1.0, factor)
+        ]
+    linear, constant = (ring.evaluate(w) for ring in compute_circle_constraint(contacts, 2, psi))
     root = np.sqrt(np.maximum(linear**2 / 4.0 - constant, 0.0))
     return [-linear / 2.0 + root, -linear / 2.0 - root]
 
 
 def solve_straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) -> Poses:
-    """Poses on lines alone: linear equations for place and separation at an orientation."""
+    """Return the poses of systems that have lines only: linear
+    equations for place and separation at each orientation.
+    """
     pegs = contacts.rows.shape[1]
     normal = contacts.normal[owner]
     z = np.exp(1j * psi)[:, None]
@@ -296,21 +329,21 @@ def solve_straight_poses(contacts: ContactSystems, owner: IntArray, psi: Array) 
 
 
 def find_poses_at(contacts: ContactSystems, case: tuple[int, int], owner: IntArray, psi: Array) -> Poses:
-    """All poses of systems at, or very near to, orientations.
+    """Return all poses of systems at, or very near to, orientations.
 
-    The systems are of one case, with lengths in parts of the part's size. ``owner`` (M,) says which system,
-    ``psi`` (M,) which orientation in radians.
+    The systems are of one case, with lengths as fractions of the part's size. ``owner`` (M,) are indices of
+    systems, ``psi`` (M,) orientations in radians.
     """
     if len(owner) == 0:
         return Poses(owner, psi, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0))
     if case[0] == 0:
-        return refined(contacts, solve_straight_poses(contacts, owner, psi))
+        return refine_poses(contacts, solve_straight_poses(contacts, owner, psi))
     chosen, column = contacts.take(owner), psi[:, None]
     found = []
-    for w in angles_of(pair_constraint(chosen, 1, column)):
+    for w in find_unit_circle_roots(compute_pair_constraint(chosen, 1, column)):
         place = chosen.middle[:, :1] + chosen.radius[:, :1] * w
-        for separation in separations(chosen, case, column, w):
+        for separation in list_possible_separations(chosen, case, column, w):
             found.append(Poses(owner, psi, place[:, 0], separation[:, 0], np.zeros(len(owner))))
-    everything = Poses.joined(found)
-    off, _, _ = distances(contacts, everything)
-    return refined(contacts, everything.take(np.abs(off).max(axis=1, initial=0.0) <= NEARLY_MET))
+    everything = Poses.concatenate(found)
+    off, _, _ = measure_distances(contacts, everything)
+    return refine_poses(contacts, everything.take(np.abs(off).max(axis=1, initial=0.0) <= NEARLY_MET))

@@ -52,11 +52,11 @@ __all__ = [
     "ArrayTable",
     "TrigPolynomial",
     "compute_circle_constraint",
-    "coefficients",
+    "compute_resultant_coefficients",
     "have_no_separation",
     "compute_line_constraint",
-    "pair_constraint",
-    "resultant",
+    "compute_pair_constraint",
+    "compute_resultant",
 ]
 
 Array = NDArray[np.float64]
@@ -66,43 +66,55 @@ BoolArray = NDArray[np.bool_]
 
 @define(frozen=True, eq=False)
 class ArrayTable:
-    """N things in arrays, each of which has a row for every one of them."""
+    """N items stored in arrays, each of which has a row for every
+    item; other fields are common to all items.
+    """
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
+        """The fields that are arrays, by their names."""
         values = {one.name: getattr(self, one.name) for one in fields(type(self))}
         return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
 
     def take(self, which: NDArray[np.int64] | BoolArray) -> Self:
+        """Return the chosen items, by indices or a mask."""
         return evolve(self, **{name: array[which] for name, array in self.arrays.items()})
 
     @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
-        """Several of them, at least one, as one."""
+    def concatenate(cls, parts: Sequence[Self]) -> Self:
+        """Return the items of several tables, at least one, in one table;
+        other fields are those of the first.
+        """
         arrays = {name: np.concatenate([part.arrays[name] for part in parts]) for name in parts[0].arrays}
         return evolve(parts[0], **arrays)
 
 
 @define(frozen=True, eq=False)
 class TrigPolynomial:
-    """middle + 2 Re(first w), trigonometric polynomials of degree one in phi at (N, M) values of z."""
+    """Trigonometric polynomials middle + 2 Re(first w) of degree one
+    in phi, w = exp(i phi), at (N, M) values of z.
+    """
 
     middle: Array
     first: Complex
 
-    def at(self, w: Complex) -> Array:
-        """The values at points w of the unit circle."""
+    def evaluate(self, w: Complex) -> Array:
+        """Return the values at points w of the unit circle.
+
+        Symbols are those of ``algebra.resultants``.
+        """
         return np.asarray(self.middle + 2.0 * (self.first * w).real)
 
 
 @define(frozen=True, eq=False)
 class ContactSystems(ArrayTable):
-    """N systems of pegs and features in the form the constraints use.
+    """N systems of K pegs and features in the form that the constraints use.
 
     Parameters
     ----------
     rows : (N, K, 10) feature rows.
-    point : (N, K) pegs as complex numbers from the first peg, right pegs with the separation left out, in mm.
+    point : (N, K) pegs as complex numbers from the first peg, right pegs without the separation, in the rows'
+        unit of length.
     """
 
     rows: Array
@@ -110,24 +122,24 @@ class ContactSystems(ArrayTable):
 
     @property
     def middle(self) -> Complex:
-        """A point of each line, or the centre of each circle, (N, K)."""
+        """A point of each line, or the centre of each circle, (N, K) complex numbers."""
         return np.asarray(self.rows[..., X] + 1j * self.rows[..., Y])
 
     @property
     def normal(self) -> Complex:
-        """Unit normals of lines (N, K); without meaning for circles."""
+        """The outward unit normals of lines (N, K) as complex numbers; without meaning for circles."""
         return np.asarray(self.rows[..., AXIS_Y] - 1j * self.rows[..., AXIS_X])
 
     @property
     def radius(self) -> Array:
-        """Radii (N, K), 0 for lines."""
+        """The radii (N, K), 0 for lines."""
         return np.asarray(self.rows[..., RADIUS])
 
-    def misfit(self, k: int, m: int) -> Array:
-        """How far arcs k and m are from sliding, (N,); infinite where one of them is a line.
+    def compute_arc_misfit(self, k: int, m: int) -> Array:
+        """Return how far arcs k and m are from sliding, (N,); inf where one of them is a line.
 
-        It is by how much their radii differ, or by how much their centres' distance differs from their pegs'
-        distance.
+        It is the larger of two differences: between their radii, and between their centres' distance and
+        their pegs' distance.
         """
         arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
         apart = np.abs(self.middle[:, m] - self.middle[:, k])
@@ -135,38 +147,41 @@ class ContactSystems(ArrayTable):
         off = np.maximum(np.abs(self.radius[:, k] - self.radius[:, m]), np.abs(apart - step))
         return np.where(arcs, off, np.inf)
 
-    def sliding_pairs(self, k: int, m: int) -> BoolArray:
-        """Which systems have equal arcs k and m whose centres are exactly as far apart as their pegs, (N,).
+    def find_sliding_pairs(self, k: int, m: int) -> BoolArray:
+        """Return, for each system, whether arcs k and m are equal with
+        centres exactly as far apart as their pegs, (N,).
 
         There is one orientation, z0, at which one of the two contacts implies the other. Both sides of the
-        constraint between them then have the factor z - z0.
+        constraint between them then have the factor z - z0. Symbols are those of ``algebra.resultants``.
         """
-        return np.asarray(self.misfit(k, m) <= COINCIDENT)
+        return np.asarray(self.compute_arc_misfit(k, m) <= COINCIDENT)
 
-    def centers_apart(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
-        """z x + D of pegs k and m, as length (N, M) times direction.
+    def compute_center_difference(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
+        """Return z x + D of pegs k and m as a length and a direction, (N, M) each, whose product it is.
 
-        x is the step from k to m, D the vector from centre m to centre k.
+        x is the step from k to m, D the vector from centre m to centre k. Where the arcs do not slide, the
+        length is 1.
 
         Where the arcs slide, the length (with a sign) and the direction are exact right through the
         coincidence. There z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) /
-        2).
+        2). Symbols are those of ``algebra.resultants``.
         """
         step = (self.point[:, m] - self.point[:, k])[:, None]
         between = (self.middle[:, k] - self.middle[:, m])[:, None]
         plain = np.exp(1j * psi) * step + between
         zero = np.angle(-between * np.conj(step))
         length = np.where(
-            self.sliding_pairs(k, m)[:, None], 2.0 * np.abs(step) * np.sin((psi - zero) / 2.0), 1.0
+            self.find_sliding_pairs(k, m)[:, None], 2.0 * np.abs(step) * np.sin((psi - zero) / 2.0), 1.0
         )
         along = 1j * step / np.abs(step) * np.exp(0.5j * (psi + zero))
-        return length, np.where(self.sliding_pairs(k, m)[:, None], along, plain)
+        return length, np.where(self.find_sliding_pairs(k, m)[:, None], along, plain)
 
 
 def compute_line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array, TrigPolynomial]:
-    """h (equation 2) or h_sigma (equation 4) of peg k on a line, at orientations (N, M) in radians.
+    """Return h (equation 2) or h_sigma (equation 4) of peg k on a line, at orientations (N, M) in radians.
 
-    The factor of the separation comes first, then the rest.
+    The factor (N, M) of the separation comes first, then the rest. Symbols are those of
+    ``algebra.resultants``.
     """
     z, normal = np.exp(1j * psi), contacts.normal[:, k, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
@@ -179,7 +194,11 @@ def compute_line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tup
 def compute_circle_constraint(
     contacts: ContactSystems, k: int, psi: Array
 ) -> tuple[TrigPolynomial, TrigPolynomial]:
-    """g (equation 3) or g_sigma (5) of peg k on a circle: factors of the separation (its square has 1)."""
+    """Return g (equation 3) or g_sigma (5) of peg k on a circle, at orientations (N, M) in radians.
+
+    They are the factor of the separation, and the rest; the separation's square has the factor 1. Symbols are
+    those of ``algebra.resultants``.
+    """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
     linear = TrigPolynomial(2.0 * (np.conj(z) * start).real, radius * np.conj(z))
@@ -189,12 +208,15 @@ def compute_circle_constraint(
     return linear, TrigPolynomial(square, radius * np.conj(start))
 
 
-def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynomial:
-    """h or g of peg k of the first peg's jaw, N features of one kind; z - z0 is divided out of g."""
+def compute_pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynomial:
+    """Return h or g of peg k, which is on the first peg's jaw; where arcs slide, z - z0 is divided out of g.
+
+    All N systems must have the same kind of feature k. Symbols are those of ``algebra.resultants``.
+    """
     if contacts.rows[0, k, 0] == 0.0:
         return compute_line_constraint(contacts, k, psi)[1]
-    length, apart = contacts.centers_apart(0, k, psi)
-    sliding_pairs = contacts.sliding_pairs(0, k)[:, None]
+    length, apart = contacts.compute_center_difference(0, k, psi)
+    sliding_pairs = contacts.find_sliding_pairs(0, k)[:, None]
     radius, other = contacts.radius[:, 0, None], contacts.radius[:, k, None]
     plain = np.abs(apart) ** 2 + (radius - other) * (radius + other)
     return TrigPolynomial(
@@ -203,12 +225,14 @@ def pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynom
 
 
 def subtract_circles(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
-    """g_sigma of peg m less that of peg k, linear in the separation like h_sigma: its square cancels.
+    """Return g_sigma of peg m minus that of peg k, linear in the
+    separation like h_sigma, as its square cancels.
 
-    The factor of the separation comes first, then the rest, with z - z0 divided out where the arcs slide.
+    The factor (N, M) of the separation comes first, then the rest, with z - z0 divided out where the arcs
+    slide. Symbols are those of ``algebra.resultants``.
     """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
-    _, apart = contacts.centers_apart(k, m, psi)
+    _, apart = contacts.compute_center_difference(k, m, psi)
     one = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
     two = (contacts.middle[:, 0] - contacts.middle[:, m])[:, None] + z * contacts.point[:, m, None]
     radius_k, radius_m = contacts.radius[:, k, None], contacts.radius[:, m, None]
@@ -238,9 +262,11 @@ GRID_START = 0.1234
 
 
 def compute_resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
-    """Resultant in w of two trigonometric polynomials, and the sum of the sizes of its terms.
+    """Return the resultant in w of two trigonometric polynomials, and
+    the sum of the sizes of its terms, (N, M) each.
 
-    For a w + b + a* / w and c w + d + c* / w it is \\|a d - c b\\|^2 - 4 Im(a c*)^2.
+    For a w + b + a* / w and c w + d + c* / w it is |a d - c b|^2 - 4 Im(a c*)^2. Symbols are those of
+    ``algebra.resultants``.
     """
     left, right = one.first * two.middle, two.first * one.middle
     across = one.first * np.conj(two.first)
@@ -248,8 +274,11 @@ def compute_resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tupl
     return value, (np.abs(left) + np.abs(right)) ** 2 + 4.0 * np.abs(across) ** 2
 
 
-def product(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Complex, Complex]:
-    """Product of two trigonometric polynomials: c0 + 2 Re(c1 w + c2 w^2)."""
+def multiply_trig_polynomials(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Complex, Complex]:
+    """Return the product of two trigonometric polynomials as (c0, c1, c2): c0 + 2 Re(c1 w + c2 w^2).
+
+    Symbols are those of ``algebra.resultants``.
+    """
     return (
         one.middle * two.middle + 2.0 * (one.first * np.conj(two.first)).real,
         one.middle * two.first + two.middle * one.first,
@@ -257,14 +286,16 @@ def product(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Complex, C
     )
 
 
-def without_separation(
+def eliminate_separation(
     factor: Array, rest: TrigPolynomial, linear: TrigPolynomial, constant: TrigPolynomial
 ) -> tuple[Array, Complex, Complex]:
-    """Resultant in the separation s of factor s + rest and s^2 + linear s + constant, of degree two in w.
+    """Return the resultant in the separation s of factor s + rest and
+    s^2 + linear s + constant, of degree two in w.
 
-    It is rest^2 - factor rest linear + factor^2 constant.
+    It is rest^2 - factor rest linear + factor^2 constant, returned as (c0, c1, c2): c0 + 2 Re(c1 w + c2 w^2).
+    Symbols are those of ``algebra.resultants``.
     """
-    a, b = product(rest, rest), product(rest, linear)
+    a, b = multiply_trig_polynomials(rest, rest), multiply_trig_polynomials(rest, linear)
     square = factor**2
     return (
         a[0] - factor * b[0] + square * constant.middle,
@@ -273,14 +304,15 @@ def without_separation(
     )
 
 
-def resultant_with_square(
+def compute_resultant_with_square(
     ring: TrigPolynomial, double: tuple[Array, Complex, Complex]
 ) -> tuple[Array, Array]:
-    """Resultant in w of a trigonometric polynomial and c0 + 2 Re(c1 w + c2 w^2), and its terms' size.
+    """Return the resultant in w of ``ring`` and c0 + 2
+    Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
 
-    It is \\|a\\|^4 times the product of the second over the two roots of the first, a w + b + a* / w, without
-    division. The roots' product is a* / a, and a^n times the sum of their n-th powers is the n-th of
-    ``powers`` below.
+    ``double`` is (c0, c1, c2). The resultant is |a|^4 times the product of the second polynomial over the two
+    roots of the first, a w + b + a* / w, without division. The roots' product is a* / a, and a^n times the
+    sum of their n-th powers is the n-th of ``powers`` below. Symbols are those of ``algebra.resultants``.
     """
     a, b = ring.first, ring.middle
     low = np.conj(a)
@@ -308,9 +340,11 @@ def resultant_with_square(
 
 
 def compute_straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Array, Array]:
-    """The determinant of the contacts' equations, linear in the place and the separation.
+    """Return the determinant of the equations of contacts with lines
+    alone, and the size of its terms, (N, M) each.
 
-    Rows (normal, factor of the separation on the right jaw, rest); three rows without it for Type II.
+    The equations are linear in the place and the separation. Rows of the matrix: normal, factor of the
+    separation on the right jaw, rest; three rows without that factor for Type II.
     """
     z = np.exp(1j * psi)[..., None]
     normal = np.broadcast_to(contacts.normal[:, None, :], (*psi.shape, contacts.rows.shape[1]))
@@ -323,8 +357,9 @@ def compute_straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Ar
     return np.linalg.det(matrix), np.abs(rest).max(axis=-1)
 
 
-def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
-    """The resultant of N systems of one case at (N, M) orientations in radians, and the size of its terms.
+def compute_resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
+    """Return the resultant of N systems of one case at (N, M)
+    orientations in radians, and the size of its terms.
 
     Contacts have arcs before lines on each jaw, and the left jaw no fewer arcs than the right one. The case
     is (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type II.
@@ -332,16 +367,16 @@ def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tu
     left, right = case
     if left == 0:
         return compute_straight_line_form(contacts, psi)
-    second = pair_constraint(contacts, 1, psi)
+    second = compute_pair_constraint(contacts, 1, psi)
     if right == -1:
-        return triple_resultant(contacts, second, psi)
+        return compute_triple_resultant(contacts, second, psi)
     if right == 0:
-        return compute_resultant_of_rings(second, lines_without_separation(contacts, psi))
+        return compute_resultant_of_rings(second, eliminate_separation_of_lines(contacts, psi))
     factor, rest = (
         subtract_circles(contacts, 2, 3, psi) if right == 2 else compute_line_constraint(contacts, 3, psi)
     )
-    value, size = resultant_with_square(
-        second, without_separation(factor, rest, *compute_circle_constraint(contacts, 2, psi))
+    value, size = compute_resultant_with_square(
+        second, eliminate_separation(factor, rest, *compute_circle_constraint(contacts, 2, psi))
     )
     free = have_no_separation(contacts)[:, None] & (right == 2)
     # Where the separation is not in the difference at all, the difference alone takes the place of the
@@ -350,16 +385,25 @@ def resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tu
     return np.where(free, plain_value, value), np.where(free, plain_size, size)
 
 
-def triple_resultant(contacts: ContactSystems, second: TrigPolynomial, psi: Array) -> tuple[Array, Array]:
-    """Resultant of three left pegs; where the second and third arc slide, that factor is divided out."""
-    value, size = compute_resultant_of_rings(second, pair_constraint(contacts, 2, psi))
-    sliding_pairs = contacts.sliding_pairs(1, 2)[:, None]
-    length = np.where(sliding_pairs, contacts.centers_apart(1, 2, psi)[0], 1.0)
+def compute_triple_resultant(
+    contacts: ContactSystems, second: TrigPolynomial, psi: Array
+) -> tuple[Array, Array]:
+    """Return the resultant of three left pegs, and the size of its
+    terms; ``second`` is the second peg's constraint.
+
+    Where the second and third arc slide, that factor is divided out.
+    """
+    value, size = compute_resultant_of_rings(second, compute_pair_constraint(contacts, 2, psi))
+    sliding_pairs = contacts.find_sliding_pairs(1, 2)[:, None]
+    length = np.where(sliding_pairs, contacts.compute_center_difference(1, 2, psi)[0], 1.0)
     return value / length**2, size / length**2
 
 
-def lines_without_separation(contacts: ContactSystems, psi: Array) -> TrigPolynomial:
-    """h_sigma of pegs 3 and 4 with the separation eliminated."""
+def eliminate_separation_of_lines(contacts: ContactSystems, psi: Array) -> TrigPolynomial:
+    """Return the constraint h_sigma of pegs 3 and 4, both on lines, with the separation eliminated.
+
+    Symbols are those of ``algebra.resultants``.
+    """
     (one, rest_one), (two, rest_two) = (
         compute_line_constraint(contacts, 2, psi),
         compute_line_constraint(contacts, 3, psi),
@@ -370,22 +414,22 @@ def lines_without_separation(contacts: ContactSystems, psi: Array) -> TrigPolyno
 
 
 def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
-    """Which systems have concentric arcs under right pegs that stand one above the other, (N,)."""
+    """Return, for each system, whether its right pegs, one above the other, are on concentric arcs, (N,)."""
     concentric = np.abs(contacts.middle[:, 2] - contacts.middle[:, 3]) <= COINCIDENT
     return np.asarray(concentric & (np.abs((contacts.point[:, 2] - contacts.point[:, 3]).real) <= COINCIDENT))
 
 
-def coefficients(
+def compute_resultant_coefficients(
     contacts: ContactSystems, case: tuple[int, int], bound: int | None = None
 ) -> tuple[Complex, Array]:
-    """Coefficients of the resultants, (N, 2 d + 1) of z^-d ... z^d, and their terms' sizes (N,).
+    """Return the coefficients of the resultants, (N, 2 d + 1) of z^-d ... z^d, and their terms' sizes (N,).
 
-    The bound d is half the largest degree in t of the case's resultant where it is not said.
+    ``bound`` is d; if None, it is half the largest degree in t of the case's resultant.
     """
     bound = TRUE_DEGREES[case] // 2 if bound is None else bound
     count = 2 * bound + 1
     psi = GRID_START + tau * np.arange(count) / count
-    value, size = resultant(contacts, case, np.broadcast_to(psi, (len(contacts.rows), count)))
+    value, size = compute_resultant(contacts, case, np.broadcast_to(psi, (len(contacts.rows), count)))
     exponents = np.arange(-bound, bound + 1)
     transform = np.exp(-1j * psi[:, None] * exponents[None, :]) / count
     return value @ transform, size.max(axis=1)

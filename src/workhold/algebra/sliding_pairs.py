@@ -4,8 +4,8 @@ Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactl
 fix the orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs
 stop it. In the resultant such a pair is a factor that carries no information about the others, and is divided
 out. So the orientation is taken from the pair, and the rest of the pose from the other contacts at that
-orientation: two circles or lines met at a time. One measure, ``ContactSystems.misfit``, decides what is
-divided out and what is listed here.
+orientation: two circles or lines met at a time. One measure, ``ContactSystems.compute_arc_misfit``, decides
+what is divided out and what is listed here.
 
 Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture
 together.
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from workhold.algebra.candidates import PegPairs, are_parallel, find_sector
 from workhold.algebra.conditions import STEEPEST, SimultaneousContacts, find_row_points
 from workhold.algebra.resultants import Complex, ContactSystems
-from workhold.contact.problem import Frame
+from workhold.contact.problem import SearchFrame
 from workhold.conventions import (
     COINCIDENT,
     LEAST_SLIDING_REACH,
@@ -41,12 +41,12 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, R
 
 __all__ = [
     "SlidingPair",
-    "alike",
+    "are_alike_on_both_jaws",
     "find_level_orientations",
     "meets",
     "find_sliding_pairs",
-    "three_and_one_sliding_pairs",
-    "two_and_two_sliding_pairs",
+    "find_three_and_one_contacts",
+    "find_two_and_two_contacts",
 ]
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ class SlidingPair:
 
     Parameters
     ----------
-    pair : its index.
+    pair : its index among the peg pairs.
     psi : the orientation in radians.
     error : by how much in mm its two contacts may be off from sliding together.
     """
@@ -73,22 +73,25 @@ class SlidingPair:
     error: float
 
 
-def compute_pair_step(pairs: PegPairs, k: int, frame: Frame) -> complex:
-    """Step between the pegs of a pair as a complex number in mm."""
+def compute_pair_step(pairs: PegPairs, k: int, frame: SearchFrame) -> complex:
+    """Return the step from the first to the second peg of pair k as a complex number in mm."""
     return complex(pairs.column[k] * frame.lattice.pitch_x, pairs.row[k] * frame.lattice.pitch_y)
 
 
-def find_sliding_pairs(pairs: PegPairs, scaled: Array, frame: Frame, diameter: float) -> list[SlidingPair]:
-    """All peg pairs that fix the orientation, once for each orientation.
+def find_sliding_pairs(
+    pairs: PegPairs, scaled: Array, frame: SearchFrame, diameter: float
+) -> list[SlidingPair]:
+    """Return all peg pairs that fix the orientation, one entry for each orientation.
 
-    Features (F, 10) have lengths in parts of the part's size, which is ``diameter`` in mm.
+    ``scaled`` are the features (F, 10) with lengths as fractions of the part's size, which is ``diameter`` in
+    mm. See ``kernels.base.feature`` for the layout of rows.
     """
     step = (pairs.column * frame.lattice.pitch_x + 1j * pairs.row * frame.lattice.pitch_y) / diameter
     contacts = ContactSystems(
         scaled[np.stack([pairs.tail, pairs.head], axis=1)], np.stack([0.0 * step, step], axis=1)
     )
     between, rows = contacts.middle[:, 1] - contacts.middle[:, 0], contacts.rows
-    misfit = contacts.misfit(0, 1)
+    misfit = contacts.compute_arc_misfit(0, 1)
     arcs = np.flatnonzero(misfit <= SPARE * COINCIDENT)
     cosine = (np.conj(contacts.normal[:, 0]) * between).real / np.abs(step)
     lines = np.flatnonzero(are_parallel(scaled, pairs.tail, pairs.head) & (np.abs(cosine) < 1.0 - SQUARE))
@@ -102,12 +105,19 @@ def find_sliding_pairs(pairs: PegPairs, scaled: Array, frame: Frame, diameter: f
     return [SlidingPair(int(pair[k]), float(psi[k]), float(error[k])) for k in order]
 
 
-def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: complex, slope: Array) -> Array:
-    """How far in radians the orientation of a sliding pair may be off, (N,).
+def bound_orientation_error(
+    sliding_pair: SlidingPair, row: Array, point: Complex, step: complex, slope: Array
+) -> Array:
+    """Return how far in radians the orientation of a sliding pair may be off, (N,).
 
-    Contacts that miss by e turn the pegs by e over the distance between their two lines of action. The step
-    leads from the first peg to the second, turned by the orientation, in mm. ``slope`` is how much farther
-    the contacts move than the pegs turn, see :func:`find_row_points`.
+    Contacts that miss by e turn the pegs by e over the distance between their two lines of action.
+
+    Parameters
+    ----------
+    row : feature of the first peg.
+    point : (N,) places of the first peg as complex numbers.
+    step : from the first peg to the second, turned by the orientation, in mm.
+    slope : how much farther the contacts move than the pegs turn, see ``conditions.find_row_points``.
     """
     normal = (
         row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
@@ -119,9 +129,10 @@ def reach_of(sliding_pair: SlidingPair, row: Array, point: Complex, step: comple
 
 
 def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
-    """Points of feature a's line or circle whose shifted image is on feature b's, and how far they move.
+    """Return the points of feature a's line or circle that, shifted
+    by ``shift``, are on feature b's line or circle.
 
-    There are none, one or two; they move when either line or circle does.
+    Each of up to two points comes with a bound of how far it moves when either line or circle moves by 1.
     """
     one, two = complex(a[X], a[Y]), complex(b[X], b[Y]) - shift
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -130,11 +141,11 @@ def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
             return []
         off = two - one
         along = (off.real * b[AXIS_Y] - off.imag * b[AXIS_X]) / turn
-        return [(one + along * complex(a[AXIS_X], a[AXIS_Y]), steepness(1.0, abs(turn)))]
+        return [(one + along * complex(a[AXIS_X], a[AXIS_Y]), bound_steepness(1.0, abs(turn)))]
     if a[IS_ARC] == 0.0:
-        return line_meets_circle(one, complex(a[AXIS_X], a[AXIS_Y]), two, b[RADIUS])
+        return intersect_line_with_circle(one, complex(a[AXIS_X], a[AXIS_Y]), two, b[RADIUS])
     if b[IS_ARC] == 0.0:
-        return line_meets_circle(two, complex(b[AXIS_X], b[AXIS_Y]), one, a[RADIUS])
+        return intersect_line_with_circle(two, complex(b[AXIS_X], b[AXIS_Y]), one, a[RADIUS])
     gap = abs(two - one)
     if gap <= COINCIDENT * (a[RADIUS] + b[RADIUS]):
         return []
@@ -143,31 +154,40 @@ def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
         return []
     half = ((a[RADIUS] - along) * (a[RADIUS] + along)) ** 0.5
     direction = (two - one) / gap
-    slope = steepness(a[RADIUS] * b[RADIUS], half * gap)
+    slope = bound_steepness(a[RADIUS] * b[RADIUS], half * gap)
     return [(one + direction * complex(along, sign * half), slope) for sign in (1.0, -1.0)]
 
 
-def steepness(size: float, across: float) -> float:
-    """A bound of how much a meeting point moves when what meets there does, at most ``STEEPEST``."""
+def bound_steepness(size: float, across: float) -> float:
+    """Return a bound of how much a meeting point moves per motion of
+    the curves that meet there, at most ``STEEPEST``.
+    """
     return min(3.0 * size / max(across, size / STEEPEST), STEEPEST)
 
 
-def line_meets_circle(
+def intersect_line_with_circle(
     point: complex, tangent: complex, center: complex, radius: float
 ) -> list[tuple[complex, float]]:
-    """Where a line through a point meets a circle; none for a tangent, which carries no force."""
+    """Return the two points where a line meets a circle, in the form
+    of :func:`meets`; none for a tangent or a miss.
+
+    The line goes through ``point`` with the unit direction ``tangent``. A tangent carries no force.
+    """
     off = (point - center) * tangent.conjugate()
     if abs(off.imag) >= radius:
         return []
     half = ((radius - off.imag) * (radius + off.imag)) ** 0.5
-    slope = steepness(radius, half)
+    slope = bound_steepness(radius, half)
     return [(center + tangent * complex(sign * half, off.imag), slope) for sign in (1.0, -1.0)]
 
 
-def two_and_two_sliding_pairs(
-    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
+def find_two_and_two_contacts(
+    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: SearchFrame
 ) -> list[SimultaneousContacts]:
-    """Left pairs that slide, stopped by a right pair (sliding right pairs are these after a half turn)."""
+    """Return the simultaneous contacts of a left pair that slides and a right pair that stops it.
+
+    Sliding right pairs are these after a half turn.
+    """
     found = []
     sectors = pairs.sectors
     for sliding_pair in sliding_pairs:
@@ -180,7 +200,7 @@ def two_and_two_sliding_pairs(
             c, d = int(pairs.tail[j]), int(pairs.head[j])
             step = z * compute_pair_step(pairs, int(j), frame)
             for point, steep in meets(rows[c], rows[d], step):
-                line, tail, slope = stopped(rows[a], sliding_pair.psi, (point / z).imag, frame)
+                line, tail, slope = find_stopping_rows(rows[a], sliding_pair.psi, (point / z).imag, frame)
                 if len(line) == 0:
                     continue
                 zero = np.zeros(len(line), np.int64)
@@ -192,18 +212,31 @@ def two_and_two_sliding_pairs(
                         np.stack([zero, zero + pairs.column[i], zero, zero + pairs.column[j]], axis=1),
                         np.stack([zero, zero + pairs.row[i], line, line + pairs.row[j]], axis=1),
                         np.full(len(line), sliding_pair.psi),
-                        reach_of(sliding_pair, rows[a], tail, own, np.minimum(steep * slope, STEEPEST)),
+                        bound_orientation_error(
+                            sliding_pair, rows[a], tail, own, np.minimum(steep * slope, STEEPEST)
+                        ),
                         center,
                     )
                 )
     return found
 
 
-def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArray, Complex, Array]:
-    """Rows of the first right peg, places of the first left peg on its feature, and how far they move.
+def find_stopping_rows(
+    row: Array, psi: float, height: float, frame: SearchFrame
+) -> tuple[IntArray, Complex, Array]:
+    """Return the places of the first left peg on its feature at which
+    the first right peg is in a row of holes.
 
-    Rows are counted from the first left peg. Places move when the height or the orientation does. ``height``
-    is the place of the first right peg along the frame's y axis in mm.
+    Parameters
+    ----------
+    row : the left peg's feature.
+    psi : orientation in radians.
+    height : of the first right peg along the frame's y axis, in mm.
+
+    Returns
+    -------
+    (rows (M,) of the first right peg, counted from the first left peg; places (M,) of the left peg as complex
+        numbers; bounds (M,) of how much they move per change of height or orientation)
     """
     middle = ((row[X] + 1j * row[Y]) * np.exp(-1j * psi)).imag
     tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(-1j * psi)).imag
@@ -218,10 +251,13 @@ def stopped(row: Array, psi: float, height: float, frame: Frame) -> tuple[IntArr
     return line[index], point, slope
 
 
-def three_and_one_sliding_pairs(
-    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: Frame
+def find_three_and_one_contacts(
+    pairs: PegPairs, sliding_pairs: list[SlidingPair], rows: Array, frame: SearchFrame
 ) -> list[SimultaneousContacts]:
-    """Left pairs that slide, stopped by a third left peg anywhere in the order of pegs."""
+    """Return the simultaneous contacts of a left pair that slides and a third left peg that stops it.
+
+    The third peg may be anywhere in the order of pegs.
+    """
     found = []
     most = frame.standing.column_count - 1
     for sliding_pair in sliding_pairs:
@@ -243,7 +279,7 @@ def three_and_one_sliding_pairs(
                         np.array([[0, pairs.column[i], column]]),
                         np.array([[0, pairs.row[i], row]]),
                         np.array([sliding_pair.psi]),
-                        reach_of(sliding_pair, rows[a], places[:, 0], own, np.array([slope])),
+                        bound_orientation_error(sliding_pair, rows[a], places[:, 0], own, np.array([slope])),
                         places,
                     )
                 )
@@ -251,7 +287,9 @@ def three_and_one_sliding_pairs(
 
 
 def list_third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
-    """Features and steps (columns, rows) of pegs that can stand beside a peg, before or after it."""
+    """Return (feature, column step, row step) of pegs that can stand
+    beside a peg on feature ``tail``, before or after it.
+    """
     after = [
         (int(h), int(k), int(m))
         for t, h, k, m in zip(pairs.tail, pairs.head, pairs.column, pairs.row, strict=True)
@@ -265,8 +303,10 @@ def list_third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
     return after + before
 
 
-def alike(contacts: ContactSystems) -> NDArray[np.bool_]:
-    """Which systems (N,) have the same lines or circles and the same step on both jaws, at one level."""
+def are_alike_on_both_jaws(contacts: ContactSystems) -> NDArray[np.bool_]:
+    """Return, for each system, whether both jaws have the same lines
+    or circles and the same step, at one level, (N,).
+    """
     rows, point = contacts.rows, contacts.point
     same = np.abs(point[:, 2]) + np.abs(point[:, 3] - point[:, 1]) <= COINCIDENT
     for k in range(2):
@@ -282,12 +322,12 @@ def alike(contacts: ContactSystems) -> NDArray[np.bool_]:
 
 
 def find_level_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
-    """Orientations at which the two places of such a pair are level: (indices of systems, psi in radians).
+    """Return the orientations at which the two places of systems that are :func:`alike` are level.
 
-    The places are mirror images in the line (second peg) or in the line through the circles' centres (pegs
-    brought together). So either the line is level, Re(n* z) = 0, or that line of centres is upright, Re(x + D
-    / z) = 0. There x is the step, and D the vector from the second centre to the first. Lines alone have one
-    place, and so no fixture.
+    Return (indices of systems, psi in radians). The places are mirror images in the line (second peg) or in
+    the line through the circles' centres (pegs brought together). So either the line is level, Re(n* z) = 0,
+    or that line of centres is upright, Re(x + D / z) = 0. There x is the step, and D the vector from the
+    second centre to the first. Lines alone have one place, and so no fixture.
     """
     first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]

@@ -15,7 +15,12 @@ import numpy as np
 from attrs import frozen
 
 from workhold.algebra.poses import Poses, find_hard_roots, find_poses_at
-from workhold.algebra.resultants import PAPER_DEGREES, TRUE_DEGREES, ContactSystems, coefficients
+from workhold.algebra.resultants import (
+    PAPER_DEGREES,
+    TRUE_DEGREES,
+    ContactSystems,
+    compute_resultant_coefficients,
+)
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -28,7 +33,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 
-__all__ = ["Row", "make_random_contacts", "table_two"]
+__all__ = ["CaseRow", "make_random_contacts", "tabulate_root_counts"]
 
 # Spans of coefficients, and what of the largest counts as nothing.
 SPAN = 12
@@ -40,7 +45,7 @@ SAME = 1e-6
 
 
 @frozen
-class Row:
+class CaseRow:
     """One row of the table.
 
     Parameters
@@ -69,7 +74,9 @@ class Row:
 
 
 def make_random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
-    """Random systems of a case (see ``resultants.resultant``), arcs first on each jaw, a real pose each."""
+    """Return ``count`` random systems of a case (see ``resultants.compute_resultant``),
+    arcs first on each jaw; each has a real pose.
+    """
     random = np.random.default_rng(seed)
     left, right = case
     pegs = 3 if right < 0 else 4
@@ -93,27 +100,29 @@ def make_random_contacts(case: tuple[int, int], count: int, seed: int) -> Contac
 
 
 def count_distinct_poses(poses: Poses) -> int:
-    """How many poses there are, those counted once that several starting values lead to."""
+    """Return the number of different poses; poses that several starting values lead to count once."""
     place = [poses.place.real, poses.place.imag, poses.separation]
     values = np.stack([poses.owner, np.cos(poses.psi), np.sin(poses.psi), *place], axis=1)
     same = (np.abs(values[:, None] - values[None]) <= SAME).all(axis=2)
     return int((same.argmax(axis=1) == np.arange(len(values))).sum())
 
 
-def table_two(count: int = 20, seed: int = 1996) -> list[Row]:
-    """Degrees and numbers of roots for every row of the table, from ``count`` random systems each."""
+def tabulate_root_counts(count: int = 20, seed: int = 1996) -> list[CaseRow]:
+    """Return a row for each case of the table, with degrees and
+    numbers of roots from ``count`` random systems each.
+    """
     rows = []
     for case in PAPER_DEGREES:
         contacts = make_random_contacts(case, count, seed)
-        wide = np.abs(coefficients(contacts, case, SPAN)[0])
+        wide = np.abs(compute_resultant_coefficients(contacts, case, SPAN)[0])
         filled = (wide > NOTHING * wide.max(axis=1, keepdims=True)).any(axis=0)
-        values = coefficients(contacts, case)[0]
+        values = compute_resultant_coefficients(contacts, case)[0]
         found = [find_hard_roots(contacts.take(np.array([k])), case, values[k]) for k in range(count)]
         roots = [np.zeros(0, np.complex128) if several is None else several for several in found]
         root, owner = np.concatenate(roots), np.repeat(np.arange(count), [len(several) for several in roots])
         real = np.abs(np.abs(root) - 1.0) <= REAL
         rows.append(
-            Row(
+            CaseRow(
                 type="II" if case[1] < 0 else "I",
                 left=case[0],
                 right=max(case[1], 0),

@@ -87,7 +87,7 @@ class Choice:
 
 @frozen
 class PageLabel:
-    """What the page shows of a field.
+    """A field as the page shows it.
 
     Parameters
     ----------
@@ -150,42 +150,49 @@ class Declaration:
     metavar: str = field(kw_only=True)
 
     @metavar.default
-    def usual_metavar(self) -> str:
+    def make_usual_metavar(self) -> str:
+        """Return the choices joined by "|", else the usual placeholder of the form, "" where it has none."""
         return "|".join(self.choices) or METAVARS.get(self.form, "")
 
     @property
     def argument(self) -> str:
-        """The name of the option, as the name of an argument."""
+        """Name of the option as an identifier: ``word``, else ``name``."""
         return self.word or self.name
 
     @property
     def option(self) -> str:
+        """Option as typed, such as "--jaw-force"."""
         return self.spelled or f"--{self.argument.replace('_', '-')}"
 
     @property
     def words(self) -> str:
-        """The name in sentences."""
+        """Name in sentences: ``called``, else ``name`` with spaces."""
         return self.called or self.name.replace("_", " ")
 
     @property
     def is_required(self) -> bool:
+        """Whether the field has no default."""
         return self.default is REQUIRED
 
     def check_value(self, value: Any) -> Any:
-        """Convert a value of the constructor, and refuse what it cannot be; None stands for nothing given."""
+        """Return a constructor's value, converted by its form;
+        raise InputError for a value that the field cannot have.
+
+        None is returned as it is where it is the default. Forms without a check return the value unchanged.
+        """
         if value is None and self.default is None:
             return None
         match self.form:
             case "length":
-                number = self.number(value, "is not a length", ", in mm")
+                number = self.convert_number(value, "is not a length", ", in mm")
                 refuse_long(self.words, number)
                 return number
             case "force":
-                number = self.number(value, "cannot be used", ", in N")
+                number = self.convert_number(value, "cannot be used", ", in N")
                 refuse_strong(self.words, number)
                 return number
             case "number":
-                return self.number(value, "cannot be used", "")
+                return self.convert_number(value, "cannot be used", "")
             case "count":
                 return check_count(self.words, value)
             case "choice" if value not in self.choices:
@@ -193,8 +200,11 @@ class Declaration:
                 raise InputError(f"the {self.words} cannot be {value!r}: choose {few}.")
         return value
 
-    def number(self, value: Any, wrong: str, unit: str) -> float:
-        """Convert a number, and refuse one that is not finite or too small."""
+    def convert_number(self, value: Any, wrong: str, unit: str) -> float:
+        """Return a finite float of at least ``least``; raise InputError for anything else.
+
+        ``wrong`` says in the message what is wrong with the number, and ``unit`` in what to give it.
+        """
         number = convert_real(value, self.words)
         is_low = number <= 0 if self.least == "above 0" else number < 0 and self.least == "0"
         if not isfinite(number) or is_low:
@@ -205,11 +215,14 @@ class Declaration:
 def declare(
     form: Form, help: str, *labels: PageLabel, default: Any = None, converter: Any = None, **more: Any
 ) -> Any:
-    """Make a field of a question, an attrs class with :func:`check_fields` as its transformer.
+    """Return an attrs field that carries a :class:`Declaration`;
+    the class needs :func:`check_fields` as its transformer.
 
     Parameters
     ----------
-    converter : of its values, where it is not the one of their form.
+    form, help, labels : as in :class:`Declaration`.
+    default : of the field; None where none is given.
+    converter : of its values, in place of :meth:`Declaration.check_value`.
     more : further parameters of :class:`Declaration`.
     """
     said = Declaration("", form, help, labels, default=default, **more)
@@ -217,7 +230,11 @@ def declare(
 
 
 def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[Any]]:
-    """Let the constructor of a question check its declared fields: a field transformer of attrs."""
+    """Return the attributes of a question, each declared one
+    without a converter given :meth:`Declaration.check_value`.
+
+    This is a field transformer of attrs.
+    """
     return [
         one.evolve(converter=partial(Declaration.check_value, find_declaration(one)))
         if KEY in one.metadata and one.converter is None
@@ -227,7 +244,7 @@ def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[
 
 
 def find_declaration(one: Attribute[Any]) -> Declaration:
-    """Return the declaration of a field, by the name that the field has."""
+    """Return the declaration that a declared attrs attribute carries, with the attribute's name."""
     said: Declaration = one.metadata[KEY]
     return evolve(said, name=one.name)
 
@@ -235,7 +252,8 @@ def find_declaration(one: Attribute[Any]) -> Declaration:
 def list_declarations(
     question: type, sections: Iterable[str | None] | None = None
 ) -> tuple[Declaration, ...]:
-    """List the declared fields of a question in their order, of all sections if None are named.
+    """Return the declarations of a question's fields in their order,
+    those of the named sections, or all for None.
 
     Examples
     --------
@@ -249,5 +267,7 @@ def list_declarations(
 
 
 def collect_declared_values(question: Any) -> dict[str, Any]:
-    """Return the values of a question's declared fields by name."""
+    """Return the values of a question's declared fields by name;
+    fields that are not declared are left out.
+    """
     return {row.name: getattr(question, row.name) for row in list_declarations(type(question))}

@@ -8,7 +8,16 @@ from attrs import frozen
 
 from workhold.asking.declaring import PageLabel, check_fields, declare
 
-__all__ = ["HEIGHTS", "LOADS", "RANKING", "RULING_OUT", "SEARCH", "SEATING", "RuledOut", "SearchQuestion"]
+__all__ = [
+    "HEIGHTS",
+    "LOADS",
+    "RANKING",
+    "RULING_OUT",
+    "SEARCH",
+    "SEATING",
+    "RestrictionQuestion",
+    "SearchQuestion",
+]
 
 # Sections of the command's help. What is ruled out, loads and ranking are asked of a comparison of toolkits
 # as well.
@@ -18,7 +27,7 @@ HEIGHTS = "Heights"
 
 
 @frozen(field_transformer=check_fields)
-class RuledOut:
+class RestrictionQuestion:
     """What fixtures must keep clear of, and what they must touch; :class:`workhold.Restrictions` explains the fields."""
 
     avoid: Any = declare(

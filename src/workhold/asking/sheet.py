@@ -48,7 +48,7 @@ class SheetQuestion:
     Raises
     ------
     InputError
-        For a value that cannot be.
+        For an impossible value.
     """
 
     paper: str | None = declare(

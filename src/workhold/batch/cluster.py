@@ -20,8 +20,8 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.store import Store
-from workhold.batch.tasks import Outcome, Task, Watcher, run_task
+from workhold.batch.store import RecordStore
+from workhold.batch.tasks import Outcome, Task, TaskObserver, run_task
 from workhold.batch.workers import block_interrupts_in_children
 from workhold.errors import InputError
 
@@ -53,10 +53,10 @@ class ClusterWorkers:
     gone : why the scheduler is no more, in a sentence; empty while it is there.
     """
 
-    watcher: Watcher
+    watcher: TaskObserver
     address: str | None = None
     count: int = 0
-    store: Store | None = None
+    store: RecordStore | None = None
     gone: str = field(default="", init=False)
     client: Any = field(default=None, init=False)
     own: Any = field(default=None, init=False)
@@ -102,7 +102,9 @@ class ClusterWorkers:
             self.stack.close()
 
     def note_worker_event(self, event: tuple[float, Any]) -> None:
-        """Take note of what the scheduler reports of its workers; runs in a thread of the client's."""
+        """Notify the watcher of a worker that the scheduler reports as lost;
+        runs in a thread of the client's.
+        """
         report = event[1]
         if isinstance(report, dict) and report.get("action") == "remove-worker":
             busy = report.get("processing-tasks") or {}
@@ -110,7 +112,11 @@ class ClusterWorkers:
             self.watcher.notify(f"The worker at {report.get('worker')} is lost.{again}")
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Yield the outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
+        """Yield the outcomes of tasks as they come; see :class:`workhold.batch.tasks.TaskQueue`.
+
+        A task whose workers died is tried once more, alone. When the scheduler is lost, ``stop`` is set and
+        the outcomes end.
+        """
         finished: SimpleQueue[Any] = SimpleQueue()
         pending: dict[str, tuple[Any, Task]] = {}
         # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once
@@ -163,15 +169,16 @@ class ClusterWorkers:
             self.client.cancel([future for future, _ in pending.values()])
 
     def submit(self, task: Task, key: str, finished: SimpleQueue[Any]) -> Any:
+        """Return the future of a task under this key; it is put into ``finished`` when it is done."""
         future = self.client.submit(run_on_worker, task, self.store, key=key, pure=False)
         future.add_done_callback(finished.put)
         return future
 
     def count_threads(self) -> int:
-        """Number of threads that the workers were last counted to have.
+        """Return the number of threads of the workers, counted anew every :data:`COUNT` seconds.
 
-        After a while without any, a warning says so; workers that are missing on this machine are started
-        again.
+        After a while without a worker the watcher is told; workers missing from a cluster on this machine are
+        started again.
         """
         now = monotonic()
         if now < self.counted_at + COUNT or self.gone:
@@ -195,7 +202,8 @@ class ClusterWorkers:
         return self.threads
 
     def get_outcome(self, future: Any, task: Task) -> Outcome | None:
-        """Return what came of a task; None where the scheduler has lost it.
+        """Return the outcome of a task whose future is done;
+        None, with ``gone`` set, where the scheduler has lost it.
 
         Raises
         ------
@@ -223,7 +231,7 @@ class ClusterWorkers:
         return None
 
     def give_up(self, stop: Event) -> None:
-        """End the run: there is no scheduler any more."""
+        """End the run because the scheduler is lost: set ``gone`` and ``stop``, and notify the watcher."""
         self.gone = (
             f"the scheduler at {self.address or 'this machine'} is lost. The answers so far are kept: "
             "start the scheduler, and then the same command again to go on."
@@ -233,17 +241,17 @@ class ClusterWorkers:
 
 
 def is_killed(future: Any) -> bool:
-    """Return whether the scheduler has given a task up because its workers died."""
+    """Return whether the scheduler has given up a task because its workers died."""
     return future.status == "error" and type(future.exception()).__name__ == "KilledWorker"
 
 
 def check_address(address: str) -> str:
-    """Return the address of a scheduler; without a kind it is one of TCP.
+    """Return the address of a scheduler, with "tcp://" in front where no protocol is given.
 
     Raises
     ------
     InputError
-        For words that are none, over which the library would stumble.
+        For text that is no such address.
 
     Examples
     --------
@@ -261,7 +269,10 @@ def check_address(address: str) -> str:
     return f"{kind or 'tcp'}://{place}"
 
 
-def run_on_worker(task: Task, store: Store | None) -> Outcome:
+def run_on_worker(task: Task, store: RecordStore | None) -> Outcome:
+    """Return the outcome of a task, done here;
+    its record is written to the store, if any, instead of being returned.
+    """
     from distributed import get_worker
 
     outcome = run_task(task, str(get_worker().address))

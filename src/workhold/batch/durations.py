@@ -28,7 +28,7 @@ from workhold.files.budget import LIMITS
 from workhold.files.text import read_limited
 from workhold.fixels.toolkit import Toolkit
 
-__all__ = ["Measured", "predict_answering_seconds", "compute_measures", "predict_reading_seconds"]
+__all__ = ["TaskDurations", "predict_answering_seconds", "compute_measures", "predict_reading_seconds"]
 
 # Seconds are exp(constant) * faces ** first * steps ** second.
 LAWS: Mapping[str, tuple[float, float, float]] = {
@@ -45,14 +45,16 @@ OTHER_READING = (0.005, 1.0)
 
 
 def predict_reading_seconds(ending: str, size: int) -> float:
+    """Return the predicted seconds to read a file with this ending, such as ".dxf", and size in bytes."""
     first, million = READING.get(ending.lower(), OTHER_READING)
     return first + million * size / 1e6
 
 
 def compute_measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
-    """Return the law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
+    """Return the law for a toolkit (a key of :data:`LAWS`),
+    log of the number of faces, and log of the lattice steps.
 
-    Width and height of the part are in mm.
+    ``size`` is width and height of the part in mm.
     """
     if not toolkit.plates:
         return toolkit.law, log(faces), 0.0
@@ -66,13 +68,14 @@ def compute_measures(faces: int, size: tuple[float, float], toolkit: Toolkit) ->
 
 
 def predict_answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:
+    """Return the predicted seconds of a search; ``size`` is width and height of the part in mm."""
     law, of_faces, of_steps = compute_measures(faces, size, toolkit)
     constant, first, second = LAWS[law]
     return exp(constant + first * of_faces + second * of_steps)
 
 
 @define(eq=False)
-class Measured:
+class TaskDurations:
     """Seconds and workers of tasks, by name.
 
     Parameters
@@ -83,7 +86,7 @@ class Measured:
     Raises
     ------
     InputError
-        For a file of that name that begins otherwise: nothing is added to what others wrote.
+        For a file of that name that was not written by workhold: nothing is added to it.
     """
 
     path: Path
@@ -106,6 +109,7 @@ class Measured:
                     continue
 
     def add(self, outcome: Outcome) -> None:
+        """Keep the seconds and the worker of an outcome, and append them to the file."""
         worker = make_printable(outcome.worker) or "-"
         self.known[outcome.name] = (outcome.seconds, worker)
         with explain_system_errors(self.path):

@@ -20,9 +20,9 @@ from typing import Any
 
 from attrs import define, field, frozen
 
-from workhold.batch.durations import Measured
-from workhold.batch.run import Batch
-from workhold.batch.store import Store
+from workhold.batch.durations import TaskDurations
+from workhold.batch.run import BatchState
+from workhold.batch.store import RecordStore
 from workhold.batch.tables import JobRow, Row, list_job_rows, write_tables
 from workhold.drawing.panel import format_count
 from workhold.errors import make_printable
@@ -102,7 +102,7 @@ row.hidden=!words.every(word=>text.includes(word));}});
 
 @frozen
 class Summary:
-    """What stands over the table.
+    """Headline and sentences that stand over the table.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ class Report:
     """
 
     folder: Path
-    store: Store
+    store: RecordStore
     rows: list[str] = field(factory=list, init=False)
     bad: dict[tuple[str, str], list[str]] = field(factory=dict, init=False)
     states: Counter[str] = field(factory=Counter, init=False)
@@ -139,7 +139,11 @@ class Report:
     left_out: int = field(default=0, init=False)
 
     def add(self, job: JobRow, sheet: Path | None = None) -> None:
-        """Take a row; ``sheet`` is the setup sheet of its first choice, where there is one."""
+        """Add a job's row; ``sheet`` is the path of the setup
+        sheet of its first choice, None where there is none.
+
+        Every job is counted, but only the first :data:`MOST_ROWS` have a row on the page.
+        """
         row = job.row
         self.states[row["state"]] += 1
         if row["state"] in BAD and len(self.bad) < MOST_ROWS:
@@ -150,7 +154,9 @@ class Report:
         self.rows.append(self.make_row(row, self.draw_first_choice(job), sheet))
 
     def draw_first_choice(self, job: JobRow) -> str:
-        """Return the first choice of a job, as far as there is room for it."""
+        """Return a picture of a job's first choice as HTML;
+        "" where it has none, and beyond :data:`MOST_PICTURES`.
+        """
         row = job.row
         if row["state"] != "held" or self.pictures >= MOST_PICTURES:
             return ""
@@ -163,7 +169,7 @@ class Report:
         return f'<img alt="{escape_html(words)}" src="data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}">'
 
     def make_row(self, row: Row, picture: str, sheet: Path | None) -> str:
-        """Return the HTML of a row."""
+        """Return the HTML of a table row; ``picture`` is HTML."""
         state = STATES[row["state"]][0] + (
             ", but none that a workshop can use" if row["fit"] is False else ""
         )
@@ -185,7 +191,9 @@ class Report:
         return f"<tr>{''.join(cells)}</tr>\n"
 
     def make_links(self, row: Row, sheet: Path | None) -> str:
-        """Return how to get on from a row: its record, and its setup sheet or the line that makes it."""
+        """Return HTML with links to a job's record and to its setup sheet,
+        or the command that makes the sheet; "" if not held.
+        """
         if row["state"] != "held":
             return ""
         if "://" in row["record"]:
@@ -206,6 +214,7 @@ class Report:
         return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
 
     def write(self, path: Path, summary: Summary) -> None:
+        """Write the page: summary, failures, and the table of all rows."""
         headings = [
             "first choice",
             "part",
@@ -239,14 +248,14 @@ class Report:
 
     @property
     def counts(self) -> str:
-        """How many jobs came out how, in a sentence."""
+        """Sentence with the number of jobs in each state."""
         counted = [
             f"{self.states[state]:,} {words}" for state, (_, words) in STATES.items() if self.states[state]
         ]
         return f"{format_count(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
 
     def list_failures(self) -> str:
-        """Return what failed, as HTML."""
+        """Return a table of what failed, where and why, as HTML."""
         rows = "".join(
             f"<tr><td>{escape_html(part)}</td><td>{escape_html(', '.join(toolkits))}</td>"
             f"<td>{escape_html(reason)}</td></tr>\n"
@@ -259,17 +268,21 @@ class Report:
 
 
 def escape_html(words: Any) -> str:
+    """Return words as text in HTML, without characters that cannot be printed."""
     return escape(make_printable(str(words)))
 
 
 def make_cell(content: str, *, key: str | None = None, name: str = "", bad: bool = False) -> str:
-    """Return a cell of HTML; ``key`` is what it is sorted by, if not its text."""
+    """Return a table cell of HTML; ``key`` is what it is sorted by,
+    if not its text, and ``name`` its CSS class.
+    """
     classes = " ".join(filter(None, (name, "bad" if bad else "")))
     attributes = (f' class="{classes}"' if classes else "") + ("" if key is None else f' data-key="{key}"')
     return f"<td{attributes}>{content}</td>"
 
 
 def format_figure(value: float | None, decimals: int) -> str:
+    """Return a table cell with a number of so many decimals; an empty cell for None."""
     if value is None:
         return make_cell("", name="n")
     return make_cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
@@ -280,19 +293,19 @@ LONGEST_NAME, LETTERS = 80, 8
 
 
 def write_results(
-    batch: Batch,
-    store: Store,
-    measured: Measured,
+    batch: BatchState,
+    store: RecordStore,
+    measured: TaskDurations,
     folder: Path,
     report_name: str,
     summary: Summary,
     sheets: Path | None,
 ) -> Report:
-    """Write tables and report of all jobs into a folder, and sheets of the first choices into another.
+    """Write tables and report of all jobs into a folder, and sheets of first choices; return the report.
 
     Parameters
     ----------
-    summary : what stands over the report.
+    summary : headline and sentences that stand over the report.
     """
     with explain_system_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -303,8 +316,10 @@ def write_results(
     return report
 
 
-def write_first_sheet(row: JobRow, store: Store, folder: Path) -> Path | None:
-    """Return the setup sheet of a job's first choice, written if it is not there; None without a fixture."""
+def write_first_sheet(row: JobRow, store: RecordStore, folder: Path) -> Path | None:
+    """Return the path of the setup sheet of a job's first choice,
+    written unless it is there; None without a fixture.
+    """
     if row.row["state"] != "held":
         return None
     name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]

@@ -16,9 +16,9 @@ from typing import Any, Protocol, TypeVar
 
 from attrs import define, field, frozen
 
-from workhold.batch.durations import Measured, predict_answering_seconds, predict_reading_seconds
-from workhold.batch.store import Store, parse_record
-from workhold.batch.tasks import Answering, Outcome, Queue, Reading, Task, name_of
+from workhold.batch.durations import TaskDurations, predict_answering_seconds, predict_reading_seconds
+from workhold.batch.store import RecordStore, parse_record
+from workhold.batch.tasks import DrawingTask, Outcome, QueryTask, Task, TaskQueue, make_task_name
 from workhold.errors import InputError
 from workhold.files.part.finding import read_bytes
 from workhold.files.part_list import ListedPart
@@ -26,14 +26,24 @@ from workhold.files.result.writer import make_query_entry
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ANY_PART", "Batch", "BatchRun", "Counting", "HeldIn", "Job", "Part", "Request", "run_batch"]
+__all__ = [
+    "ANY_PART",
+    "BatchState",
+    "BatchRunner",
+    "ProgressCounter",
+    "ToolkitQuery",
+    "BatchJob",
+    "BatchPart",
+    "PartRequest",
+    "run_batch",
+]
 
 # Stands for any part in the queries that wait for theirs.
 ANY_PART = Workpiece.from_loops("any", [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
 
 
 @frozen(eq=False, slots=False)
-class HeldIn:
+class ToolkitQuery:
     """A toolkit, and what is asked of the fixtures in it.
 
     Parameters
@@ -47,12 +57,12 @@ class HeldIn:
 
     @cached_property
     def entry(self) -> dict[str, Any]:
-        """What is asked as it is written, which distinguishes it from anything else that could be.
+        """The query as plain data of a result file, which distinguishes it from any other query.
 
         Raises
         ------
         InputError
-            When it cannot be asked.
+            When the query is an error, which then is raised.
         """
         if isinstance(self.query, InputError):
             raise self.query
@@ -60,7 +70,7 @@ class HeldIn:
 
 
 @frozen(eq=False)
-class Request:
+class PartRequest:
     """A part, and all that it shall be held in.
 
     Parameters
@@ -72,11 +82,11 @@ class Request:
 
     listed: ListedPart
     options: Mapping[str, Any]
-    held_in: Sequence[HeldIn]
+    held_in: Sequence[ToolkitQuery]
 
 
 @define(eq=False)
-class Part:
+class BatchPart:
     """A part as far as it is known.
 
     Parameters
@@ -89,7 +99,7 @@ class Part:
     remarks : what to say about the drawing.
     """
 
-    request: Request
+    request: PartRequest
     name: str = ""
     refusal: str = ""
     content: str = ""
@@ -98,33 +108,38 @@ class Part:
     remarks: tuple[str, ...] = ()
 
     @classmethod
-    def from_request(cls, request: Request) -> Part:
+    def from_request(cls, request: PartRequest) -> BatchPart:
+        """Return the part of a request, with the name of the task that reads it,
+        or the refusal where its file cannot be opened.
+        """
         try:
             return cls(request, make_reading(request).name)
         except InputError as error:
             return cls(request, refusal=str(error))
 
     def take(self, record: Mapping[str, Any]) -> None:
+        """Take content, faces, size and remarks, or the refusal, from the record of the part's drawing."""
         self.refusal = record["refusal"]
         if not self.refusal:
             # What may be touched makes outlines of one shape two parts; a prism is its shape alone.
             solid = [record["solid"], record["bands"]] if record.get("solid") else []
-            self.content = name_of(record["loops"], record["departure"], *solid)
+            self.content = make_task_name(record["loops"], record["departure"], *solid)
             self.faces, self.remarks = record["faces"], tuple(record["remarks"])
             width, height = record["size"]
             self.size = (width, height)
 
 
-def make_reading(request: Request) -> Reading:
+def make_reading(request: PartRequest) -> DrawingTask:
+    """Return the task that reads the file of a request; raise InputError where the file cannot be opened."""
     path = request.listed.path
     content = read_bytes(path)
     ending = Path(path).suffix.lower()
-    name = name_of(content, ending, dict(request.options))
-    return Reading(name, request.listed.name, ending, content, request.options)
+    name = make_task_name(content, ending, dict(request.options))
+    return DrawingTask(name, request.listed.name, ending, content, request.options)
 
 
 @define(eq=False)
-class Job:
+class BatchJob:
     """A part with something it shall be held in.
 
     Parameters
@@ -136,8 +151,8 @@ class Job:
     failure : why its task has failed, though it might not do so again; empty otherwise.
     """
 
-    part: Part
-    held_in: HeldIn
+    part: BatchPart
+    held_in: ToolkitQuery
     name: str = ""
     refusal: str = ""
     estimate: float = 0.0
@@ -145,30 +160,33 @@ class Job:
 
     @property
     def title(self) -> str:
-        """What it is called where people see it."""
+        """Name of the job for people: part and toolkit."""
         return f"{self.part.request.listed.name} in {self.held_in.name}"
 
-    def make_answering(self, record: bytes, best: int) -> Answering:
+    def make_answering(self, record: bytes, best: int) -> QueryTask:
+        """Return the task that answers the job;
+        ``record`` is that of the part, ``best`` the number of fixtures to keep.
+        """
         assert isinstance(self.held_in.query, Query)
-        return Answering(self.name, self.title, record, self.held_in.query, best)
+        return QueryTask(self.name, self.title, record, self.held_in.query, best)
 
 
-T = TypeVar("T", Part, Job)
+T = TypeVar("T", BatchPart, BatchJob)
 
 
-class Counting(Protocol):
-    """Who counts along."""
+class ProgressCounter(Protocol):
+    """An observer that counts tasks."""
 
     def begin_stage(self, doing: str, count: int, seconds: float) -> None:
-        """Begin a stage of ``count`` tasks, which are predicted to take ``seconds`` of one processor."""
+        """Begin a stage of ``count`` tasks that are predicted to take ``seconds`` of one processor in all."""
 
     def count_done(self, seconds: float) -> None:
-        """Count one of these tasks as done, which was predicted to take ``seconds``."""
+        """Count a task of the stage as done; it was predicted to take ``seconds``."""
 
 
 @define(eq=False)
-class Batch:
-    """What a run knows of its jobs.
+class BatchState:
+    """Parts and jobs of a run, with what is known of them.
 
     Parameters
     ----------
@@ -177,16 +195,16 @@ class Batch:
     is_complete : whether it came to its end.
     """
 
-    parts: list[Part]
-    jobs: list[Job] = field(factory=list)
+    parts: list[BatchPart]
+    jobs: list[BatchJob] = field(factory=list)
     fresh: int = 0
     kept: int = 0
     is_complete: bool = False
 
 
 @frozen(eq=False)
-class BatchRun:
-    """What a run works with.
+class BatchRunner:
+    """Store, queue, durations and observer that a run works with.
 
     Parameters
     ----------
@@ -197,19 +215,26 @@ class BatchRun:
     stop : when set, the run ends soon.
     """
 
-    store: Store
-    queue: Queue
-    measured: Measured
-    counting: Counting
+    store: RecordStore
+    queue: TaskQueue
+    measured: TaskDurations
+    counting: ProgressCounter
     stop: Event
 
     def do(
         self, doing: str, items: Sequence[T], seconds: Callable[[T], float], task_of: Callable[[T], Task]
     ) -> tuple[dict[str, Outcome], int]:
-        """Do the tasks of items that are not done, longest first, each name once.
+        """Do the tasks of items without a record, longest first; items with the same name share one task.
 
-        Returns the outcome of each task that was done now, by its name, and how many were done before.
-        Refuses to go on when a record cannot be kept.
+        Return the outcomes of the tasks done now, by name, and the number that were done before. Raises
+        InputError when a record cannot be kept.
+
+        Parameters
+        ----------
+        doing : words for the stage.
+        items : parts or jobs, each with the name of its task.
+        seconds : predicts how long the task of an item takes.
+        task_of : makes the task of an item; an InputError becomes its outcome.
         """
         by_name: dict[str, T] = {}
         for item in items:
@@ -219,6 +244,7 @@ class BatchRun:
         outcomes: dict[str, Outcome] = {}
 
         def tasks() -> Iterator[Task]:
+            """Yield the tasks, longest first, that no other run has done meanwhile."""
             for name in sorted(reckoned, key=reckoned.__getitem__, reverse=True):
                 if self.store.has(name):
                     # Another run has done it meanwhile.
@@ -246,7 +272,9 @@ class BatchRun:
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
-        """Keep the record of a task, unless its worker has, and what it took."""
+        """Keep what a task took, and its record unless its worker has kept that;
+        raise InputError where there is no room.
+        """
         try:
             self.measured.add(outcome)
             if outcome.record is not None:
@@ -258,8 +286,10 @@ class BatchRun:
 GO_ON = "The answers so far are kept: make room, and start the same command again to go on."
 
 
-def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
-    """Read all parts and answer all jobs, as far as that is not done.
+def run_batch(requests: Iterable[PartRequest], best: int, work: BatchRunner) -> BatchState:
+    """Return the state of a batch after reading all parts and answering all jobs that are not done already.
+
+    The state is incomplete where ``work.stop`` was set.
 
     Parameters
     ----------
@@ -270,13 +300,14 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
     InputError
         When records cannot be kept, or there are no workers.
     """
-    batch = Batch([Part.from_request(request) for request in requests])
+    batch = BatchState([BatchPart.from_request(request) for request in requests])
     read_parts(batch, work)
     batch.jobs = [job for part in batch.parts for job in list_jobs(part, best)]
     jobs = [job for job in batch.jobs if job.name]
     if not work.stop.is_set():
 
-        def task_of(job: Job) -> Task:
+        def task_of(job: BatchJob) -> Task:
+            """Return the task of a job; raise InputError where the record of its part is gone."""
             record = work.store.read(job.part.name)
             if record is None:
                 raise InputError("The record of its part is gone: start the batch again.")
@@ -291,11 +322,12 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
     return batch
 
 
-def read_parts(batch: Batch, work: BatchRun) -> None:
-    """Read the parts that are not read yet, and take note of all."""
+def read_parts(batch: BatchState, work: BatchRunner) -> None:
+    """Read the parts that have no record yet, and fill in all parts from their records."""
     parts = [part for part in batch.parts if part.name]
 
-    def seconds(part: Part) -> float:
+    def seconds(part: BatchPart) -> float:
+        """Return the predicted seconds to read a part."""
         path = part.request.listed.path
         return predict_reading_seconds(path.suffix, path.stat().st_size if path.is_file() else 0)
 
@@ -308,19 +340,19 @@ def read_parts(batch: Batch, work: BatchRun) -> None:
             part.refusal = outcomes[part.name].failure
 
 
-def list_jobs(part: Part, best: int) -> Iterator[Job]:
-    """Yield the jobs of a part; those without a name have no task."""
+def list_jobs(part: BatchPart, best: int) -> Iterator[BatchJob]:
+    """Yield a job for each toolkit of a part; a job that cannot be asked has a refusal and no name."""
     for held_in in part.request.held_in:
         if part.refusal or not part.content:
-            yield Job(part, held_in, refusal=part.refusal)
+            yield BatchJob(part, held_in, refusal=part.refusal)
             continue
         try:
-            name = name_of(part.content, held_in.entry, best)
+            name = make_task_name(part.content, held_in.entry, best)
         except InputError as error:
-            yield Job(part, held_in, refusal=str(error))
+            yield BatchJob(part, held_in, refusal=str(error))
             continue
         assert isinstance(held_in.query, Query)
-        yield Job(
+        yield BatchJob(
             part,
             held_in,
             name,

@@ -38,13 +38,13 @@ __all__ = [
     "PART",
     "REFUSAL",
     "FolderStore",
-    "Store",
+    "RecordStore",
     "UrlStore",
     "is_whole",
     "make_part_record",
     "parse_record",
     "make_refusal_record",
-    "store_at",
+    "open_store",
     "read_workpiece_record",
 ]
 
@@ -57,6 +57,7 @@ FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 
 
 def make_part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
+    """Return the record of a drawing: the part, its number of faces and size, and remarks."""
     about = {
         "format": PART,
         **make_workpiece_entry(workpiece),
@@ -71,27 +72,31 @@ def make_part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
     if heights:
         about |= {**make_own_outlines_entry(workpiece), "heights": heights}
     x0, y0, x1, y1 = workpiece.bounds
-    return end_record(
+    return encode_record(
         about | {"faces": len(workpiece.faces), "size": [x1 - x0, y1 - y0], "remarks": list(remarks)}
     )
 
 
 def make_refusal_record(sentence: str) -> bytes:
-    return end_record({"format": REFUSAL, "refusal": [sentence]})
+    """Return the record of something that cannot be read or asked, with the sentence that says why."""
+    return encode_record({"format": REFUSAL, "refusal": [sentence]})
 
 
-def end_record(content: dict[str, Any]) -> bytes:
-    """Return a record whose last entry is a list, so that it ends as every record does."""
+def encode_record(content: dict[str, Any]) -> bytes:
+    """Return a record as a line of JSON;
+    the last entry must be a list, so that it ends as every record does.
+    """
     return json.dumps(content).encode() + b"\n"
 
 
 def make_checksum_line(name: str, content: bytes) -> bytes:
-    """Return the line that stands beside a record: the SHA-256 of its task's name and its bytes."""
+    """Return the line of a record's checksum file: the SHA-256 of the task's name and the record's bytes."""
     return sha256(name.encode() + b"\n" + content).hexdigest().encode() + b"\n"
 
 
 def is_whole(name: str, content: bytes, line: bytes) -> bool:
-    """Return whether bytes are the record of a task: they begin and end as one does, and have its checksum.
+    """Return whether bytes are the record of a task:
+    they begin and end as a record does, and fit its checksum line.
 
     >>> record = make_refusal_record("no")
     >>> line = make_checksum_line("a", record)
@@ -102,14 +107,17 @@ def is_whole(name: str, content: bytes, line: bytes) -> bool:
 
 
 def parse_record(content: bytes) -> dict[str, Any]:
-    """Return a record as plain data; the sentence of a refusal is under ``refusal``, of all others that is empty."""
+    """Return a record as plain data with the key "refusal":
+    the sentence of a refusal, "" in any other record.
+    """
     data: dict[str, Any] = json.loads(content)
     data["refusal"] = data["refusal"][0] if data["format"] == REFUSAL else ""
     return data
 
 
 def read_workpiece_record(record: dict[str, Any]) -> Workpiece:
-    solid = SolidOutline.of_entries(record["solid"], record) if record.get("solid") else None
+    """Return the part of a drawing's record."""
+    solid = SolidOutline.from_entries(record["solid"], record) if record.get("solid") else None
     workpiece = Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
     if "outlines" not in record:
         return workpiece
@@ -121,7 +129,7 @@ CHECKSUM = ".sha256"
 
 
 def make_checksum_path(path: str) -> str:
-    """Return the path of the checksum of the record at a path of an object store."""
+    """Return the path of the checksum file for a record's path in an object store."""
     return path.removesuffix(".json") + CHECKSUM
 
 
@@ -129,20 +137,20 @@ def make_checksum_path(path: str) -> str:
 FOLDER_LETTERS = 2
 
 
-class Store(Protocol):
-    """What keeps records."""
+class RecordStore(Protocol):
+    """A store of records by the names of tasks."""
 
     __slots__ = ()
 
     def has(self, name: str) -> bool:
-        """Return whether a task is done: its record is there, and whole."""
+        """Return whether a whole record of a task is there, that is whether the task is done."""
         return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is none."""
+        """Return the record of a task; None where there is none, or it is not whole."""
 
     def write(self, name: str, record: bytes) -> None:
-        """Keep a record.
+        """Keep the record of a task.
 
         Raises
         ------
@@ -151,14 +159,16 @@ class Store(Protocol):
         """
 
     def place(self, name: str) -> str:
-        """Return where the record of a task is, or would be."""
+        """Return the path or URL at which the record of a task is, or would be."""
 
     def open_record(self, name: str) -> AbstractContextManager[Path]:
-        """Return the record of a task that is done, as a file as long as the block runs."""
+        """Yield the path of a file with the record of a task that is done;
+        it need not exist after the block.
+        """
 
 
 @frozen
-class FolderStore(Store):
+class FolderStore(RecordStore):
     """A folder of records.
 
     Parameters
@@ -169,13 +179,15 @@ class FolderStore(Store):
     folder: Path
 
     def place(self, name: str) -> str:
+        """Return the path of a task's record."""
         return str(self.make_record_path(name))
 
     def make_record_path(self, name: str) -> Path:
+        """Return the path of a task's record."""
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
-        """Return a record, if it is whole."""
+        """Return the record of a task; None where there is none, or it is not whole."""
         path = self.make_record_path(name)
         try:
             content, line = (read_limited(file, RECORD) for file in (path, path.with_suffix(CHECKSUM)))
@@ -185,11 +197,11 @@ class FolderStore(Store):
 
     @contextmanager
     def open_record(self, name: str) -> Iterator[Path]:
-        """Yield the file of a record; see :meth:`Store.open_record`."""
+        """Yield the path of a task's record."""
         yield self.make_record_path(name)
 
     def write(self, name: str, record: bytes) -> None:
-        """Write a record; see :meth:`Store.write`."""
+        """Write a record and its checksum; raise InputError where they cannot be written."""
         path = self.make_record_path(name)
         with explain_system_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -198,7 +210,7 @@ class FolderStore(Store):
 
 
 @frozen
-class UrlStore(Store):
+class UrlStore(RecordStore):
     """Records below a URL.
 
     Parameters
@@ -209,17 +221,18 @@ class UrlStore(Store):
     url: str
 
     def place(self, name: str) -> str:
+        """Return the URL of a task's record."""
         return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
 
     def locate_record(self, name: str) -> tuple[Any, str]:
-        """Return the file system of a record, and its path there."""
+        """Return the fsspec file system of a task's record, and the record's path there."""
         from fsspec.core import url_to_fs
 
         system, path = url_to_fs(self.place(name))
         return system, path
 
     def read(self, name: str) -> bytes | None:
-        """Return a record, if it is whole."""
+        """Return the record of a task; None where there is none, or it is not whole."""
         system, path = self.locate_record(name)
         try:
             content: bytes = system.cat_file(path)
@@ -229,7 +242,10 @@ class UrlStore(Store):
         return content if is_whole(name, content, line) else None
 
     def write(self, name: str, record: bytes) -> None:
-        """Keep a record; see :meth:`workhold.batch.store.Store.write`. A record that was cut short does not count."""
+        """Write a record and its checksum; raise InputError where they cannot be written.
+
+        A record that is cut short fails its checksum, and so does not count.
+        """
         system, path = self.locate_record(name)
         try:
             system.makedirs(path.rpartition("/")[0], exist_ok=True)
@@ -240,19 +256,20 @@ class UrlStore(Store):
 
     @contextmanager
     def open_record(self, name: str) -> Iterator[Path]:
+        """Yield the path of a temporary file with the record of a task."""
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             path = Path(folder) / f"{name}.json"
             path.write_bytes(self.read(name) or b"")
             yield path
 
 
-def store_at(url: str) -> Store:
-    """Return the store at a URL, or in a folder of this machine's disks, which all workers see.
+def open_store(url: str) -> RecordStore:
+    """Return the store at a URL, or in a folder, which all workers must see.
 
     Raises
     ------
     InputError
-        For a URL of a kind that cannot be used here, or where nothing can be kept.
+        For a URL that fsspec cannot use here.
     """
     if "://" not in url:
         return FolderStore(Path(url).absolute())

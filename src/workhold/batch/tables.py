@@ -15,9 +15,9 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.batch.durations import Measured
-from workhold.batch.run import Job
-from workhold.batch.store import Store, parse_record
+from workhold.batch.durations import TaskDurations
+from workhold.batch.run import BatchJob
+from workhold.batch.store import RecordStore, parse_record
 from workhold.errors import make_encodable
 from workhold.files.atomic import write_binary_file, write_text_file
 from workhold.files.result.strapped_text import is_strapped
@@ -76,19 +76,22 @@ AddRows = Callable[[Sequence[Row]], None]
 class JobRow:
     """A job with its row in the table of results, and the rows of its best fixtures."""
 
-    job: Job
+    job: BatchJob
     row: Row
     best: Sequence[Row]
 
-    def read_job_result(self, store: Store) -> Result:
-        """Return the result of a job that is done, as the command that shows it would read it."""
+    def read_job_result(self, store: RecordStore) -> Result:
+        """Return the result of a job that is done, read from its record."""
         from workhold.files.result.reader import read_result
 
         with store.open_record(self.job.name) as path:
             return read_result(path)
 
 
-def list_job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[JobRow]:
+def list_job_rows(jobs: Sequence[BatchJob], store: RecordStore, measured: TaskDurations) -> Iterator[JobRow]:
+    """Yield each job in order with its row of results and the
+    rows of its best fixtures, from its record if it has one.
+    """
     for job in jobs:
         part, query = job.part, job.held_in.query
         listed = part.request.listed
@@ -114,7 +117,10 @@ def list_job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iter
         yield JobRow(job, row, best)
 
 
-def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> list[Row]:
+def take_record(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob) -> list[Row]:
+    """Fill a job's row from its record, in place,
+    and return the rows of its best fixtures; [] for a refusal.
+    """
     if record["refusal"]:
         row |= {"state": "refused", "reason": record["refusal"]}
         return []
@@ -157,7 +163,9 @@ def is_held_by_friction(fixture: Mapping[str, Any]) -> bool | None:
 
 
 def make_jaws_row(fixture: Mapping[str, Any]) -> Row:
-    """Return the row of a fixture that flat jaws hold; it has no holes, and no figures of pegs."""
+    """Return the row of a fixture between flat jaws, from its entry in a result file;
+    it has no holes and no peg figures.
+    """
     faces = [number for jaw in ("fixed", "moving") for number in fixture[jaw]["segments"]]
     return {
         "type": fixture["type"],
@@ -169,7 +177,8 @@ def make_jaws_row(fixture: Mapping[str, Any]) -> Row:
     }
 
 
-def make_fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
+def make_fixture_row(fixture: Mapping[str, Any], job: BatchJob) -> Row:
+    """Return the row of a fixture from its entry in a result file."""
     from workhold.files.result.fixture_forms import collect_seating_figures
     from workhold.files.result.reader import read_peg_place
 
@@ -182,7 +191,7 @@ def make_fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
     holes = []
     for peg in fixture["pegs"]:
         carrier, *place = read_peg_place(peg, direction if directions is None else peg.get("direction"))
-        holes.append(carriers[carrier].place_name(*place))
+        holes.append(carriers[carrier].name_place(*place))
     row: Row = {
         "type": fixture["type"],
         "direction": direction,
@@ -201,17 +210,20 @@ def make_fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
 
 
 def has_parquet() -> bool:
+    """Return whether pyarrow is installed."""
     return find_spec("pyarrow") is not None
 
 
 def list_table_names() -> tuple[str, str]:
-    """Return the files of the two tables, as they can be written here."""
+    """Return the names of the two tables' files, as Parquet where pyarrow is installed, else as CSV."""
     ending = "parquet" if has_parquet() else "csv"
     return f"results.{ending}", f"best.{ending}"
 
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
-    """Write both tables of a folder and passes the rows on; files take their names at the end."""
+    """Yield the rows unchanged while writing them to both tables in a folder;
+    the files are there once all are taken.
+    """
     table = write_parquet_table if has_parquet() else write_csv_table
     with ExitStack() as files:
         add_results, add_best = (
@@ -221,6 +233,7 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
         waiting: list[JobRow] = []
 
         def add_waiting() -> None:
+            """Write the rows that wait."""
             add_results([one.row for one in waiting])
             add_best([row for one in waiting for row in one.best])
             waiting.clear()
@@ -234,6 +247,9 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
 
 
 def convert_cell(value: Any) -> Any:
+    """Return a value as it stands in CSV: "true" or "false",
+    a number with 12 digits, or text that can be encoded.
+    """
     if isinstance(value, str):
         return make_encodable(value)
     if isinstance(value, bool):
@@ -243,7 +259,7 @@ def convert_cell(value: Any) -> Any:
 
 @contextmanager
 def write_csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
-    """Yield a table as comma-separated values, as a function that adds rows to it."""
+    """Yield a function that adds rows to a table of comma-separated values."""
     with write_text_file(path) as stream:
         writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
         writer.writeheader()
@@ -256,7 +272,7 @@ def write_csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows
 
 @contextmanager
 def write_parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
-    """Yield a table as Parquet, as a function that adds rows to it; the same rows give the same bytes."""
+    """Yield a function that adds rows to a Parquet table; the same rows give the same bytes."""
     import pyarrow
     from pyarrow import parquet
 

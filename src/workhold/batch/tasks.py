@@ -43,14 +43,14 @@ from workhold.model.result import Result
 from workhold.version import ANSWERS, __version__
 
 __all__ = [
-    "Answering",
+    "QueryTask",
     "Outcome",
-    "Queue",
-    "Reading",
+    "TaskQueue",
+    "DrawingTask",
     "Task",
-    "Watcher",
+    "TaskObserver",
     "run_task",
-    "name_of",
+    "make_task_name",
     "identify_program",
 ]
 
@@ -62,14 +62,17 @@ LETTERS = 32
 
 @cache
 def identify_program() -> str:
-    """Return the program's version, and a hash of what in it decides outcomes: equal on every machine."""
+    """Return the version of the program and a hash of all in it that decides outcomes;
+    equal on every machine.
+    """
     numbers = sorted((name, value) for name, value in vars(conventions).items() if name.isupper())
     content = repr((ANSWERS, FORMAT, PART, REFUSAL, numbers))
     return f"{__version__} {sha256(content.encode()).hexdigest()[:LETTERS]}"
 
 
-def name_of(*content: Any) -> str:
-    """Return the name of a task of this program, from bytes and plain data.
+def make_task_name(*content: Any) -> str:
+    """Return the name of a task:
+    a hash of this program and of bytes and plain data, in order, as 32 hexadecimal digits.
 
     >>> name_of(b"part", {"best": 3}) == name_of(b"part", {"best": 3}), len(name_of())
     (True, 32)
@@ -99,26 +102,26 @@ class Task:
 
     @property
     def most_seconds(self) -> float:
-        """Seconds within which it is done or will never be, whatever else is allowed."""
+        """Seconds within which the task is done or never will be; inf without such a limit."""
         return inf
 
     def prepare(self) -> None:
-        """Load what the work needs.
+        """Import what the work needs.
 
         Raises
         ------
         InputError
-            When this machine lacks something.
+            When this machine lacks a library or anything else that the work needs.
         """
         raise NotImplementedError
 
     def make_record(self) -> bytes:
-        """Do the work; refuse what cannot be read or asked."""
+        """Return the record of the work; raise InputError for what cannot be read or asked."""
         raise NotImplementedError
 
 
 @frozen
-class Reading(Task):
+class DrawingTask(Task):
     """Reads a drawing.
 
     Parameters
@@ -134,16 +137,18 @@ class Reading(Task):
 
     @property
     def most_seconds(self) -> float:
-        """Ten times the processor time after which readers give a file up, for a machine that is busy."""
+        """Ten times the processor time after which readers give up the file,
+        which allows for a busy machine.
+        """
         return MOST_BUSY * max(one.allow_seconds_for(len(self.content)) or 0.0 for one in LIMITS.values())
 
     def prepare(self) -> None:
-        """Load the readers' kernels."""
+        """Import the readers' kernels."""
         import workhold.geometry.loop
         import workhold.kernels.base.distance  # noqa: F401
 
     def make_record(self) -> bytes:
-        """Return the part; see :meth:`Task.make_record`."""
+        """Return the record of the part; raise InputError where it cannot be read."""
         from workhold.files.part_list import ListedPart, read_listed
 
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
@@ -157,7 +162,7 @@ class Reading(Task):
 
 
 @frozen
-class Answering(Task):
+class QueryTask(Task):
     """Finds the fixtures of a part in a toolkit.
 
     Parameters
@@ -172,10 +177,11 @@ class Answering(Task):
     best: int
 
     def prepare(self) -> None:
+        """Import the search."""
         import workhold.search.design  # noqa: F401
 
     def make_record(self) -> bytes:
-        """Return the result file; see :meth:`Task.make_record`."""
+        """Return the result file with the best fixtures; raise InputError for what cannot be asked."""
         from workhold.files.result.writer import write_result_text
         from workhold.model.notes import Many
         from workhold.search.design import answer
@@ -190,7 +196,7 @@ class Answering(Task):
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             kept = FirstFixtures(self.best, Path(folder))
             result = answer(query, threads=1, sink=kept)
-        table = FixtureTable.empty(query.toolkit) if kept.table is None else kept.table
+        table = FixtureTable.make_empty(query.toolkit) if kept.table is None else kept.table
         made = evolve(kept.result or result, query=evolve(query, best=self.best), table=table)
         return "".join(write_result_text(made)).encode()
 
@@ -213,22 +219,25 @@ class FirstFixtures:
     result: Result | None = None
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Take them, best first."""
+        """Keep the first ``most`` fixtures of an answer,
+        whose ``tables`` come best first; ``listed`` is not used.
+        """
         self.result = evolve(result, seating=result.seating[: self.most])
         for table in tables:
             first = table.take(np.arange(min(self.most - self.count, len(table))))
-            self.table = first if self.table is None else FixtureTable.joined([self.table, first])
+            self.table = first if self.table is None else FixtureTable.concatenate([self.table, first])
             if self.count == self.most:
                 return
 
     @property
     def count(self) -> int:
+        """Number of fixtures kept."""
         return 0 if self.table is None else len(self.table)
 
 
 @frozen
 class Outcome:
-    """What came of a task.
+    """Outcome of a task.
 
     Parameters
     ----------
@@ -250,7 +259,9 @@ class Outcome:
 
 
 def run_task(task: Task, worker: str = "") -> Outcome:
-    """Do a task, whatever comes of it."""
+    """Return the outcome of a task that is done here;
+    errors become a refusal's record or a failure, and are not raised.
+    """
     start = perf_counter()
     record, failure, has_no_room = None, "", False
     try:
@@ -284,9 +295,8 @@ class UnfitWorkerError(WorkholdError):
 
 
 def make_ready(task: Task) -> None:
-    """Prepare for a task.
-
-    Raises UnfitWorkerError when the worker has another program, or lacks something.
+    """Prepare this process for a task;
+    raise UnfitWorkerError where its program is another one or lacks something.
     """
     if task.program != identify_program():
         raise UnfitWorkerError(
@@ -299,24 +309,25 @@ def make_ready(task: Task) -> None:
         raise UnfitWorkerError(str(error)) from error
 
 
-class Watcher(Protocol):
-    """Who looks on."""
+class TaskObserver(Protocol):
+    """An observer of workers."""
 
     def note_begun(self, worker: str, title: str) -> None:
-        """Note that a worker begins with a task."""
+        """Note that a worker has begun a task with this title."""
 
     def note_ended(self, worker: str) -> None:
         """Note that a worker has nothing to do, or has ended."""
 
     def notify(self, sentence: str) -> None:
-        """Pass on a sentence about what happened, such as the death of a worker."""
+        """Pass on a sentence about an event, such as the death of a worker."""
 
 
-class Queue(Protocol):
-    """What gives tasks to workers."""
+class TaskQueue(Protocol):
+    """A queue that gives tasks to workers."""
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Do tasks, taken in their order when there is a worker for them; outcomes come as they do.
+        """Yield the outcomes of tasks as they come;
+        tasks are taken in their order when a worker is free for them.
 
         Parameters
         ----------
@@ -325,5 +336,5 @@ class Queue(Protocol):
         Raises
         ------
         InputError
-            When there are no workers and there will be none.
+            When there are no workers and none can be started.
         """

@@ -21,7 +21,7 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.tasks import Outcome, Task, Watcher, run_task
+from workhold.batch.tasks import Outcome, Task, TaskObserver, run_task
 from workhold.errors import InputError
 from workhold.web.worker import discard_folders, run_tasks
 
@@ -40,7 +40,9 @@ ENDLESS = 1e8
 
 
 def compute_memory_share(workers: int) -> int:
-    """Return the bytes for each of some workers: an equal share of this machine's memory, but enough to work with."""
+    """Return the bytes for each of ``workers``:
+    an equal share of this machine's memory, at least :data:`LEAST_MEMORY`.
+    """
     try:
         whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
@@ -49,6 +51,7 @@ def compute_memory_share(workers: int) -> int:
 
 
 def run_worker(connection: Connection, memory_bytes: int) -> None:
+    """Run tasks that come through a pipe until it ends; the main function of a worker process."""
     run_tasks(connection, memory_bytes, {"task": lambda task, _: run_task(task)}, lambda: None)
 
 
@@ -65,7 +68,7 @@ class Worker:
     ends_at: float = inf
 
     def end(self) -> None:
-        """End the process at once and let go of it and of what it wrote for a time."""
+        """End the process at once, close its pipe and remove its temporary folder."""
         self.process.kill()
         self.process.join()
         with suppress(OSError):
@@ -86,7 +89,7 @@ class LocalWorkers:
     """
 
     count: int
-    watcher: Watcher
+    watcher: TaskObserver
     memory_bytes: int | None = None
     seconds: float = ENDLESS
     workers: list[Worker] = field(factory=list, init=False)
@@ -100,7 +103,7 @@ class LocalWorkers:
             self.workers.pop().end()
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Yield the outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
+        """Yield the outcomes of tasks as they come; see :class:`workhold.batch.tasks.TaskQueue`."""
         waiting: deque[Task] = deque()
         deaths = Counter[str]()
         while not stop.is_set():
@@ -123,7 +126,7 @@ class LocalWorkers:
             self.drop(one)
 
     def end_late_workers(self) -> Iterator[Outcome]:
-        """End the workers whose tasks take longer than they may, and say so."""
+        """End the workers whose tasks have run out of time, and yield the failures of these tasks."""
         for one in [one for one in self.workers if one.task is not None and monotonic() > one.ends_at]:
             task = one.task
             assert task is not None
@@ -138,6 +141,7 @@ class LocalWorkers:
             yield Outcome(task.name, None, words, one.seconds, one.title)
 
     def hand_out(self, waiting: deque[Task]) -> None:
+        """Give waiting tasks to idle workers, and start workers for the rest, up to ``count``."""
         for one in self.workers:
             if waiting and one.is_ready and one.task is None:
                 self.give(one, waiting.popleft())
@@ -146,12 +150,14 @@ class LocalWorkers:
             self.workers.append(self.start_worker(self.find_free_title()))
 
     def find_free_title(self) -> str:
+        """Return the first of "worker 1", "worker 2" … that no worker has."""
         taken = {one.title for one in self.workers}
         return next(
             title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken
         )
 
     def start_worker(self, title: str) -> Worker:
+        """Return a worker whose process is started and not ready yet."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         memory = compute_memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
@@ -162,7 +168,9 @@ class LocalWorkers:
         return Worker(title, process, ours)
 
     def give(self, one: Worker, task: Task) -> None:
-        """Give a task to a worker; that a dead one cannot take it shows when it is heard."""
+        """Send a task to an idle worker and start its clock;
+        a dead worker is not noticed here, but when it is next waited for.
+        """
         one.task, one.seconds = task, min(self.seconds, task.most_seconds)
         one.ends_at = monotonic() + one.seconds
         self.watcher.note_begun(one.title, task.title)
@@ -170,12 +178,16 @@ class LocalWorkers:
             one.connection.send((1, "task", ENDLESS, task))
 
     def wait_for_workers(self) -> list[Worker]:
-        """Return the workers that have something to say, or are no more, after a moment at most."""
+        """Return the workers that have sent something or ended, after at most :data:`LOOK` seconds."""
         ready = wait([one.connection for one in self.workers], LOOK)
         return [one for one in self.workers if one.connection in ready]
 
     def receive_outcome(self, one: Worker) -> Outcome | None:
-        """Return what a worker says: an outcome; None when it is ready for the first time, or is no more."""
+        """Return the outcome that a worker has sent;
+        None where it says that it is ready, or has ended and is dropped.
+
+        Raises InputError where too many workers in a row end before they are ready.
+        """
         try:
             kind, _, value = one.connection.recv()
         except Exception:
@@ -196,13 +208,13 @@ class LocalWorkers:
         return evolve(outcome, worker=one.title)
 
     def drop(self, one: Worker) -> None:
-        """Close the pipe to a worker, which ends it."""
+        """End a worker and remove it."""
         self.workers.remove(one)
         one.end()
         self.watcher.note_ended(one.title)
 
     def refuse_failed_starts(self, one: Worker) -> None:
-        """Raise an error when one worker after the other ends before it is ready."""
+        """Count a worker that ended before it was ready; raise InputError when too many do so in a row."""
         self.failed_starts += 1
         if self.failed_starts >= MOST_FAILED_STARTS:
             raise InputError(
@@ -211,7 +223,9 @@ class LocalWorkers:
             )
 
     def replace_lost_worker(self, one: Worker, task: Task, times: int) -> Outcome | None:
-        """Report a worker that died during a task, and fail the task if it has been tried before."""
+        """Notify the watcher that a worker died during a task;
+        return the task's failure if it has been tried before, else None.
+        """
         how = explain_worker_end(one)
         if times < MOST_TRIES:
             self.watcher.notify(
@@ -229,13 +243,16 @@ class LocalWorkers:
 
 
 def explain_worker_end(one: Worker) -> str:
+    """Return how a process ended, such as "by signal 9" or "with code 1"."""
     code = one.process.exitcode
     return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
 
 
 @contextmanager
 def block_interrupts_in_children() -> Iterator[None]:
-    """Block Ctrl-C for processes started meanwhile, from their first moment; this one hears it later."""
+    """Make processes that are started within the block never receive Ctrl-C;
+    this process receives it after the block.
+    """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -44,8 +44,8 @@ __all__ = [
     "read_benchmark_file",
     "load_manifest",
     "make_set_query",
-    "set_named",
-    "set_text",
+    "find_set",
+    "make_set_text",
     "load_sets",
     "compute_checksums",
 ]
@@ -66,14 +66,14 @@ SetText = tuple[dict[str, Any], list[str]]
 
 @frozen
 class SetEntry:
-    """What the manifest says of a set.
+    """The manifest's entry of a set.
 
     Parameters
     ----------
     name : of the set, by which files and commands name it.
     part : name of the workpiece.
-    toolkit : its kind and the fields that differ from what is usual, as :func:`toolkit_of` takes them.
-    listing : of two clamps, "all"; None for other toolkits.
+    toolkit : its kind and the fields that differ from the defaults, as ``make_toolkit`` takes them.
+    listing : "all" for two clamps; None for other toolkits.
     reason : why it is in the benchmark.
     counts : how many fixtures of each type the complete list has.
     sums : checksums, see :func:`compute_checksums`.
@@ -89,17 +89,18 @@ class SetEntry:
 
     @property
     def size(self) -> int:
-        """How many fixtures the complete list has."""
+        """The number of fixtures in the complete list."""
         return sum(self.counts.values())
 
 
 def read_benchmark_file(name: str) -> bytes:
-    """Return the content of a file of the benchmark, such as ``check.py`` or ``parts/kite.json``."""
+    """Return the bytes of a file of the benchmark, such as ``check.py`` or ``parts/kite.json``."""
     return (files("workhold") / "data" / HOME).joinpath(*name.split("/")).read_bytes()
 
 
 @cache
 def load_manifest() -> Mapping[str, Any]:
+    """Return the manifest of the benchmark, parsed from JSON; cached."""
     content: dict[str, Any] = json.loads(read_benchmark_file(MANIFEST))
     return content
 
@@ -121,8 +122,8 @@ def load_sets() -> tuple[SetEntry, ...]:
     )
 
 
-def set_named(name: str) -> SetEntry:
-    """Return the set of a name.
+def find_set(name: str) -> SetEntry:
+    """Return the set with this name.
 
     Raises
     ------
@@ -138,7 +139,13 @@ def set_named(name: str) -> SetEntry:
 
 
 def make_set_query(entry: SetEntry) -> Query:
-    """Return what is asked to make the list of a set; refuse a workpiece's file that is not the manifest's."""
+    """Return the query whose complete result is the list of a set.
+
+    Raises
+    ------
+    InputError
+        When the workpiece's file is not the one in the manifest.
+    """
     content = read_benchmark_file(f"parts/{entry.part}.json")
     if sha256(content).hexdigest() != load_manifest()["workpieces"][entry.part]["sha256"]:
         raise InputError(f"the benchmark's workpiece {entry.part} has been changed: install workhold again.")
@@ -147,24 +154,25 @@ def make_set_query(entry: SetEntry) -> Query:
     return Query(Workpiece.from_loops(part["name"], part["loops"]), toolkit, listing=entry.listing)
 
 
-def set_text(name: str, result: Result) -> SetText:
+def make_set_text(name: str, result: Result) -> SetText:
     """Return the head and the lines of a set's file, from the complete result of the set's query."""
     fixtures = [
         reduce_fixture(json.loads(line))
         for lines in write_fixture_lines(result.table, result.toolkit, result.workpiece)
         for line in lines
     ]
-    fixtures.sort(key=place_in_order)
+    fixtures.sort(key=make_order_key)
     return make_set_head(name, result), [json.dumps(one) for one in fixtures]
 
 
 def reduce_fixture(fixture: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a fixture of a result file with what a set says of it."""
+    """Return a fixture object of a result file with only the keys that a set's file has."""
     quality = {key: fixture["quality"][key] for key in FIGURE_KEYS if key in fixture["quality"]}
     return {key: fixture[key] for key in KEPT if key in fixture} | {"quality": quality}
 
 
-def place_in_order(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
+def make_order_key(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Return the sort key of a fixture object: type, directions, holes, pose, faces."""
     pegs = fixture["pegs"]
     pose = fixture["pose"]
     return (
@@ -177,6 +185,7 @@ def place_in_order(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def make_set_head(name: str, result: Result) -> dict[str, Any]:
+    """Return the head of a set's file, without fixtures, from a result."""
     said = result_head(result)
     key = next(key for key in TOOLKIT_KEYS if key in said)
     workpiece = {key: said["workpiece"][key] for key in ("name", "units", "loops")}
@@ -197,15 +206,16 @@ def make_set_head(name: str, result: Result) -> dict[str, Any]:
 
 
 def write_set_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
+    """Return the text of a set's file from its head and lines."""
     entries = "".join(f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
     return "{" + entries + '"fixtures": [\n' + ",\n".join(lines) + "\n]}\n"
 
 
 def compute_checksums(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
-    """Return the checksums (SHA-256) of a set, by what they are of.
+    """Return the checksums (SHA-256, in hexadecimal) of a set: "file", "fixtures" and "holes".
 
-    ``file`` is of the whole text, ``fixtures`` of the lines joined by line ends, and ``holes`` of what is
-    whole numbers in them. The last is the same on machines whose arithmetic rounds otherwise.
+    "file" is of the whole text, "fixtures" of the lines joined by line ends, and "holes" of the whole numbers
+    in them. The last is the same on machines whose arithmetic rounds otherwise.
     """
     return {
         "file": compute_sha256(write_set_text(head, lines)),
@@ -215,12 +225,14 @@ def compute_checksums(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str
 
 
 def write_holes_line(line: str) -> str:
-    """Return the whole numbers of a fixture: of every peg column, row and face."""
+    """Return the type, the directions and each peg's column, row and face of a fixture's line, as JSON
+    text.
+    """
     fixture = json.loads(line)
     pegs = [[peg.get("column"), peg.get("row"), peg["segment"]] for peg in fixture["pegs"]]
     return json.dumps([fixture["type"], fixture.get("directions", fixture.get("direction")), pegs])
 
 
 def compute_sha256(text: str) -> str:
-    """Return the SHA-256 of a text."""
+    """Return the SHA-256 of a text in UTF-8, in hexadecimal."""
     return sha256(text.encode("utf-8")).hexdigest()

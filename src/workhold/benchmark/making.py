@@ -14,13 +14,19 @@ from workhold.benchmark.catalogue import (
     COMMON,
     SetEntry,
     compute_checksums,
+    find_set,
     make_set_query,
+    make_set_text,
     read_benchmark_file,
-    set_named,
-    set_text,
     write_set_text,
 )
-from workhold.benchmark.matching import Comparison, Entry, Places, compare_places, read_entered_fixture
+from workhold.benchmark.matching import (
+    Comparison,
+    ListedPlaces,
+    Submission,
+    compare_places,
+    read_entered_fixture,
+)
 from workhold.errors import InputError
 from workhold.files.atomic import write_binary_file, write_bytes
 from workhold.search.design import answer
@@ -45,10 +51,10 @@ class MadeSet:
 
     Parameters
     ----------
-    entry : what the manifest says of it.
+    entry : its entry in the manifest.
     path : its file.
     counts : of its fixtures, by type.
-    differs : which checksums are not those of the manifest: "fixtures", "holes", "file".
+    differs : the names of checksums that are not those of the manifest: "fixtures", "holes", "file".
     """
 
     entry: SetEntry
@@ -58,12 +64,12 @@ class MadeSet:
 
     @property
     def size(self) -> int:
-        """How many fixtures were found."""
+        """The number of fixtures found."""
         return sum(self.counts.values())
 
     @property
     def is_same(self) -> bool:
-        """Whether the list is the one of the manifest, to the last digit or but for rounding."""
+        """Whether the list is the one of the manifest, apart from rounding."""
         return "holes" not in self.differs
 
 
@@ -72,7 +78,7 @@ def make_list(
 ) -> tuple[dict[str, Any], list[str]] | None:
     """Return the head and the lines of a set, from a search; None where that was cancelled."""
     result = answer(make_set_query(entry), threads=threads, cancel=cancel)
-    return set_text(entry.name, result) if result.complete else None
+    return make_set_text(entry.name, result) if result.complete else None
 
 
 def make_and_write_sets(
@@ -84,7 +90,9 @@ def make_and_write_sets(
     progress: Callable[[float, int], None] | None = None,
     cancel: Event | None = None,
 ) -> Iterator[MadeSet]:
-    """Make sets one after the other, and write each into a folder.
+    """Make sets one after the other, write each into a folder, and yield it.
+
+    Ends without a further set once the search is cancelled.
 
     Parameters
     ----------
@@ -113,7 +121,9 @@ def make_and_write_sets(
 
 
 def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
-    """Write manifest, checker, schemas and the workpieces of some sets into a folder."""
+    """Write manifest, checker, schemas and the workpieces of some sets into a
+    folder; make the folder if needed.
+    """
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     for name in (*COMMON, *(f"parts/{part}.json" for part in {one.part for one in chosen})):
         write_bytes(folder / name, read_benchmark_file(name))
@@ -130,7 +140,7 @@ def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> 
 
 
 def load_arrow() -> tuple[Any, Any]:
-    """Import pyarrow and its tables of Parquet.
+    """Return the modules ``pyarrow`` and ``pyarrow.parquet``.
 
     Raises
     ------
@@ -146,20 +156,23 @@ def load_arrow() -> tuple[Any, Any]:
 
 
 def compare_entry(
-    entry: Entry,
+    entry: Submission,
     tolerance: float,
     symmetric: bool,
     threads: int | None = None,
     cancel: Event | None = None,
 ) -> Comparison | None:
-    """Compare another program's list with the complete one, which is made anew; None where it is cancelled.
+    """Return the comparison of another program's list with the complete list,
+    which is made anew; None if cancelled.
+
+    ``tolerance`` and ``symmetric`` are those of ``matching.compare_places``.
 
     Raises
     ------
     InputError
         Where the list made here is not the one of the manifest.
     """
-    known = set_named(entry.set_name)
+    known = find_set(entry.set_name)
     query = make_set_query(known)
     made = make_list(known, threads, cancel)
     if made is None:
@@ -172,8 +185,8 @@ def compare_entry(
         )
     complete = [read_entered_fixture(json.loads(line)) for line in lines]
     return compare_places(
-        Places(query.workpiece, complete),
-        Places(query.workpiece, entry.fixtures),
+        ListedPlaces(query.workpiece, complete),
+        ListedPlaces(query.workpiece, entry.fixtures),
         tolerance,
         symmetric,
     )

@@ -38,10 +38,10 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "Comparison",
-    "Entered",
-    "EnteredPeg",
-    "Entry",
-    "Places",
+    "SubmittedFixture",
+    "SubmittedPeg",
+    "Submission",
+    "ListedPlaces",
     "compare_places",
     "read_entered_fixture",
     "read_entry",
@@ -62,7 +62,7 @@ Array = NDArray[np.float64]
 
 
 @frozen
-class EnteredPeg:
+class SubmittedPeg:
     """A peg of another program: its role, and the place of its centre in the toolkit's frame in mm."""
 
     role: str
@@ -71,29 +71,32 @@ class EnteredPeg:
 
     @property
     def push(self) -> tuple[float, float]:
+        """The unit vector in which the peg pushes the part, in the toolkit's
+        frame; (0, 0) for one that stands still.
+        """
         return PUSHES[self.role]
 
 
 @frozen
-class Entered:
+class SubmittedFixture:
     """A fixture of another program: its pegs and the pose of the part, in degrees and mm."""
 
-    pegs: tuple[EnteredPeg, ...]
+    pegs: tuple[SubmittedPeg, ...]
     theta_deg: float
     x: float
     y: float
 
 
 @frozen
-class Entry:
+class Submission:
     """Another program's list for a set."""
 
     set_name: str
-    fixtures: tuple[Entered, ...]
+    fixtures: tuple[SubmittedFixture, ...]
 
 
-def read_entry(path: Path, set_name: str | None = None) -> Entry:
-    """Read another program's list.
+def read_entry(path: Path, set_name: str | None = None) -> Submission:
+    """Return another program's list from a file in JSON or CSV.
 
     Parameters
     ----------
@@ -107,14 +110,14 @@ def read_entry(path: Path, set_name: str | None = None) -> Entry:
     try:
         text = read_text(path, LIMITS["list"], SAVED if path.suffix.lower() == ".csv" else "save it as UTF-8")
         if path.suffix.lower() == ".csv":
-            return Entry(set_name or path.stem, read_csv_rows(text))
+            return Submission(set_name or path.stem, read_csv_rows(text))
         return parse_entry(text, set_name or path.stem)
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from error
 
 
-def parse_entry(text: str, usual: str) -> Entry:
-    """Return the list of a text in JSON; ``usual`` is the set it is for where it does not say."""
+def parse_entry(text: str, usual: str) -> Submission:
+    """Return the list in a JSON text; ``usual`` is its set where the text does not name one."""
     try:
         content = parse_json(text)
     except InputError as error:
@@ -124,11 +127,15 @@ def parse_entry(text: str, usual: str) -> Entry:
     name = content.get("set", usual)
     if not isinstance(name, str):
         raise InputError("the set is no name: give it as a text.")
-    return Entry(name, tuple(read_numbered_fixture(n, one) for n, one in enumerate(content["fixtures"], 1)))
+    return Submission(
+        name, tuple(read_numbered_fixture(n, one) for n, one in enumerate(content["fixtures"], 1))
+    )
 
 
-def read_numbered_fixture(number: int, fixture: Any) -> Entered:
-    """Return a fixture of a list, whose number stands in the complaint."""
+def read_numbered_fixture(number: int, fixture: Any) -> SubmittedFixture:
+    """Return a fixture of a list from a JSON object; ``number`` names it in the InputError for a wrong
+    form.
+    """
     try:
         return read_entered_fixture(fixture)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -136,23 +143,31 @@ def read_numbered_fixture(number: int, fixture: Any) -> Entered:
         raise InputError(f"fixture {number}: {words}; give pegs with role, x and y, and the pose.") from error
 
 
-def read_entered_fixture(fixture: Mapping[str, Any]) -> Entered:
-    """Return a fixture of an object of JSON.
+def read_entered_fixture(fixture: Mapping[str, Any]) -> SubmittedFixture:
+    """Return a fixture from a JSON object.
 
-    Raises KeyError, TypeError or ValueError where it has not the form.
+    Raises KeyError, TypeError, AttributeError or ValueError where it does not have the form.
     """
     pose = fixture["pose"]
     pegs = tuple(
-        EnteredPeg(find_peg_role(peg, fixture.get("direction")), read_finite(peg["x"]), read_finite(peg["y"]))
+        SubmittedPeg(
+            find_peg_role(peg, fixture.get("direction")), read_finite(peg["x"]), read_finite(peg["y"])
+        )
         for peg in fixture["pegs"]
     )
     if not pegs:
         raise ValueError("it has no pegs")
-    return Entered(pegs, read_finite(pose["theta_deg"]), read_finite(pose["x"]), read_finite(pose["y"]))
+    return SubmittedFixture(
+        pegs, read_finite(pose["theta_deg"]), read_finite(pose["x"]), read_finite(pose["y"])
+    )
 
 
 def find_peg_role(peg: Mapping[str, Any], direction: str | None) -> str:
-    """Return the role of a peg; of a clamp with the direction, which the peg says or the whole fixture."""
+    """Return the role of a peg, for a clamp with its direction ("clamp -x"),
+    which the peg or the fixture gives.
+
+    Raises KeyError without a role, ValueError for an unknown one.
+    """
     role = peg["jaw"] if "jaw" in peg else peg["role"]
     role = f"clamp {peg.get('direction', direction)}" if role == "clamp" else role
     if role not in PUSHES:
@@ -161,6 +176,7 @@ def find_peg_role(peg: Mapping[str, Any], direction: str | None) -> str:
 
 
 def read_finite(value: Any) -> float:
+    """Return a number from JSON or CSV as a float; ValueError for anything that is not a finite number."""
     number = nan if isinstance(value, bool) else read_number(value)
     if not isfinite(number):
         raise ValueError(f"{str(value)[:40]!r} is no number")
@@ -168,7 +184,8 @@ def read_finite(value: Any) -> float:
     return number
 
 
-def read_csv_rows(text: str) -> tuple[Entered, ...]:
+def read_csv_rows(text: str) -> tuple[SubmittedFixture, ...]:
+    """Return the fixtures of a CSV text, one from each row."""
     table = read_table(text, Budget(LIMITS["list"], len(text))) if text.strip() else None
     names = {*table.names} if table is not None else set[str]()
     pegs = sorted(
@@ -185,20 +202,24 @@ def read_csv_rows(text: str) -> tuple[Entered, ...]:
 
 
 def convert_row_to_object(row: CsvRow, pegs: Sequence[str]) -> dict[str, Any]:
-    """Return a row of CSV as an object of JSON; a peg without any cell is left out, as toolkits differ in pegs."""
+    """Return a CSV row as a JSON object of a fixture; pegs without any cell are left out."""
     given = [peg for peg in pegs if not row.cells.keys().isdisjoint((peg, f"{peg}_x", f"{peg}_y"))]
     return {
         "pegs": [
-            {"role": row.cells.get(peg, ""), "x": row.number(f"{peg}_x"), "y": row.number(f"{peg}_y")}
+            {
+                "role": row.cells.get(peg, ""),
+                "x": row.read_number(f"{peg}_x"),
+                "y": row.read_number(f"{peg}_y"),
+            }
             for peg in given
         ],
-        "pose": {key: row.number(key) for key in ("theta_deg", "x", "y")},
+        "pose": {key: row.read_number(key) for key in ("theta_deg", "x", "y")},
     }
 
 
 @define(frozen=True, eq=False)
-class Places:
-    """The fixtures of a list by their places, and the rotations of the part onto itself.
+class ListedPlaces:
+    """The fixtures of a list with their places on the part.
 
     Parameters
     ----------
@@ -207,17 +228,18 @@ class Places:
     """
 
     part: Workpiece
-    entered: Sequence[Entered]
+    entered: Sequence[SubmittedFixture]
     places: list[Array] = field(init=False)
 
     @places.default
-    def all_places(self) -> list[Array]:
+    def compute_all_places(self) -> list[Array]:
+        """Return the place (P, 6) of each fixture, in the list's order."""
         points = np.concatenate([loop[:, :2] for loop in self.part.loops])
         scale = float(np.hypot(*np.ptp(points, axis=0)) / 2)
-        return [place_of(one, scale) for one in self.entered]
+        return [compute_fixture_place(one, scale) for one in self.entered]
 
     def list_images(self, place: Array) -> list[Array]:
-        """Return a place under all rotations of the part onto itself, the place itself first."""
+        """Return a place (P, 6) under all rotations of the part onto itself, the place itself first."""
         every = self.part.numbered
         faces = [face.segment for face in every.faces]
         kept = find_centroid_of_joints(faces)
@@ -230,8 +252,10 @@ class Places:
         return out
 
 
-def place_of(entered: Entered, scale: float) -> Array:
-    """Return the place (P, 6) of a fixture; directions are multiplied by the scale in mm."""
+def compute_fixture_place(entered: SubmittedFixture, scale: float) -> Array:
+    """Return the place (P, 6) of a fixture, see the glossary; directions and
+    axes have the length ``scale`` mm.
+    """
     theta = np.radians(entered.theta_deg)
     rows = []
     for peg in entered.pegs:
@@ -243,14 +267,14 @@ def place_of(entered: Entered, scale: float) -> Array:
 
 @frozen
 class Comparison:
-    """Another program's list beside the complete one.
+    """Another program's list compared with the complete one.
 
     Parameters
     ----------
-    listed, theirs : how many fixtures are in each.
-    found, missed : numbers of fixtures of the complete list, from 0.
-    extra : numbers of theirs that are no fixtures of it.
-    repeated : numbers of theirs that they list before.
+    listed, theirs : number of fixtures in the complete list and in theirs.
+    found, missed : indices of fixtures of the complete list, from 0.
+    extra : indices of theirs that are not in the complete list.
+    repeated : indices of theirs that they list before.
     """
 
     listed: int
@@ -262,17 +286,19 @@ class Comparison:
 
     @property
     def share(self) -> float:
-        """The part of the complete list that is found; 1 where that is empty."""
+        """The share of the complete list that is found; 1 where that list is empty."""
         return len(self.found) / self.listed if self.listed else 1.0
 
 
-def compare_places(complete: Places, theirs: Places, tolerance: float, symmetric: bool) -> Comparison:
-    """Compare another program's list with the complete one.
+def compare_places(
+    complete: ListedPlaces, theirs: ListedPlaces, tolerance: float, symmetric: bool
+) -> Comparison:
+    """Return how another program's list compares with the complete one.
 
-    The tolerance is how far in mm pegs and directions may be off, these at half the part's extent.
-    ``symmetric`` says whether a fixture stands for all that a rotation of the part carries it into.
+    ``tolerance`` is how far in mm pegs may be off, and directions at half the part's extent. ``symmetric``
+    says whether a fixture also stands for all that a rotation of the part onto itself carries it into.
     """
-    index = Index.from_places(complete.places, tolerance)
+    index = PlaceIndex.from_places(complete.places, tolerance)
     hits, met = set[int](), set[int | None]()
     extra, repeated = list[int](), list[int]()
     for number, place in enumerate(theirs.places):
@@ -296,14 +322,14 @@ def compare_places(complete: Places, theirs: Places, tolerance: float, symmetric
 
 
 @frozen(eq=False)
-class Index:
-    """Places sorted by the sum of their pegs' x, to look one up.
+class PlaceIndex:
+    """Places sorted by the sum of their pegs' x, for a search by place.
 
     Parameters
     ----------
     places : all of them.
-    sums : (N, 2) of their pegs' x and y.
-    order : (N,) by x.
+    sums : (N, 2) sums of their pegs' x and y.
+    order : (N,) indices sorted by the sum of x.
     tolerance : in mm.
     """
 
@@ -313,12 +339,17 @@ class Index:
     tolerance: float
 
     @classmethod
-    def from_places(cls, places: Sequence[Array], tolerance: float) -> Index:
+    def from_places(cls, places: Sequence[Array], tolerance: float) -> PlaceIndex:
+        """Return the index of places, in their given order."""
         sums = np.array([place[:, :2].sum(axis=0) for place in places]).reshape(-1, 2)
         return cls(places, sums, np.argsort(sums[:, 0], kind="stable"), tolerance)
 
     def find_nearest(self, place: Array) -> int | None:
-        """Return the number of the place nearest to one, if that is within the tolerance."""
+        """Return the index of the place nearest to ``place`` (P, 6) within the
+        tolerance; None where there is none.
+
+        Pegs are matched in any order; the distance is the largest difference of any coordinate.
+        """
         x, y = place[:, :2].sum(axis=0)
         room = self.tolerance * len(place)
         low, high = np.searchsorted(self.sums[self.order, 0], [x - room, x + room])

@@ -16,9 +16,9 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from workhold.bending.elastic import ElasticBody, PointForces, rigid_motions
+from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
 from workhold.bending.figures import Bending, BentPlace
-from workhold.bending.holding import ElasticHold, PadsBelow, hold_of_fixture
+from workhold.bending.holding import ElasticHold, PadsBelow, make_elastic_hold
 from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import BESIDE, make_disc, make_foot
@@ -75,8 +75,8 @@ class BendingQuestion:
     stiffness: float = np.inf
     below: dict[int, PadsBelow] = field(factory=dict)
 
-    def height_of(self, query: Query) -> float:
-        """The height of the part in mm.
+    def find_part_height(self, query: Query) -> float:
+        """Return the height of the part in mm.
 
         Raises
         ------
@@ -91,8 +91,8 @@ class BendingQuestion:
             raise InputError("how far a part bends depends on how thick it is: give its thickness.")
         return height
 
-    def force_on(self, fixture: Fixture, query: Query) -> tuple[float, bool]:
-        """The jaw force in N, and whether it is only stated because nobody knows one."""
+    def find_jaw_force(self, fixture: Fixture, query: Query) -> tuple[float, bool]:
+        """Return the jaw force in N, and whether it is a stated one because none is known."""
         given = query.jaw_force if self.jaw_force is None else self.jaw_force
         if given is not None:
             return given, False
@@ -218,7 +218,7 @@ def find_bendings(
         For a part of which nobody says how thick it is, that has no level face to lie on or cannot be meshed, and faces
         to be cut that there are not. Also when the extra ``bending`` is not installed.
     """
-    query, height = result.query, asked.height_of(result.query)
+    query, height = result.query, asked.find_part_height(result.query)
     cancel, tell = cancel or Event(), progress or tell_nobody
     refuse_unknown_faces(asked.faces, query.workpiece)
     tell(0.0, 0)
@@ -234,8 +234,8 @@ def find_bendings(
     held: list[HeldFixture] = []
     for row in rows:
         fixture = result[row]
-        force, is_stated = asked.force_on(fixture, query)
-        hold = hold_of_fixture(
+        force, is_stated = asked.find_jaw_force(fixture, query)
+        hold = make_elastic_hold(
             fixture,
             query.workpiece,
             query.toolkit,
@@ -354,7 +354,7 @@ def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPla
     for number in loads.chosen.tolist():
         footing = units.surface.find_footing(loads.points[number][None], None)
         patch = make_disc(units.surface.place(footing)[0], CUTTER_RADIUS, None)
-        pressing = [*(patch.press(axis) for axis in np.eye(3)), patch.twist()]
+        pressing = [*(patch.press(axis) for axis in np.eye(3)), patch.make_unit_moment()]
         wrenches = np.array([force.wrench for force in pressing]).T
         reads = units.add(patch.read(axis) for axis in np.eye(3))
         found.append(PressedPlace(patch.middle, units.add(pressing), reads, wrenches))
@@ -389,16 +389,18 @@ class SolvedLoads:
         self.responses: dict[int, Array] = {}
         self.readings: dict[tuple[int, int], float] = {}
 
-    def work_of(self, number: int) -> Array:
+    def compute_work(self, number: int) -> Array:
         """The work (S, 3) of a unit load or a reading on the unknowns of the surface."""
         if number not in self.works:
-            self.works[number] = self.body.spread(self.units.forces[number], self.units.footings[number])
+            self.works[number] = self.body.compute_work(
+                self.units.forces[number], self.units.footings[number]
+            )
         return self.works[number]
 
     def solve(self, number: int) -> Array:
         """How the surface moves (S, 3) under a unit load, solved when it is first asked."""
         if number not in self.responses:
-            self.responses[number] = self.body.respond([self.work_of(number)])[0]
+            self.responses[number] = self.body.respond([self.compute_work(number)])[0]
         return self.responses[number]
 
     def gather(self, numbers: Sequence[int], factors: Array) -> tuple[Sequence[int], Array]:
@@ -409,7 +411,9 @@ class SolvedLoads:
         number = self.sums.setdefault(key, -1 - len(self.sums))
         if number not in self.works:
             self.works[number] = np.asarray(
-                sum(factor * self.work_of(k) for k, factor in zip(numbers, factors.tolist(), strict=True))
+                sum(
+                    factor * self.compute_work(k) for k, factor in zip(numbers, factors.tolist(), strict=True)
+                )
             )
         return [number], np.ones(1)
 
@@ -430,7 +434,7 @@ class SolvedLoads:
         """What a reading says of the movement under a unit load."""
         pair = (read, number)
         if pair not in self.readings:
-            self.readings[pair] = float(np.einsum("sk,sk->", self.work_of(read), self.solve(number)))
+            self.readings[pair] = float(np.einsum("sk,sk->", self.compute_work(read), self.solve(number)))
         return self.readings[pair]
 
     def find_motion(self, one: HeldFixture, numbers: Sequence[int], factors: Array, gives: Array) -> Array:
@@ -446,13 +450,13 @@ class SolvedLoads:
     def clamp(self, one: HeldFixture) -> Array:
         """How the clamps of a fixture move the nodes of the surface (N, 3), laid against its locators."""
         values, motion = self.find_clamped(one)
-        return self.body.move_nodes(values) + rigid_motions(self.body.surface.nodes) @ motion
+        return self.body.move_nodes(values) + make_rigid_motions(self.body.surface.nodes) @ motion
 
     def clamp_on(self, one: HeldFixture, faces: NDArray[np.int64], shares: Array) -> Array:
         """How they move points (F, K, 3) of faces, by barycentric coordinates (K, 3)."""
         values, motion = self.find_clamped(one)
         points = self.body.surface.place_on(faces, shares)
-        rigid = (rigid_motions(points.reshape(-1, 3)) @ motion).reshape(points.shape)
+        rigid = (make_rigid_motions(points.reshape(-1, 3)) @ motion).reshape(points.shape)
         return self.body.move_on(values, faces, shares) + rigid
 
     def find_clamped(self, one: HeldFixture) -> tuple[Array, Array]:
@@ -465,7 +469,7 @@ class SolvedLoads:
         """How a place moves (3, V) under forces and a moment on it (4, V), with all that answers them."""
         answers = one.hold.answers @ place.wrenches @ vectors
         numbers = [*place.cuts, *one.numbers]
-        rigid = rigid_motions(place.middle[None])[0]
+        rigid = make_rigid_motions(place.middle[None])[0]
         moved = []
         for factors, answer in zip(np.vstack([vectors, answers]).T, answers.T, strict=True):
             motion = self.find_motion(one, numbers, factors, one.hold.gives @ answer)

@@ -28,7 +28,7 @@ from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import PartMesh
 from workhold.bending.surface import LATTICE, Footing, Surface
 
-__all__ = ["ElasticBody", "PointForces", "rigid_motions"]
+__all__ = ["ElasticBody", "PointForces", "make_rigid_motions"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -56,8 +56,8 @@ class PointForces:
         return np.concatenate([self.forces.sum(axis=0), moments.sum(axis=0)])
 
 
-def rigid_motions(points: Array) -> Array:
-    """Movements (N, 3, 6) of points (N, 3) by unit shifts along x, y, z and unit turns about them."""
+def make_rigid_motions(points: Array) -> Array:
+    """Return movements (N, 3, 6) of points (N, 3) by unit shifts along x, y, z and unit turns about them."""
     x, y, z = points.T
     zero, one = np.zeros(len(points)), np.ones(len(points))
     shifts = [np.stack([one if k == axis else zero for k in range(3)], axis=1) for axis in range(3)]
@@ -134,7 +134,7 @@ class ElasticBody:
         values = [own[face].CalcShape(x, y) for face, (x, y, _) in zip(faces, shares.tolist(), strict=True)]
         return np.array(values, np.float64).reshape(len(faces), -1)
 
-    def spread(self, forces: PointForces, footing: Footing | None = None) -> Array:
+    def compute_work(self, forces: PointForces, footing: Footing | None = None) -> Array:
         """The work (S, 3) that forces do on each unknown of the surface.
 
         Parameters
@@ -180,7 +180,7 @@ class ElasticBody:
 
         Parameters
         ----------
-        works : of each load the work (S, 3) on the unknowns of the surface, see :meth:`spread`.
+        works : of each load the work (S, 3) on the unknowns of the surface, see :meth:`compute_work`.
         """
         used, _ = self.surface_unknowns
         solver, load, answer = self.factorized
@@ -213,7 +213,7 @@ class ElasticBody:
         places = probe.vec.FV().NumPy().reshape(-1, 3).copy()
         # The first unknowns are those of corners; a constant field has no others.
         is_corner = np.arange(len(places)) < int(self.mesh.made.nv)
-        motions = rigid_motions(places)
+        motions = make_rigid_motions(places)
         motions[:, :, :3] *= is_corner[:, None, None]
         motions = motions.reshape(-1, 6)
         weighted = motions * np.repeat(is_corner, 3)[:, None]
@@ -253,7 +253,7 @@ class ElasticBody:
         second = int(np.linalg.norm(points - points[first], axis=1).argmax())
         along = points[second] - points[first]
         third = int(np.linalg.norm(np.cross(points - points[first], along), axis=1).argmax())
-        rows = rigid_motions(points[[first, second, third]] - points.mean(axis=0))
+        rows = make_rigid_motions(points[[first, second, third]] - points.mean(axis=0))
         rows[:, :, 3:] /= np.linalg.norm(along)
         choices = [
             [(0, 0), (0, 1), (0, 2), *((1, axis) for axis in range(3) if axis != left), (2, last)]

@@ -70,9 +70,9 @@ class BentPlace:
     tool: int | None = None
     load: int | None = None
 
-    def words(self, unit: Unit) -> str:
+    def describe(self, unit: Unit) -> str:
         """Size, error and place."""
-        place = ", ".join(unit.number(value, unit.decimals - 1) for value in self.at)
+        place = ", ".join(unit.format_number(value, unit.decimals - 1) for value in self.at)
         because = ""
         if self.line is not None:
             because = f", in line {self.line} with T{self.tool}"
@@ -81,8 +81,8 @@ class BentPlace:
         value, error = unit.format_small_length(self.value), unit.format_small_length(self.error)
         return f"{value} (give or take {error}) at ({place}){because}"
 
-    def as_data(self) -> dict[str, Any]:
-        """Plain data: lengths in mm."""
+    def to_data(self) -> dict[str, Any]:
+        """Return plain data: lengths in mm."""
         return {
             "value": self.value,
             "error": self.error,
@@ -139,9 +139,11 @@ class Bending:
         if self.is_stated:
             force = f"For each {unit.format_force(self.jaw_force)} of {mover} force"
         where = "the part" if self.faces is None else f"what is cut of the part ({self.faces})"
-        said = [f"{force} clamping bends {where} by {self.clamp_distortion.words(unit)}; that springs back."]
+        said = [
+            f"{force} clamping bends {where} by {self.clamp_distortion.describe(unit)}; that springs back."
+        ]
         if self.give is not None:
-            said.append(f"It gives at the cutter by up to {self.give.words(unit)}.")
+            said.append(f"It gives at the cutter by up to {self.give.describe(unit)}.")
         return said
 
     def list_warnings(self, limit: float | None, unit: Unit) -> list[str]:
@@ -163,16 +165,16 @@ class Bending:
             )
         return found
 
-    def as_data(self) -> dict[str, Any]:
-        """Plain data: lengths in mm, forces in N."""
+    def to_data(self) -> dict[str, Any]:
+        """Return plain data: lengths in mm, forces in N."""
         return {
             "material": self.material.name,
             "elastic_modulus": self.material.elastic_modulus,
             "poisson": self.material.poisson,
             "jaw_force": self.jaw_force,
             "is_stated": self.is_stated,
-            "clamp_distortion": self.clamp_distortion.as_data(),
-            "give": None if self.give is None else self.give.as_data(),
+            "clamp_distortion": self.clamp_distortion.to_data(),
+            "give": None if self.give is None else self.give.to_data(),
             "faces": self.faces,
             "elements": self.elements,
         }

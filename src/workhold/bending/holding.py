@@ -29,11 +29,11 @@ from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.loads import compute_shared_forces, find_contacts_on_part
 from workhold.statics.pins import PinRuns, compute_deflections, find_runs_on_solid
 
-__all__ = ["ElasticHold", "PadsBelow", "hold_of_fixture"]
+__all__ = ["ElasticHold", "PadsBelow", "make_elastic_hold"]
 
 Array = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
@@ -112,7 +112,7 @@ class ElasticHold:
         return np.concatenate([motion[:3], motion[3:] / self.size])
 
 
-def hold_of_fixture(
+def make_elastic_hold(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -124,7 +124,7 @@ def hold_of_fixture(
     stiffness: float = np.inf,
     below: PadsBelow | None = None,
 ) -> ElasticHold:
-    """How a fixture holds a part.
+    """Return the elastic hold of a part in a fixture.
 
     Parameters
     ----------
@@ -141,11 +141,11 @@ def hold_of_fixture(
             "how far straps bend a part is not worked out: leave bending out, or take a plate with clamps."
         )
     if fixture.hold is not None:
-        return hold_of_jaws(fixture, fixture.hold, foot, jaw_force, height, float(size))
+        return make_elastic_jaw_hold(fixture, fixture.hold, foot, jaw_force, height, float(size))
     if workpiece.solid is None:
         pressed_up_to = height if pressed_up_to is None else min(height, pressed_up_to)
-    touched = Touched.of(workpiece, toolkit)
-    matrices = touched.of_fixture(fixture, toolkit)
+    touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
+    matrices = touched.compute_for_fixture(fixture, toolkit)
     contacts, normals, *_ = find_contacts_on_part(fixture, workpiece, toolkit, touched, matrices)
     points = contacts + touched.center
     carriers = toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)
@@ -178,7 +178,7 @@ def hold_of_fixture(
         np.concatenate([strip.points for strip in strips]),
         float(size),
     )
-    return borne_from_below(held, foot, below)
+    return add_support_from_below(held, foot, below)
 
 
 def find_pressed_heights(
@@ -205,13 +205,13 @@ def find_flexibilities(
     """How far each contact gives way (P,) in mm for each N; nothing where nobody knows, and of tips and walls."""
     carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
-    runs = PinRuns.of(faces, carriers, workpiece, toolkit, points, pressed_up_to)
+    runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, points, pressed_up_to)
     found: Array = np.nan_to_num(compute_deflections(1.0, runs.middle[0], runs.diameter[0]))
     return found
 
 
-def borne_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow | None) -> ElasticHold:
-    """A hold with what bears the part from below, and what presses it down there."""
+def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow | None) -> ElasticHold:
+    """Return a hold with the supports below the part, and with the forces that press it down on them."""
     count = len(held.columns)
     more: tuple[PointForces, ...] = ()
     extra = np.zeros(0)
@@ -251,17 +251,17 @@ def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointFor
     return tuple(foot.press(UP, one) for one in factors), tuple(foot.press(-UP, one) for one in factors)
 
 
-def hold_of_jaws(
+def make_elastic_jaw_hold(
     fixture: Fixture, hold: JawHold, foot: LoadPatch, jaw_force: float, height: float, size: float
 ) -> ElasticHold:
-    """How two flat jaws hold a part: affine pressures on what they touch, of the least norm that balances."""
+    """Return the elastic hold of two flat jaws: affine pressures on what they touch, of the least norm that balances."""
     pose = fixture.pose.inverse
     columns: list[PointForces] = []
     normal_columns: list[list[int]] = []
     reads: tuple[PointForces, ...] = ()
     dents = []
     for patch, y, side in ((hold.fixed, 0.0, -1.0), (hold.moving, hold.opening, 1.0)):
-        points, areas = zip(*(rectangle_points(one, y, height) for one in patch.rectangles), strict=True)
+        points, areas = zip(*(sample_rectangle(one, y, height) for one in patch.rectangles), strict=True)
         there, weights = np.concatenate(points), np.concatenate(areas) / sum(map(np.sum, areas))
         x, up = there[:, 0] - weights @ there[:, 0], there[:, 2] - weights @ there[:, 2]
         turned = np.column_stack([pose.apply(there[:, :2]), there[:, 2]])
@@ -298,10 +298,10 @@ def hold_of_jaws(
     )
 
 
-def rectangle_points(
+def sample_rectangle(
     rectangle: tuple[float, float, float, float], y: float, height: float
 ) -> tuple[Array, Array]:
-    """Points of a rectangle on a jaw, in the vise's frame, and the area of each; a line is as wide as a peg's strip."""
+    """Return points of a rectangle on a jaw, in the vise's frame, and their areas; a line has a strip's width."""
     x0, x1, z0, z1 = rectangle
     z1 = min(z1, height)
     if x1 - x0 < PEG_WIDTH:

@@ -13,7 +13,7 @@ from workhold.bending.shape import PartToBend
 from workhold.bending.surface import Surface, find_surface
 from workhold.errors import InputError
 
-__all__ = ["PartMesh", "curve", "make_mesh"]
+__all__ = ["PartMesh", "curve_mesh", "make_mesh"]
 
 # Tetrahedra that a part is filled with, about, where its own shape does not ask for more.
 TETRAHEDRA = 1000
@@ -75,7 +75,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
             f"the part takes {mesh.ne:,} elements, and {MOST_TETRAHEDRA:,} are reckoned with at most: leave small fillets "
             "and holes out of the model."
         )
-    return curve(mesh)
+    return curve_mesh(mesh)
 
 
 def fill(shape: Any, size: float) -> Any:
@@ -87,7 +87,7 @@ def fill(shape: Any, size: float) -> Any:
         return whole.GenerateMesh(maxh=size, **COMMON, **MORE)
 
 
-def curve(mesh: Any) -> PartMesh:
+def curve_mesh(mesh: Any) -> PartMesh:
     """A mesh for the solver."""
     made = load_elements().solving.Mesh(mesh)
     made.Curve(2)

@@ -63,15 +63,15 @@ class LoadPatch:
         count = len(self.beside)
         return PointForces(self.beside, np.tile(direction / count, (count, 1)), self.outward)
 
-    def twist(self) -> PointForces:
-        """A moment of 1 N mm about the upright through the middle."""
+    def make_unit_moment(self) -> PointForces:
+        """Return a moment of 1 N mm about the upright through the middle."""
         arms = self.points - self.middle
         forces = np.column_stack([-arms[:, 1], arms[:, 0], np.zeros(len(arms))])
         return PointForces(self.points, forces / (arms[:, :2] ** 2).sum(), self.outward)
 
 
-def spaced(low: float, high: float, count: int) -> Array:
-    """The middles of so many equal pieces of an interval."""
+def compute_interval_middles(low: float, high: float, count: int) -> Array:
+    """Return the middles of ``count`` equal pieces of an interval."""
     return low + (np.arange(count) + 0.5) / count * (high - low)
 
 
@@ -85,7 +85,7 @@ def make_strip(point: tuple[float, float], normal: tuple[float, float], low: flo
     low, high : the heights between which it presses, in mm.
     """
     along = (-normal[1], normal[0])
-    heights = spaced(low, high, max(ACROSS, ceil((high - low) / ALONG)))
+    heights = compute_interval_middles(low, high, max(ACROSS, ceil((high - low) / ALONG)))
 
     def at(offsets: Array) -> Array:
         off, z = (one.ravel() for one in np.meshgrid(offsets, heights, indexing="ij"))
@@ -93,7 +93,7 @@ def make_strip(point: tuple[float, float], normal: tuple[float, float], low: flo
 
     half = PEG_WIDTH / 2
     return LoadPatch(
-        at(spaced(-half, half, ACROSS)),
+        at(compute_interval_middles(-half, half, ACROSS)),
         at(np.array([-half - BESIDE, half + BESIDE])),
         np.array([*normal, 0.0]),
     )
@@ -122,7 +122,8 @@ def make_rectangle(corner: Array, sides: tuple[Array, Array], spacing: float = A
     lengths = [float(np.linalg.norm(side)) for side in sides]
     counts = [max(2, ceil(length / spacing)) for length in lengths]
     first, second = (
-        one.ravel() for one in np.meshgrid(*(spaced(0.0, 1.0, n) for n in counts), indexing="ij")
+        one.ravel()
+        for one in np.meshgrid(*(compute_interval_middles(0.0, 1.0, n) for n in counts), indexing="ij")
     )
     points = corner + first[:, None] * sides[0] + second[:, None] * sides[1]
     return points, np.full(len(points), lengths[0] * lengths[1] / len(points))

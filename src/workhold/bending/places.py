@@ -87,7 +87,7 @@ class CutterLoads:
 
 def list_cutter_loads(query: Query, height: float) -> CutterLoads | None:
     """What presses on the part of a query, of a height in mm: its program's tools, and its loads; None without any."""
-    rows = [*rows_of_program(query, height), *rows_of_loads(query, height)]
+    rows = [*list_program_rows(query, height), *list_load_rows(query, height)]
     if not rows:
         return None
     points, force, torque, least, most, middle, half, row = (np.array(one) for one in zip(*rows, strict=True))
@@ -96,8 +96,8 @@ def list_cutter_loads(query: Query, height: float) -> CutterLoads | None:
     )
 
 
-def rows_of_program(query: Query, height: float) -> list[tuple[Any, ...]]:
-    """What each cut of a program does, at places along it."""
+def list_program_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
+    """Return the forces of each cut of a program, at places along it."""
     if query.program is None:
         return []
     pieces = CuttingPieces.from_program(query.program, height)
@@ -122,8 +122,8 @@ def rows_of_program(query: Query, height: float) -> list[tuple[Any, ...]]:
     return rows
 
 
-def rows_of_loads(query: Query, height: float) -> list[tuple[Any, ...]]:
-    """What each load does, at each of its points."""
+def list_load_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
+    """Return the forces of each load, at each of its points."""
     rows: list[tuple[Any, ...]] = []
     for number, load in enumerate(query.loads):
         low, high = np.radians(load.directions)

@@ -45,11 +45,11 @@ class PrismShape:
         shapes = load_elements().shapes
         pieces = []
         for loop in outer:
-            face, around = face_within(loop), LoopShape.of(loop)
+            face, around = make_face(loop), LoopShape.from_segments(loop)
             for hole in holes:
-                inside = LoopShape.of(hole)
+                inside = LoopShape.from_segments(hole)
                 if encloses(around, inside):
-                    face -= face_within(hole)
+                    face -= make_face(hole)
             pieces.append(face)
         if len(pieces) > 1:
             raise InputError(
@@ -77,12 +77,12 @@ class KeptShape:
             return load_elements().shapes.OCCGeometry(str(path)).shape
 
 
-def face_within(loop: Sequence[Segment]) -> Any:
-    """The flat face within a loop, whichever way it runs."""
+def make_face(loop: Sequence[Segment]) -> Any:
+    """Return the flat face within a loop, whichever way it runs."""
     if compute_signed_area(loop) < 0:
         loop = [reverse_segment(segment) for segment in reversed(loop)]
     return load_elements().shapes.Face(
-        load_elements().shapes.Wire([edge for one in loop for edge in edges_of(one)])
+        load_elements().shapes.Wire([edge for one in loop for edge in make_edges(one)])
     )
 
 
@@ -93,8 +93,8 @@ def reverse_segment(segment: Segment) -> Segment:
     return type(segment)(segment.end, segment.start)
 
 
-def edges_of(segment: Segment) -> list[Any]:
-    """The edges of a segment at z = 0; of an arc two halves, since a whole circle has no ends."""
+def make_edges(segment: Segment) -> list[Any]:
+    """Return the edges of a segment at z = 0; of an arc two halves, since a whole circle has no ends."""
     shapes = load_elements().shapes
 
     def point(place: Point) -> Any:
@@ -103,6 +103,6 @@ def edges_of(segment: Segment) -> list[Any]:
     if not isinstance(segment, Arc):
         return [shapes.Segment(point(segment.start), point(segment.end))]
     half = segment.sign * segment.half_sweep
-    places = [point(segment.at(share * half)) for share in (-1.0, -0.5, 0.0, 0.5)]
+    places = [point(segment.compute_point(share * half)) for share in (-1.0, -0.5, 0.0, 0.5)]
     last = places[0] if segment.is_full else point(segment.end)
     return [shapes.ArcOfCircle(*places[:3]), shapes.ArcOfCircle(*places[2:], last)]

@@ -64,7 +64,7 @@ class LoadArguments(ToolArguments):
     picture: bool = Field(default=False, description="show a picture, too")
 
     def to_load_arguments(self) -> dict[str, Any]:
-        """Return the arguments of :func:`workhold.load` but the part."""
+        """Return the keyword arguments of :func:`workhold.load` that were given, without the part."""
         return collect_given_values(self, OF_READING)
 
 
@@ -117,7 +117,7 @@ class ProgramArguments(ToolArguments):
     )
 
     def to_read_arguments(self, height: float | None) -> dict[str, Any]:
-        """Return the arguments of :meth:`workhold.Program.read`.
+        """Return the keyword arguments of :meth:`workhold.Program.read`, without the path.
 
         Parameters
         ----------
@@ -201,6 +201,7 @@ class SheetArguments(ToolArguments):
 
 
 def check_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
+    """Return the arguments of a tool checked by its form; raise InputError, which names the first fault."""
     try:
         return form.model_validate(given or {})
     except ValidationError as error:

@@ -31,7 +31,7 @@ from workhold.errors import InputError
 from workhold.files.declared_forms import collect_given_values
 from workhold.files.input_forms import LoadTable
 from workhold.files.loads_file import load_from_words
-from workhold.files.part.load import Loaded, read_workpiece, refuse_unsure_numbers
+from workhold.files.part.load import LoadedPart, read_workpiece, refuse_unsure_numbers
 from workhold.files.result.save import save
 from workhold.files.toolkit_file import load_toolkit
 from workhold.fixels.kinds import ALIASES, KINDS, make_toolkit
@@ -54,9 +54,9 @@ from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import (
     describe_explanation,
     describe_fixture,
+    describe_load_case,
     describe_part,
     describe_result,
-    load_case_data,
 )
 from workhold.units import MILLIMETRE
 
@@ -64,8 +64,8 @@ __all__ = ["TOOLS"]
 
 
 @frozen
-class Answer:
-    """What a tool says, as plain data, and a picture as SVG text where one was asked for."""
+class ToolAnswer:
+    """Answer of a tool: plain data, and a picture as SVG text where one was asked for."""
 
     data: dict[str, Any]
     picture: str | None = None
@@ -84,19 +84,23 @@ class AgentTool:
 
     words: str
     arguments: type[ToolArguments]
-    run: Callable[[Any, Path, Event], Answer]
+    run: Callable[[Any, Path, Event], ToolAnswer]
 
 
-def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
-    """Read a part and list its faces."""
+def load(asked: LoadArguments, folder: Path, cancel: Event) -> ToolAnswer:
+    """Return a part as plain data with its faces, and its picture if asked for."""
     loaded = read_workpiece(asked.part, **asked.to_load_arguments())
-    return Answer(
+    return ToolAnswer(
         describe_part(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
     )
 
 
-def run_design_tool(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
-    """Find the fixtures, write them all to a file and return the best."""
+def run_design_tool(asked: DesignArguments, folder: Path, cancel: Event) -> ToolAnswer:
+    """Return the best fixtures as plain data, after writing all that were found to a result file.
+
+    The file is a new one in ``folder`` unless the arguments name one. ``cancel`` ends the search, which then
+    is incomplete.
+    """
     out = asked.out or str(folder / f"result-{len(list(folder.iterdir())) + 1}.json")
     refuse_output(out, (asked.part, asked.toolkit), asked.force, "force")
     loaded, result = search_until_deadline(asked, cancel)
@@ -107,11 +111,13 @@ def run_design_tool(asked: DesignArguments, folder: Path, cancel: Event) -> Answ
         "result_file": out,
         "remarks": [*loaded.remarks, *describe_far_loads(result.query.loads, Box(*result.workpiece.bounds))],
     }
-    return Answer(data, result.draw() if asked.picture and len(result) else None)
+    return ToolAnswer(data, result.draw() if asked.picture and len(result) else None)
 
 
-def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
-    """Explain why there is no fixture and what would help; where there are some, counts them."""
+def explain(asked: DesignArguments, folder: Path, cancel: Event) -> ToolAnswer:
+    """Return why there is no fixture and what would help;
+    where there are fixtures, return their number instead.
+    """
     _, result = search_until_deadline(asked, cancel)
     found = sum(result.found.values())
     if found or not result.complete:
@@ -120,19 +126,21 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
             if found
             else "The search ended before it found a fixture."
         )
-        return Answer({"found": found, "complete": bool(result.complete), "sentence": why})
+        return ToolAnswer({"found": found, "complete": bool(result.complete), "sentence": why})
     from workhold.search.explaining import explain as explained
 
     explanation = explained(result.query)
     words = explanation.nearest.words if explanation.nearest else " ".join(map(str, result.notes))
     words = f"{explanation.asked_words} {words}".lstrip()
-    return Answer(
+    return ToolAnswer(
         {"found": 0, "complete": True, "sentence": words, **describe_explanation(explanation, result.toolkit)}
     )
 
 
-def search_until_deadline(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
-    """Return the part and the answer of the search, which ends when its time is over."""
+def search_until_deadline(asked: DesignArguments, cancel: Event) -> tuple[LoadedPart, Result]:
+    """Return the part and the result of a search that stops
+    when the asked seconds are over or ``cancel`` is set.
+    """
     from workhold.search.design import answer
 
     toolkit, tolerance = make_asked_toolkit(asked.toolkit, asked.fields)
@@ -166,6 +174,10 @@ def search_until_deadline(asked: DesignArguments, cancel: Event) -> tuple[Loaded
 
 
 def read_program_to_pass(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str, Any]:
+    """Return keyword arguments of a query: "program" and "peg_height" in mm; {} where no program is given.
+
+    Raises InputError where neither the pegs' nor the part's height is known.
+    """
     if asked is None:
         return {}
     solid = workpiece.solid
@@ -181,7 +193,10 @@ def read_program_to_pass(asked: ProgramArguments | None, workpiece: Workpiece) -
 
 
 def make_asked_toolkit(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
-    """Make a toolkit of a preset, a file or a kind, with some fields changed; return its tolerance too."""
+    """Return the toolkit of a preset, a file or a kind, with some fields changed, and its own tolerance.
+
+    The tolerance is None for a kind. Raises InputError for an unknown name and fields that do not fit.
+    """
     try:
         if name in KINDS or name in ALIASES:
             return make_toolkit(name, fields), None
@@ -194,44 +209,47 @@ def make_asked_toolkit(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, T
 
 
 def make_loads(tables: list[LoadTable]) -> tuple[Load, ...]:
+    """Return loads made of tables as an agent gives them, in order; lengths in mm."""
     given = (table.model_dump(exclude_unset=True) for table in tables)
     return tuple(load_from_words(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
 
 
-def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
-    """Show how to set up a fixture, and what loads do to it."""
-    from workhold.statics.loads import load_cases
+def show(asked: ShowArguments, folder: Path, cancel: Event) -> ToolAnswer:
+    """Return how to set up one fixture of a result file,
+    and what loads do to it, as plain data, with a picture if asked.
+    """
+    from workhold.statics.loads import compute_load_cases
 
     result = read_result_with_rank(asked.result_file, asked.rank)
     fixture, loads = result[asked.rank - 1], make_loads(asked.loads) or result.query.loads
     force = result.query.jaw_force if asked.jaw_force is None else asked.jaw_force
-    cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
+    cases = compute_load_cases(fixture, result.workpiece, result.toolkit, loads, force)
     rest = {
         "listed": len(result),
         "complete": bool(result.complete),
-        "loads": [load_case_data(one) for one in cases],
+        "loads": [describe_load_case(one) for one in cases],
         "program": describe_program_clearances(result, asked.rank, MILLIMETRE, force),
     }
     shown = describe_fixture(fixture, result.toolkit, asked.rank)
     if asked.seating and not result.toolkit.closes_at_once:
-        from workhold.seating.clamping import by_hand
+        from workhold.seating.clamping import plan_hand_loading
 
-        shown["by_hand"] = by_hand(fixture, result.workpiece, result.toolkit).as_fields()
+        shown["by_hand"] = plan_hand_loading(fixture, result.workpiece, result.toolkit).to_fields()
     elif asked.seating and fixture.seating is None:
-        from workhold.seating.solver import Solver
+        from workhold.seating.solver import SeatingSolver
 
-        shown["seating"] = Solver(result.workpiece, result.toolkit).of(fixture).as_fields()
-    return Answer({"fixture": shown, **rest}, fixture.draw() if asked.picture else None)
+        shown["seating"] = SeatingSolver(result.workpiece, result.toolkit).solve(fixture).to_fields()
+    return ToolAnswer({"fixture": shown, **rest}, fixture.draw() if asked.picture else None)
 
 
-def run_sheet_tool(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
-    """Write the setup sheet."""
+def run_sheet_tool(asked: SheetArguments, folder: Path, cancel: Event) -> ToolAnswer:
+    """Write a setup sheet, a set-up for CAM or a list of pins; return the path written."""
     refuse_output(asked.path, (asked.result_file,), asked.force, "force")
     result = read_result_with_rank(asked.result_file, asked.rank)
     wishes = asked.model_dump(exclude={"result_file", "rank", "path", "force"})
     fixture, force = result[asked.rank - 1], asked.force
     fixture.save_sheet(asked.path, result_file=asked.result_file, overwrite=force, **wishes)
-    return Answer({"written": [asked.path]})
+    return ToolAnswer({"written": [asked.path]})
 
 
 TOOLS: Mapping[str, AgentTool] = {

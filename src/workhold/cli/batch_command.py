@@ -12,16 +12,16 @@ from attrs import frozen
 
 from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
-from workhold.cli.options import PartWords
+from workhold.cli.options import PartOptions
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output_folder
-from workhold.cli.program_options import SOLIDS, ProgramWords
+from workhold.cli.program_options import SOLIDS, ProgramOptions
 from workhold.cli.progress import show_batch_progress
-from workhold.cli.search_options import QueryWords, SeatingWords
+from workhold.cli.search_options import QueryOptions, SeatingOptions
 from workhold.cli.table import format_count, print_tables
 from workhold.cli.toolkit_options import (
     SWEEP,
-    ListWords,
-    Named,
+    NamedToolkit,
+    ToolkitListOptions,
     collect_carrier_heights,
     find_peg_diameter,
     list_toolkits_to_try,
@@ -36,17 +36,17 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from workhold.batch.cluster import ClusterWorkers
-    from workhold.batch.durations import Measured
+    from workhold.batch.durations import TaskDurations
     from workhold.batch.report import Report
-    from workhold.batch.run import Batch, HeldIn, Request
-    from workhold.batch.store import Store
+    from workhold.batch.run import BatchState, PartRequest, ToolkitQuery
+    from workhold.batch.store import RecordStore
     from workhold.batch.workers import LocalWorkers
     from workhold.cli.progress import BatchProgress
 
 __all__ = ["batch"]
 
 # What is asked of the fixtures, of their seating, and of a program.
-AskedWords = tuple[QueryWords, SeatingWords, ProgramWords]
+AskedWords = tuple[QueryOptions, SeatingOptions, ProgramOptions]
 
 WORK = "The work"
 # Fixtures that are kept of each job.
@@ -78,7 +78,7 @@ TRIED = make_option(
 
 
 @frozen
-class BatchOutputWords:
+class BatchOutputOptions:
     """The options of what is kept of a batch, as typed."""
 
     out: str = make_option(
@@ -96,7 +96,7 @@ class BatchOutputWords:
 
 
 @frozen
-class WorkWords:
+class WorkerOptions:
     """The options of where the work is done, as typed."""
 
     workers: str | None = make_option(WORK, "N", "Worker processes; one for each processor if not given.")
@@ -122,8 +122,10 @@ class WorkWords:
         "themselves.",
     )
 
-    def place(self) -> Workplace:
-        """Return where the work is done; refuse two places, and a cluster without its library."""
+    def place(self) -> WorkerSetting:
+        """Return where the work is done;
+        raise InputError for more than one place, and for a cluster without Dask installed.
+        """
         count = read_optional_count("--workers", self.workers)
         processes = read_optional_count("--local-cluster", self.local_cluster)
         if sum(word is not None for word in (self.workers, self.cluster, self.local_cluster)) > 1:
@@ -142,12 +144,12 @@ class WorkWords:
             raise InputError(
                 "--seconds limits the workers of this machine, and a cluster has no such limit: leave it out."
             )
-        return Workplace(count, longest, self.cluster, processes, self.records)
+        return WorkerSetting(count, longest, self.cluster, processes, self.records)
 
 
 @frozen
-class Workplace:
-    """Where the work is done: by processes of this machine, or on a cluster.
+class WorkerSetting:
+    """Place where the work is done: processes of this machine, or a cluster.
 
     Parameters
     ----------
@@ -164,9 +166,11 @@ class Workplace:
     processes: int | None
     records: str | None
 
-    def make_queue(self, progress: BatchProgress, store: Store) -> LocalWorkers | ClusterWorkers:
-        """Make the queue of jobs; the workers of a cluster write records to ``store`` themselves if it is
-        no folder of the results."""
+    def make_queue(self, progress: BatchProgress, store: RecordStore) -> LocalWorkers | ClusterWorkers:
+        """Return the queue that runs the jobs: processes of this machine, or a cluster.
+
+        The workers of a cluster write records to ``store`` themselves if a folder for records was named.
+        """
         if self.cluster is None and self.processes is None:
             from workhold.batch.workers import LocalWorkers
 
@@ -179,7 +183,7 @@ class Workplace:
 
 @frozen
 class BatchTask:
-    """What is asked of many parts.
+    """A batch to be run: requests for many parts, and where results go.
 
     Parameters
     ----------
@@ -187,17 +191,17 @@ class BatchTask:
     folder, names : where tables and report go, and what they are called.
     """
 
-    requests: Sequence[Request]
+    requests: Sequence[PartRequest]
     kept: int
-    place: Workplace
+    place: WorkerSetting
     folder: Path
     names: tuple[str, ...]
-    written: BatchOutputWords
+    written: BatchOutputOptions
 
 
 @frozen
 class BatchAnswer:
-    """What was found.
+    """Answers of a batch.
 
     Parameters
     ----------
@@ -207,15 +211,16 @@ class BatchAnswer:
     gone : how all workers were lost; empty where they were not.
     """
 
-    done: Batch
-    store: Store
-    measured: Measured
+    done: BatchState
+    store: RecordStore
+    measured: TaskDurations
     spent: float
     events: list[str]
     gone: str
 
     @property
     def sentence(self) -> str:
+        """Sentence with the numbers of parts, of new and of known answers, and the seconds."""
         before = f"; {self.done.kept:,} were known already" if self.done.kept else ""
         parts, fresh = format_count(len(self.done.parts), "part"), format_count(self.done.fresh, "answer")
         return f"{parts}, {fresh} found in {self.spent:.1f} s{before}."
@@ -226,13 +231,13 @@ def batch(
     parts: PartsArgument,
     *,
     toolkit: list[str] | None = TRIED,
-    varied: ListWords,
-    words: QueryWords,
-    seated_by: SeatingWords,
-    machined: ProgramWords,
-    written: BatchOutputWords,
-    work: WorkWords,
-    reading: PartWords,
+    varied: ToolkitListOptions,
+    words: QueryOptions,
+    seated_by: SeatingOptions,
+    machined: ProgramOptions,
+    written: BatchOutputOptions,
+    work: WorkerOptions,
+    reading: PartOptions,
 ) -> None:
     """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
 
@@ -248,13 +253,15 @@ def batch(
 def parse(
     parts: list[str],
     toolkit: list[str] | None,
-    varied: ListWords,
+    varied: ToolkitListOptions,
     words: AskedWords,
-    written: BatchOutputWords,
-    work: WorkWords,
-    reading: PartWords,
+    written: BatchOutputOptions,
+    work: WorkerOptions,
+    reading: PartOptions,
 ) -> BatchTask:
-    """Read what was typed; the parts are read later, each by who works on it."""
+    """Return what was typed as a task, checked before any search;
+    each part is read later, by the worker that needs it.
+    """
     if not written.out:
         raise InputError("the folder for the results is not given: name one with --out.")
     kept, place, folder = read_optional_count("--best", written.best) or 1, work.place(), Path(written.out)
@@ -267,15 +274,17 @@ def parse(
 
 
 def ask(asked: BatchTask) -> BatchAnswer:
-    """Search in the place that was asked for, until the user stops it."""
-    from workhold.batch.durations import Measured
-    from workhold.batch.run import BatchRun, run_batch
-    from workhold.batch.store import FolderStore, store_at
+    """Return the answers of a search for every part and toolkit,
+    or those known when the user stops it with Ctrl-C.
+    """
+    from workhold.batch.durations import TaskDurations
+    from workhold.batch.run import BatchRunner, run_batch
+    from workhold.batch.store import FolderStore, open_store
     from workhold.cli.warming import compile_kernels, compile_seating
 
     records = asked.place.records
-    store = FolderStore(asked.folder / RECORDS) if records is None else store_at(records)
-    measured = Measured(asked.folder / MEASURED)
+    store = FolderStore(asked.folder / RECORDS) if records is None else open_store(records)
+    measured = TaskDurations(asked.folder / MEASURED)
     start = perf_counter()
     with ask_to_stop("the answers so far are kept, and the tables and the report are written") as stop:
         keep_what_is_found()
@@ -284,13 +293,16 @@ def ask(asked: BatchTask) -> BatchAnswer:
             if any(is_seated(held) for request in asked.requests for held in request.held_in):
                 compile_seating(stop)
         with show_batch_progress() as progress, asked.place.make_queue(progress, store) as queue:
-            done = run_batch(asked.requests, asked.kept, BatchRun(store, queue, measured, progress, stop))
+            done = run_batch(asked.requests, asked.kept, BatchRunner(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     return BatchAnswer(done, store, measured, spent, progress.events, getattr(queue, "gone", ""))
 
 
 def report(asked: BatchTask, answer: BatchAnswer) -> None:
-    """Write tables, report and sheets, and print what is in them."""
+    """Write tables, report and sheets, and print a summary; exit with INTERRUPTED where not all was searched.
+
+    Raises InputError where all workers were lost.
+    """
     from workhold.batch.tables import has_parquet
 
     done, folder, names = answer.done, asked.folder, asked.names
@@ -317,6 +329,9 @@ def report(asked: BatchTask, answer: BatchAnswer) -> None:
 
 
 def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
+    """Write tables, report and, if asked and all jobs are done,
+    setup sheets into the folder; return the report.
+    """
     from workhold.batch.report import Summary, write_results
     from workhold.version import __version__
 
@@ -334,8 +349,10 @@ def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
     return write_results(done, answer.store, answer.measured, folder, REPORT, summary, where)
 
 
-def is_seated(held: HeldIn) -> bool:
-    """Return whether seating is asked for with one clamp or a vise; with two clamps it needs no kernels."""
+def is_seated(held: ToolkitQuery) -> bool:
+    """Return whether a query asks for seating that needs compiled kernels:
+    with a vise or one clamp, not with two clamps.
+    """
     from workhold.model.query import Query
 
     return (
@@ -346,18 +363,20 @@ def is_seated(held: HeldIn) -> bool:
 def list_requests(
     parts: Sequence[str],
     toolkit: list[str] | None,
-    varied: ListWords,
+    varied: ToolkitListOptions,
     words: AskedWords,
-    reading: PartWords,
+    reading: PartOptions,
     folder: Path,
-) -> list[Request]:
-    """List what is asked of each part, in the order of the command line."""
+) -> list[PartRequest]:
+    """Return what is asked of each part:
+    first the parts named on the command line, then those of files of jobs.
+    """
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
 
     lists = varied.has_pitches or toolkit is not None
     named = list_asked_toolkits(toolkit, varied, reading) if lists else None
     make_query_arguments(words, reading)
-    requests: list[Request] = []
+    requests: list[PartRequest] = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
         if named is None:
@@ -376,7 +395,7 @@ def list_requests(
                 )
                 own = named
                 if job.toolkits is not None:
-                    own = list_asked_toolkits(job.toolkits, ListWords(), own_reading)
+                    own = list_asked_toolkits(job.toolkits, ToolkitListOptions(), own_reading)
                 if own is None:
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."
@@ -388,44 +407,52 @@ def list_requests(
 
 
 def list_requests_in_toolkits(
-    toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
-) -> list[Request]:
-    """List what is asked of some parts, each of which is read once and held in all of some toolkits."""
-    from workhold.batch.run import ANY_PART, HeldIn, Request
+    toolkits: Sequence[NamedToolkit],
+    parts: Sequence[str],
+    words: AskedWords,
+    reading: PartOptions,
+    folder: Path,
+) -> list[PartRequest]:
+    """Return one request for each part with all toolkits;
+    for a solid whose peg height is not given, one for each peg diameter.
+    """
+    from workhold.batch.run import ANY_PART, PartRequest, ToolkitQuery
     from workhold.files.part_list import list_parts
 
     asked = make_query_arguments(words, reading)
-    held_in = [HeldIn(one.name, make_query(ANY_PART, one, asked)) for one in toolkits]
+    held_in = [ToolkitQuery(one.name, make_query(ANY_PART, one, asked)) for one in toolkits]
     # With a program heights are among what is asked.
     known = (
         words[2].read_heights(read_unit(reading.unit), reading.peg_height) if words[2].program is None else {}
     )
-    drawn_in = [HeldIn(one.name, make_query(ANY_PART, one, asked | known)) for one in toolkits]
+    drawn_in = [ToolkitQuery(one.name, make_query(ANY_PART, one, asked | known)) for one in toolkits]
     listed, heights = list_parts(parts, [folder]), collect_carrier_heights(toolkits)
     of_carriers = {"heights": heights} if heights else {}
-    by_pegs: dict[float | None, list[HeldIn]] = {}
+    by_pegs: dict[float | None, list[ToolkitQuery]] = {}
     for one, named in zip(held_in, toolkits, strict=True):
         by_pegs.setdefault(find_peg_diameter(named), []).append(one)
     requests = []
     for part in listed:
         options = words[2].adapt_part_options(part.name, reading).to_read_arguments() | of_carriers
         if part.path.suffix.lower() not in SOLIDS:
-            requests.append(Request(part, options, drawn_in))
+            requests.append(PartRequest(part, options, drawn_in))
             continue
         if options["peg_height"] is not None:
-            requests.append(Request(part, options, held_in))
+            requests.append(PartRequest(part, options, held_in))
             continue
         # Pegs of each diameter reach as high as they must, and the outline is what those meet.
-        requests += [Request(part, options | {"peg_diameter": d}, some) for d, some in by_pegs.items()]
+        requests += [PartRequest(part, options | {"peg_diameter": d}, some) for d, some in by_pegs.items()]
     return requests
 
 
 def list_asked_toolkits(
     names: list[str] | None,
-    varied: ListWords,
-    reading: PartWords,
-) -> list[Named]:
-    """List the toolkits of names, files and list; of several names one may be a kind."""
+    varied: ToolkitListOptions,
+    reading: PartOptions,
+) -> list[NamedToolkit]:
+    """Return the toolkits of names and files, and those of the lists of figures;
+    at most one name may be a kind.
+    """
     from workhold.fixels.kinds import ALIASES, KINDS
 
     words = [word for text in names or () for word in split_words("--toolkit", text)]
@@ -443,7 +470,10 @@ def list_asked_toolkits(
     return list_toolkits_to_try(others or None, kind, varied, read_unit(reading.unit))
 
 
-def make_query_arguments(words: AskedWords, reading: PartWords) -> dict[str, Any]:
+def make_query_arguments(words: AskedWords, reading: PartOptions) -> dict[str, Any]:
+    """Return the keyword arguments of a query, without part,
+    toolkit and types, from options as typed; lengths in mm.
+    """
     wishes, seated_by, machined = words
     unit, has_program = read_unit(reading.unit), machined.program is not None
     asked = wishes.read_arguments(unit, has_program, machined.has_forces) | seated_by.read_arguments(unit)

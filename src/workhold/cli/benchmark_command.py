@@ -34,7 +34,7 @@ TOLERANCE = "0.001"
 
 
 @frozen
-class BenchmarkWords:
+class BenchmarkOptions:
     """The options of all actions, as typed."""
 
     out: str | None = make_option(None, "DIR", "For run: the folder into which the sets are written.")
@@ -70,7 +70,7 @@ class BenchmarkTask:
 
     action: str
     names: Sequence[str]
-    words: BenchmarkWords
+    words: BenchmarkOptions
     threads: int | None
     tolerance: float
 
@@ -87,7 +87,7 @@ def benchmark(
         ),
     ] = None,
     *,
-    words: BenchmarkWords,
+    words: BenchmarkOptions,
 ) -> None:
     """List the sets of the benchmark, make their complete lists, or compare another program's with them.
 
@@ -109,8 +109,8 @@ def benchmark(
         report_compared(asked, compare(asked))
 
 
-def parse(action: str, names: Sequence[str], words: BenchmarkWords) -> BenchmarkTask:
-    """Read what was typed."""
+def parse(action: str, names: Sequence[str], words: BenchmarkOptions) -> BenchmarkTask:
+    """Return what was typed as a task, with its numbers read and checked."""
     asked = read_choice("the action", action, ACTIONS)
     threads = read_optional_count("--threads", words.threads)
     tolerance = read_positive_number("--tolerance", words.tolerance)
@@ -120,25 +120,31 @@ def parse(action: str, names: Sequence[str], words: BenchmarkWords) -> Benchmark
 
 
 def print_checker() -> None:
+    """Write the program that checks a set's file to stdout."""
     from workhold.benchmark.catalogue import read_benchmark_file
 
     sys.stdout.write(read_benchmark_file("check.py").decode("utf-8"))
 
 
 def choose_sets(words: Sequence[str]) -> list[SetEntry]:
-    """Return the sets that words name: by name, by workpiece, or by what a name contains; all of them without words."""
-    from workhold.benchmark.catalogue import load_sets, set_named
+    """Return the sets that any of the words names, in the benchmark's order; all sets without words.
+
+    A word is the name of a set, else that of a workpiece, else a part of names. Raises InputError for any
+    other.
+    """
+    from workhold.benchmark.catalogue import find_set, load_sets
 
     every, chosen = load_sets(), set[str]()
     for word in words:
         called = [one.name for one in every if one.name == word]
         of_part = [one.name for one in every if one.part == word]
         holding = [one.name for one in every if word in one.name]
-        chosen |= set(called or of_part or holding or [set_named(word).name])
+        chosen |= set(called or of_part or holding or [find_set(word).name])
     return [one for one in every if not words or one.name in chosen]
 
 
 def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
+    """Print the sets with sizes and reasons, as a table or as JSON."""
     if as_json:
         entries = [
             {
@@ -161,7 +167,7 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
 
 
 def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]:
-    """Make the sets that were chosen, as many as are done before a Ctrl-C."""
+    """Write the chosen sets into the folder and return them; after a Ctrl-C, those that are done."""
     words = asked.words
     if words.out is None:
         raise InputError("run needs a folder for the sets: name one with --out.")
@@ -184,7 +190,9 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
 
 
 def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence[MadeSet]) -> None:
-    """Print whether the sets are those of the manifest."""
+    """Print how the made sets compare with the manifest;
+    exit with DIFFERS where one differs, INTERRUPTED where some lack.
+    """
     other = [one for one in made if not one.is_same]
     if asked.words.json_:
         print_json(
@@ -214,18 +222,20 @@ def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence
 
 
 def compare(asked: BenchmarkTask) -> list[ComparedFile]:
-    """Compare another program's fixtures with the complete lists, as many files as are done before a Ctrl-C."""
+    """Return the comparison of each file of another program's
+    fixtures with the complete list, or those done at a Ctrl-C.
+    """
     files, words = asked.names, asked.words
     if not files:
         raise InputError("check needs a file with another program's fixtures: name one or more.")
-    from workhold.benchmark.catalogue import set_named
+    from workhold.benchmark.catalogue import find_set
     from workhold.benchmark.making import compare_entry
     from workhold.benchmark.matching import read_entry
     from workhold.cli.warming import compile_kernels
 
     entries = [read_entry(Path(name), words.set_) for name in files]
     for entry in entries:
-        set_named(entry.set_name)
+        find_set(entry.set_name)
     done: list[ComparedFile] = []
     with ask_to_stop("the results so far are printed") as cancel:
         compile_kernels(cancel)
@@ -240,7 +250,9 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
 
 
 def report_compared(asked: BenchmarkTask, done: Sequence[ComparedFile]) -> None:
-    """Print how much of each set another program has."""
+    """Print what of each set another program found, missed or has in excess;
+    exit with INTERRUPTED where some files lack.
+    """
     if asked.words.json_:
         print_json(files=[convert_comparison_to_json(*one) for one in done])
     else:
@@ -250,7 +262,7 @@ def report_compared(asked: BenchmarkTask, done: Sequence[ComparedFile]) -> None:
 
 
 def convert_comparison_to_json(name: str, set_name: str, outcome: Comparison) -> dict[str, Any]:
-    """Return a comparison as an object of JSON; fixtures are numbered from 1."""
+    """Return a comparison as an object for JSON; fixtures are numbered from 1."""
     data: dict[str, Any] = {"file": name, "set": set_name, "listed": outcome.listed, "theirs": outcome.theirs}
     for key in ("found", "missed", "extra", "repeated"):
         data[key] = [number + 1 for number in getattr(outcome, key)]
@@ -258,6 +270,7 @@ def convert_comparison_to_json(name: str, set_name: str, outcome: Comparison) ->
 
 
 def print_comparisons(done: Sequence[ComparedFile]) -> None:
+    """Print a table of counts, and sentences that name up to eight missed and extra fixtures of each file."""
     table = Table(("set", ">complete", ">theirs", ">found", ">missed", ">extra", ">repeated", ">share"))
     sentences = []
     for _, set_name, one in done:
@@ -273,6 +286,6 @@ def print_comparisons(done: Sequence[ComparedFile]) -> None:
 
 
 def format_share(outcome: Comparison) -> str:
-    """Return the share in percent, which is 100 only where nothing is missed."""
+    """Return the share found in percent with one decimal: 100.0 only where nothing is missed."""
     percent = 100 * outcome.share
     return f"{min(percent, 99.9) if outcome.missed else percent:.1f}"

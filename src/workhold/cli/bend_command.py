@@ -39,7 +39,7 @@ USUAL = 20
 
 @frozen
 class BendWords:
-    """The options of what is bent and how hard, as typed; None for those not given."""
+    """Options of the material, the part and the clamping, as typed; None for those not given."""
 
     material: str = make_option(
         PART,
@@ -72,7 +72,7 @@ class BendWords:
 
 @frozen
 class BentWords:
-    """The options of what is said of bending, as typed; None for those not given."""
+    """Options of the output, as typed; None for those not given."""
 
     best: str | None = make_option(OUTPUT, "K", "How many of the best fixtures to look at; 20 if not given.")
     rank_by: str | None = make_option(
@@ -128,7 +128,7 @@ def bend(
 
     query = result.query
     shape = read_part_shape(words.part, result.workpiece)
-    whole = make_shape_to_bend(query, asked.height_of(query), shape)
+    whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
     from workhold.bending.asking import find_bendings
 
     with (
@@ -146,7 +146,7 @@ def bend(
     printed = choose_printed_unit(unit, result.toolkit)
     written = write_first(ranked, result, picture, model, printed)
     if json_:
-        fixtures = [{"rank": row + 1, **one.as_data()} for row, one in ranked]
+        fixtures = [{"rank": row + 1, **one.to_data()} for row, one in ranked]
         print_json(fixtures=fixtures, complete=not cancel.is_set(), written=written)
     else:
         print_tables(*tabulate(ranked, result, asked, printed), *(f"Written to {path}." for path in written))
@@ -158,10 +158,10 @@ def bend(
 
 
 def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
-    """Read what was typed."""
+    """Return what is asked of the bending, from options as typed; lengths are read in ``unit``."""
     from workhold.bending.asking import BendingQuestion
     from workhold.bending.materials import find_material
-    from workhold.statics.loads import jaw_stiffness
+    from workhold.statics.loads import read_jaw_stiffness
 
     faces = tuple(
         int(one) if one.isdecimal() else one.lower()
@@ -173,19 +173,21 @@ def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
         read_optional_positive_length("--thickness", words.thickness, unit),
         read_optional_force("--jaw-force", words.jaw_force),
         faces,
-        jaw_stiffness(words.jaw),
+        read_jaw_stiffness(words.jaw),
     )
 
 
 def read_figure(name: str | None) -> str | None:
-    """The key of the figure to rank by; None where none is given."""
+    """Return the key of the figure to rank by; None where none is given."""
     from workhold.bending.figures import find_bending_figure
 
     return None if name is None else find_bending_figure(name).key
 
 
 def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Result, list[int]]:
-    """The result, and the indices of the fixtures that are bent."""
+    """Return the result and the indices, from 0, of the fixtures to bend:
+    that of ``rank``, else the best 20 or ``best``.
+    """
     if rank is not None:
         return read_result_with_rank(result_file, rank), [rank - 1]
     from workhold.files.result.reader import read_result
@@ -197,9 +199,9 @@ def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Res
 
 
 def rank_bendings(found: list[tuple[int, Bending]], figure: str | None) -> list[tuple[int, Bending]]:
-    """Order fixtures by a figure, the least first; equal ones as they are listed.
+    """Return pairs of index and bending ordered by a figure, the least first and equal ones as before.
 
-    Refuses a figure that is not known.
+    Return them unchanged for None. Raises InputError where a bending lacks the figure.
     """
     if figure is None:
         return found
@@ -213,32 +215,36 @@ def rank_bendings(found: list[tuple[int, Bending]], figure: str | None) -> list[
 def write_first(
     ranked: list[tuple[int, Bending]], result: Result, picture: Path | None, model: Path | None, unit: Unit
 ) -> list[str]:
-    """Write the pictures of the first fixture; the paths of what was written."""
+    """Write the picture and the 3D model, where paths are given,
+    of the first fixture; return the paths written.
+    """
     if not ranked:
         return []
     row, one = ranked[0]
     if picture is not None:
-        from workhold.drawing.bent_part import picture_of_bending
+        from workhold.drawing.bent_part import draw_bending
         from workhold.drawing.scene import LengthUnit
 
         lengths = LengthUnit(unit, unit.decimals)
         title = f"How clamping bends {result.workpiece.name}, fixture {row + 1}"
         write_picture(
             picture,
-            picture_of_bending(one, title, lengths, one.list_sentences(result.toolkit.moving.noun, unit)),
+            draw_bending(one, title, lengths, one.list_sentences(result.toolkit.moving.noun, unit)),
         )
     if model is not None:
         from workhold.files.atomic import write_bytes
-        from workhold.presenting.bent import bent_glb
+        from workhold.presenting.bent import make_bent_glb
 
-        write_bytes(model, bent_glb(result[row], one))
+        write_bytes(model, make_bent_glb(result[row], one))
     return [str(path) for path in (picture, model) if path is not None]
 
 
 def tabulate(
     ranked: list[tuple[int, Bending]], result: Result, asked: BendingQuestion, unit: Unit
 ) -> list[Table | str]:
-    """Say how far each fixture bends its part."""
+    """Return a heading, a table and a footnote on how far each fixture bends its part;
+    [] without fixtures.
+    """
     small, mover = unit.small_name, result.toolkit.moving.noun
     if not ranked:
         return []
@@ -255,7 +261,8 @@ def tabulate(
     )
 
     def place(at: tuple[float, float, float]) -> str:
-        return ", ".join(unit.number(value, max(unit.decimals - 2, 1)) for value in at)
+        """Return a point as text in the unit."""
+        return ", ".join(unit.format_number(value, max(unit.decimals - 2, 1)) for value in at)
 
     for row, one in ranked:
         bent, give = one.clamp_distortion, one.give

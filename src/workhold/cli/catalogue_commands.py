@@ -14,14 +14,14 @@ import typer
 from attrs import asdict, frozen
 
 from workhold.cli.commands import make_flag, make_option, spread_option_groups
-from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
+from workhold.cli.options import SHOWN_UNIT, PartArgument, PartOptions
 from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
 from workhold.cli.program_options import SOLIDS
 from workhold.cli.table import Table, format_count, print_tables
 from workhold.cli.values import read_length_from_zero, read_unit
 
 if TYPE_CHECKING:
-    from workhold.files.part.loaded import Loaded
+    from workhold.files.part.loaded import LoadedPart
     from workhold.files.toolkit_file import LoadedToolkit
     from workhold.fixels.table import Form
     from workhold.model.dowels import Limits
@@ -58,7 +58,7 @@ def parts(unit: str | None = SHOWN_UNIT, json_: bool = JSON) -> None:
     for part in list_builtin_parts():
         workpiece = load(part.name)
         x0, y0, x1, y1 = workpiece.bounds
-        size = shown.number(x1 - x0, decimals), shown.number(y1 - y0, decimals)
+        size = shown.format_number(x1 - x0, decimals), shown.format_number(y1 - y0, decimals)
         table.add_row(part.name, *size, str(len(workpiece.faces)), part.description)
     print_tables(table)
 
@@ -108,6 +108,7 @@ def toolkits(
 
 
 def tabulate_toolkits(unit: Unit) -> Table:
+    """Return a table of all preset toolkits."""
     from workhold.files.toolkit_file import list_preset_names, load_toolkit
 
     of = unit.abbreviation
@@ -123,13 +124,14 @@ def tabulate_toolkits(unit: Unit) -> Table:
             format_pitch(first.pitch, unit),
             unit.format_short_length(2 * first.peg_radius),
             "any" if first.columns is None else str(first.columns),
-            unit.number(loaded.tolerance.peg, unit.decimals + 1),
+            unit.format_number(loaded.tolerance.peg, unit.decimals + 1),
             loaded.title,
         )
     return table
 
 
 def tabulate_toolkit_figures(loaded: LoadedToolkit, unit: Unit) -> Table:
+    """Return a table with a row of words and value for each figure of a toolkit, lengths in a unit."""
     toolkit, of = loaded.toolkit, unit.abbreviation
     if not toolkit.plates:
         table = Table(("figure", "value"))
@@ -170,7 +172,9 @@ def tabulate_toolkit_figures(loaded: LoadedToolkit, unit: Unit) -> Table:
 
 
 def list_own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
-    """Yield the figures that only this kind of toolkit has, each with its value in words."""
+    """Yield (words, value as text) of the figures that a toolkit
+    has beyond those of every plate, unset ones left out.
+    """
     from workhold.fixels.kinds import find_table
 
     toolkit = loaded.toolkit
@@ -194,7 +198,9 @@ def list_own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, s
 
 
 def format_field_value(form: Form, value: Any, unit: Unit) -> str:
-    """Return the value of a field of some form, as it stands among the figures of a toolkit."""
+    """Return the value of a toolkit's field as text with its unit;
+    ``form`` is the field's kind, such as "length".
+    """
     if form == "count":
         return str(value)
     if form == "stress":
@@ -216,16 +222,20 @@ def format_field_value(form: Form, value: Any, unit: Unit) -> str:
 
 
 def format_pitch(pitch: tuple[float, float], unit: Unit) -> str:
+    """Return a pitch (x, y) in mm as text without the unit:
+    one number where both are equal, else such as "10 x 12.5".
+    """
     x, y = (unit.format_short_length(length) for length in pitch)
     return x if pitch[0] == pitch[1] else f"{x} x {y}"
 
 
 def format_limits(limits: Limits, unit: Unit) -> str:
-    return f"{unit.number(limits[0])} to {unit.format_length(limits[1])}"
+    """Return limits in mm as text with the unit, such as "5.98 to 6.00 mm"."""
+    return f"{unit.format_number(limits[0])} to {unit.format_length(limits[1])}"
 
 
 @frozen
-class FeatureWords:
+class FeatureOptions:
     """The options of what is listed of a part, as typed."""
 
     draw: str | None = make_option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png.")
@@ -258,18 +268,21 @@ class FeaturesTask:
     """
 
     part: str
-    words: FeatureWords
-    reading: PartWords
+    words: FeatureOptions
+    reading: PartOptions
     radius: float | None
     picture: Path | None
     unit: Unit
 
     @property
     def written(self) -> list[str]:
+        """Paths of what is written: the picture, or none."""
         return [] if self.picture is None else [str(self.picture)]
 
-    def load(self) -> Loaded:
-        """Read the part, for the toolkit that will hold it."""
+    def load(self) -> LoadedPart:
+        """Return the part, read with the heights and peg diameter
+        of the toolkit that will hold it, if one is named.
+        """
         if self.words.toolkit is None:
             return self.reading.load(self.part)
         from workhold.files.toolkit_file import load_toolkit
@@ -279,7 +292,7 @@ class FeaturesTask:
 
 
 @spread_option_groups
-def features(part: PartArgument, *, words: FeatureWords, reading: PartWords) -> None:
+def features(part: PartArgument, *, words: FeatureOptions, reading: PartOptions) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
     Example: workhold features part.dxf --draw faces.svg
@@ -295,16 +308,16 @@ def features(part: PartArgument, *, words: FeatureWords, reading: PartWords) -> 
         report_faces(asked, asked.load())
 
 
-def parse(part: str, words: FeatureWords, reading: PartWords) -> FeaturesTask:
-    """Read what was typed, but not the part."""
+def parse(part: str, words: FeatureOptions, reading: PartOptions) -> FeaturesTask:
+    """Return what was typed as a task, checked; the part itself is not read yet."""
     unit, radius = read_unit(reading.unit), words.peg_radius
     wide = None if radius is None else read_length_from_zero("--peg-radius", radius, unit)
     picture = read_picture_path(words.draw, (part,), words.force)
     return FeaturesTask(part, words, reading, wide, picture, unit)
 
 
-def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
-    """Print and draw the faces of a part, and where pegs of a radius can stand."""
+def report_faces(asked: FeaturesTask, loaded: LoadedPart) -> None:
+    """Print the faces of a part, and draw them if asked, with the curves of the peg centres for a radius."""
     workpiece, unit = loaded.workpiece, asked.unit
     if not asked.words.json_:
         from workhold.cli.tables import (
@@ -315,7 +328,7 @@ def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
         )
 
         x0, y0, x1, y1 = workpiece.bounds
-        size = f"{unit.number(x1 - x0)} x {unit.format_length(y1 - y0)}"
+        size = f"{unit.format_number(x1 - x0)} x {unit.format_length(y1 - y0)}"
         of_solid = (*tabulate_face_heights(workpiece, unit), *tabulate_peg_heights(loaded.heights, unit))
         print_tables(
             f"{workpiece.name}: {size}, {format_count(len(workpiece.faces), 'face')}",
@@ -339,7 +352,7 @@ def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
 def report_layers(asked: FeaturesTask) -> None:
     """Print the layers of a DXF file.
 
-    In JSON sizes are in mm where the unit is known, else in units of the drawing.
+    In JSON, sizes are in mm where the drawing's unit is known ("in_mm"), else in units of the drawing.
     """
     from workhold.files.part.survey import list_drawn_layers
 
@@ -367,6 +380,7 @@ def report_layers(asked: FeaturesTask) -> None:
 
 
 def report_solids(asked: FeaturesTask) -> None:
+    """Print the solids of a STEP file."""
     from workhold.cli.tables import tabulate_solids
     from workhold.files.part.loaded import solids_in
 
@@ -379,17 +393,21 @@ def report_solids(asked: FeaturesTask) -> None:
     )
 
 
-def report_parts(asked: FeaturesTask, loaded: Loaded) -> None:
-    """Print and draw the parts of a drawing."""
+def report_parts(asked: FeaturesTask, loaded: LoadedPart) -> None:
+    """Print the parts of a drawing, and draw them if asked."""
     unit = asked.unit
     table = Table(
         (">part", f">width {unit.abbreviation}", f">height {unit.abbreviation}", ">holes", "lowest corner")
     )
     for one in loaded.parts:
         x0, y0, x1, y1 = one.bounds
-        corner = f"({unit.number(x0)}, {unit.number(y0)})"
+        corner = f"({unit.format_number(x0)}, {unit.format_number(y0)})"
         table.add_row(
-            str(one.number), unit.number(x1 - x0), unit.number(y1 - y0), str(len(one.loops) - 1), corner
+            str(one.number),
+            unit.format_number(x1 - x0),
+            unit.format_number(y1 - y0),
+            str(len(one.loops) - 1),
+            corner,
         )
     if not asked.words.json_:
         print_tables(table)

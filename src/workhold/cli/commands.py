@@ -34,9 +34,9 @@ __all__ = [
 
 
 def print_remark(message: str) -> None:
-    """Print a remark on stderr, in one line unless a terminal has no room for it.
+    """Print a remark on stderr with "workhold: " before it, wrapped only on a terminal.
 
-    Where the disk is full the remark is lost, and nothing else.
+    A remark is lost silently where the disk is full.
     """
     line = f"workhold: {make_printable(shorten_middle(message))}"
     if sys.stderr.isatty():
@@ -50,9 +50,9 @@ def print_remark(message: str) -> None:
 
 
 def forget(stream: TextIO) -> None:
-    """Send the rest of a stream nowhere, once its reader is gone or the disk is full.
+    """Redirect a stream to the null device, once its reader is gone or the disk is full.
 
-    Otherwise the interpreter would complain when it flushes the stream at its end.
+    Otherwise the interpreter would complain when it flushes the stream at exit.
     """
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
@@ -67,19 +67,29 @@ WIDEST_ENTRY = 27
 
 
 def make_option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
-    """Make an option in a section of the help: the default of a parameter, or of a field of a group."""
+    """Return a Typer option with a value, to stand as the default of a parameter or of a field of a group.
+
+    Parameters
+    ----------
+    panel : section of the help; None for the general one.
+    metavar : what stands for the value in the help.
+    names : of the option, such as "--out"; made from the parameter's name if none.
+    default : as it would be typed.
+    """
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
 
 
 def make_flag(panel: str | None, help: str, name: str) -> Any:
-    """Make an option without a value, off if not given; see :func:`make_option`."""
+    """Return a Typer option without a value, off if not given; see :func:`make_option`."""
     return typer.Option(False, name, help=help, rich_help_panel=panel)
 
 
 def spread_option_groups(command: Callable[..., None]) -> Callable[..., None]:
-    """Replace each parameter of a command that is a group of options by the options of the group.
+    """Return a command in whose signature each parameter that
+    is a group of options is replaced by the group's options.
 
-    A group is an attrs class whose fields are options.
+    A group is an attrs class whose fields are options. When called, the new command builds the groups and
+    calls the old.
     """
     kinds = get_type_hints(command, include_extras=True)
     groups = {
@@ -106,7 +116,7 @@ def spread_option_groups(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def make_default_group(kind: type[Words], **typed: Any) -> Words:
-    """Return a group of options as it is where none is typed but these."""
+    """Return a group of options with all options at their defaults except those given here."""
     usual = {name: one.default.default for name, one in signature(kind).parameters.items()}
     return kind(**usual | typed)
 
@@ -115,11 +125,11 @@ class PlainCommand(TyperCommand):
     """A subcommand whose parameters are words."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return the parameters and the help option, whose words are not checked here."""
+        """Return parameters and help option, with Typer's checks of words switched off."""
         return pass_words_unchecked(super().get_params(ctx))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Write usage, text, and the parameters by their sections."""
+        """Write usage, text, and parameters section by section to the formatter."""
         self.format_usage(ctx, formatter)
         write_text(self, formatter)
         write_sections(self, ctx, formatter)
@@ -130,12 +140,13 @@ class PlainGroup(TyperGroup):
     """A group of subcommands, which shows the help where no subcommand is named."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return the parameters and the help option, whose words are not checked here."""
+        """Return parameters and help option, with Typer's checks of words switched off."""
         return pass_words_unchecked(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse the words before the subcommand; without any word it shows the help, unless a shell
-        completes.
+        """Return the words left after parsing those before the subcommand.
+
+        Without any word, print the help and exit with BAD_INPUT, unless a shell asks for completions.
         """
         if not args and not ctx.resilient_parsing:
             typer.echo(ctx.get_help())
@@ -143,7 +154,9 @@ class PlainGroup(TyperGroup):
         return super().parse_args(ctx, args)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Write usage, text, options, subcommands with their first paragraphs, and the epilog as it is."""
+        """Write usage, text, options, subcommands each with its first paragraph,
+        and the epilog to the formatter.
+        """
         self.format_usage(ctx, formatter)
         write_text(self, formatter)
         write_sections(self, ctx, formatter)
@@ -157,7 +170,9 @@ class PlainGroup(TyperGroup):
 
 
 def pass_words_unchecked(parameters: list[Any]) -> list[Any]:
-    """Let parameters hand on a word, or None for an option not given, without a check."""
+    """Return the same parameters, changed in place so that a word,
+    or None for an option not given, is passed on unchecked.
+    """
     for parameter in parameters:
         if "process_value" not in vars(parameter):
             parameter.process_value = partial(take_parameter_value, parameter, parameter.process_value)
@@ -165,14 +180,16 @@ def pass_words_unchecked(parameters: list[Any]) -> list[Any]:
 
 
 def take_parameter_value(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
-    """Return the value of a parameter; Typer checks what is neither a word nor an option not given."""
+    """Return the value of a parameter:
+    a word, or None for an option not given, as it is; Typer checks anything else.
+    """
     if isinstance(value, str) or (value is None and not parameter.required):
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
     return checked(ctx, value)
 
 
 def format_heading(words: str) -> str:
-    """Make a heading of the help, bold on a terminal."""
+    """Return a heading of the help, bold on a terminal."""
     return typer.style(words, bold=True)
 
 
@@ -181,7 +198,7 @@ NO_BREAK = "\N{NON-BREAKING HYPHEN}"
 
 
 def replace_hyphens(text: str) -> str:
-    """Replace hyphens by those at which no line is broken.
+    """Return text with non-breaking hyphens, so that names of options are not split across lines.
 
     >>> replace_hyphens("--peg-radius").count("-")
     0
@@ -190,18 +207,21 @@ def replace_hyphens(text: str) -> str:
 
 
 def restore_hyphens(formatter: Any) -> None:
-    """Make plain hyphens again of all that a help has so far."""
+    """Replace non-breaking hyphens by plain ones in all that a formatter has so far, in place."""
     formatter.buffer[:] = [text.replace(NO_BREAK, "-") for text in formatter.buffer]
 
 
 def write_text(command: Any, formatter: Any) -> None:
+    """Write the help text of a command to the formatter."""
     formatter.write_paragraph()
     with formatter.indentation():
         formatter.write_text(replace_hyphens(cleandoc(command.help or "")))
 
 
 def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
-    """Write the parameters of a command, each in the section of its panel; those without one come last."""
+    """Write the parameters of a command to the formatter,
+    each in the section of its panel; the general section is last.
+    """
     sections: dict[str, list[tuple[str, str]]] = {}
     for parameter in command.get_params(ctx):
         entry = parameter.get_help_record(ctx)

@@ -13,10 +13,10 @@ from attrs import field
 from workhold.asking.declaring import Declaration, Form
 from workhold.cli.commands import make_flag, make_option
 from workhold.cli.values import (
-    number,
     read_choice,
     read_length,
     read_length_from_zero,
+    read_number,
     read_optional_count,
     read_optional_force,
     read_optional_positive_length,
@@ -48,7 +48,7 @@ SEVERAL: frozenset[Form] = frozenset({"faces", "zones", "angles", "names", "ring
 
 
 def make_field_option(row: Declaration) -> Any:
-    """Make the option of a field: the default of a parameter."""
+    """Return the Typer option of a declared field, to stand as the default of a parameter."""
     words = row.typed or row.help
     if row.form == "flag":
         return make_flag(row.section, words, row.option)
@@ -56,7 +56,7 @@ def make_field_option(row: Declaration) -> Any:
 
 
 def format_default(row: Declaration) -> str | None:
-    """Return the default as it would be typed; None where the help says what counts."""
+    """Return a field's default as it would be typed; None where there is none or the help describes it."""
     if row.typed_default:
         return row.typed_default
     if row.default is None or row.form in SEVERAL:
@@ -65,29 +65,31 @@ def format_default(row: Declaration) -> str | None:
 
 
 def make_word_attribute(option: Any) -> Any:
-    """Make the attribute of an option that is no field of a question."""
+    """Return the attrs attribute of an option with a value that belongs to no declared field."""
     kind: Any = str | None
     return field(default=option, type=kind)
 
 
 def make_flag_attribute(option: Any) -> Any:
-    """Make the attribute of an option without a value that is no field."""
+    """Return the attrs attribute of an option without a value that belongs to no declared field."""
     return field(default=option, type=bool)
 
 
 def make_list_attribute(option: Any) -> Any:
-    """Make the attribute of such an option that may be given more than once."""
+    """Return the attrs attribute of an option that may be repeated and belongs to no declared field."""
     kind: Any = list[str] | None
     return field(default=option, type=kind)
 
 
 def make_option_attributes(rows: Iterable[Declaration], **beside: Any) -> dict[str, Any]:
-    """Make the attributes of a group of options: those of fields, and beside them options that are no fields.
+    """Return attrs attributes by name for a group of options:
+    one for each declared field, and the options ``beside`` them.
 
     Parameters
     ----------
-    beside : by its name an option of :func:`make_word_attribute` or :func:`make_list_attribute`, or by the
-        field before which they stand a mapping of such.
+    beside : further options by name. A value is an attribute of :func:`make_word_attribute` and the like,
+        which is put last;
+        or, under a field's name, a mapping of such attributes, which are put before that field.
     """
     out: dict[str, Any] = {}
     for row in rows:
@@ -98,6 +100,7 @@ def make_option_attributes(rows: Iterable[Declaration], **beside: Any) -> dict[s
 
 
 def read_declared_length(row: Declaration, text: str, unit: Unit) -> float | None:
+    """Return the length in mm typed for a field; raise InputError where it is less than the field allows."""
     match row.least:
         case "above 0":
             return read_optional_positive_length(row.option, text, unit)
@@ -107,13 +110,16 @@ def read_declared_length(row: Declaration, text: str, unit: Unit) -> float | Non
 
 
 def read_rings(row: Declaration, texts: list[str], unit: Unit) -> list[tuple[float, ...]]:
+    """Return rings (x, y, least, most) in mm from words such as ``0,0,20,60``."""
     return [read_separated_lengths(row.option, text, ",", 4, unit) for text in texts]
 
 
 def read_separated_lengths(
     option_name: str, text: str, mark: str, count: int, unit: Unit
 ) -> tuple[float, ...]:
-    """Read some lengths with a mark between them; return them in mm."""
+    """Return ``count`` lengths in mm from text with ``mark`` between them;
+    raise InputError for another number of them.
+    """
     words = text.split(mark)
     if len(words) != count:
         raise InputError(
@@ -123,6 +129,7 @@ def read_separated_lengths(
 
 
 def read_day(row: Declaration, text: str, unit: Unit) -> date:
+    """Return the date written as YYYY-MM-DD; raise InputError for anything else."""
     try:
         return date.fromisoformat(text)
     except ValueError:
@@ -132,17 +139,21 @@ def read_day(row: Declaration, text: str, unit: Unit) -> date:
 
 
 def read_faces(row: Declaration, texts: list[str], unit: Unit) -> tuple[int, ...]:
+    """Return numbers of faces from words such as ``1,4``, in the order typed."""
     return tuple(read_whole_number(row.option, word) for text in texts for word in text.split(","))
 
 
 def read_angles(row: Declaration, texts: list[str], unit: Unit) -> tuple[tuple[float, float], ...]:
-    """Return the ranges of angles in degrees from words such as ``-10..10``; a single number is that angle alone."""
+    """Return ranges of angles in degrees from words such as ``-10..10``;
+    a single number is a range of that angle alone.
+    """
     return tuple(read_angle(row.option, text) for text in texts)
 
 
 def read_angle(option_name: str, text: str) -> tuple[float, float]:
+    """Return the range of angles (least, most) in degrees of one word; raise InputError for anything else."""
     low, dots, high = text.partition("..")
-    least, most = (number(word.strip()) for word in ((low, high) if dots else (low, low)))
+    least, most = (read_number(word.strip()) for word in ((low, high) if dots else (low, low)))
     if not (isfinite(least) and isfinite(most)):
         raise InputError(
             f"{option_name} {text!r} is no range of angles: give it in degrees, such as -10..10."
@@ -151,7 +162,9 @@ def read_angle(option_name: str, text: str) -> tuple[float, float]:
 
 
 def read_zone(option_name: str, text: str, unit: Unit) -> Zone:
-    """Read a zone from words such as ``circle=10,5,8`` or ``polygon=0,0;10,0;10,8``."""
+    """Return a keep-out zone from words such as ``circle=10,5,8``
+    or ``polygon=0,0;10,0;10,8``, lengths in ``unit``.
+    """
     from workhold.model.requirements import circle_zone, polygon_zone
 
     kind, _, rest = text.partition("=")
@@ -174,7 +187,7 @@ POWERS = {"kw": 1.0, "hp": 0.7456998715822702}
 
 
 def read_power(option_name: str, text: str) -> float:
-    """Read a power in kW.
+    """Return a power in kW from a number in kW, or with the unit kW or hp.
 
     Examples
     --------
@@ -186,12 +199,13 @@ def read_power(option_name: str, text: str) -> float:
 
 
 def read_force(row: Declaration, text: str, unit: Unit) -> float | None:
+    """Return a force in N; 0.0 is allowed where the field says so, else it must be positive."""
     return 0.0 if row.least == "0" and text.strip() == "0" else read_optional_force(row.option, text)
 
 
 # How the words of an option are read, by the form of its field; words of other forms stay as they are.
 def read_coefficients(option_name: str, text: str) -> dict[str, float]:
-    """Read numbers by name.
+    """Return positive numbers by name from words such as ``jaw=0.15,plate=0.1``.
 
     Examples
     --------
@@ -232,7 +246,8 @@ READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
 
 
 def read_words(rows: Iterable[Declaration], typed: Any, unit: Unit) -> dict[str, Any]:
-    """Read what was typed for fields: their values by name; of those not given the default.
+    """Return the values of declared fields by name, read from what was typed;
+    a field that was not typed has its default.
 
     Parameters
     ----------
@@ -241,12 +256,13 @@ def read_words(rows: Iterable[Declaration], typed: Any, unit: Unit) -> dict[str,
     Raises
     ------
     InputError
-        For words that mean nothing.
+        For words that cannot be read.
     """
     return {row.name: read(row, getattr(typed, row.argument), unit) for row in rows}
 
 
 def read(row: Declaration, words: Any, unit: Unit) -> Any:
+    """Return the value of one declared field from what was typed for it; its default where nothing was."""
     if not words and words != "":
         return row.default
     reader = READERS.get(row.form)

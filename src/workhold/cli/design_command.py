@@ -16,7 +16,7 @@ from workhold.cli.commands import make_flag, make_option, print_remark, spread_o
 from workhold.cli.declared import make_flag_attribute, make_option_attributes, make_word_attribute, read_words
 from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, list_picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import CALLED, PartArgument, PartWords
+from workhold.cli.options import CALLED, PartArgument, PartOptions
 from workhold.cli.outputs import (
     FORCE,
     FORMAT,
@@ -30,13 +30,13 @@ from workhold.cli.outputs import (
     refuse_result_file,
     write_found,
 )
-from workhold.cli.program_options import ProgramWords
-from workhold.cli.progress import search_progress
-from workhold.cli.search_options import QueryWords, SeatingWords, add_dowel_fit, avoid_faces_cut_before
+from workhold.cli.program_options import ProgramOptions
+from workhold.cli.progress import show_search_progress
+from workhold.cli.search_options import QueryOptions, SeatingOptions, add_dowel_fit, avoid_faces_cut_before
 from workhold.cli.setup_sheets import refuse_sheet, write_first_sheet
 from workhold.cli.supports_command import read_asked_thickness, report_supported
 from workhold.cli.table import format_count, print_tables
-from workhold.cli.toolkit_options import ToolkitWords
+from workhold.cli.toolkit_options import ToolkitOptions
 from workhold.cli.values import (
     choose_printed_unit,
     read_choice,
@@ -49,7 +49,7 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from threading import Event
 
-    from workhold.files.part.loaded import Loaded
+    from workhold.files.part.loaded import LoadedPart
     from workhold.model.query import Query
     from workhold.model.result import Result
     from workhold.model.support_triples import Supports
@@ -92,7 +92,7 @@ ENGINE = make_option(
         engine=make_word_attribute(ENGINE),
     )
 )
-class SearchWords:
+class SearchOptions:
     """The options of one search, as typed."""
 
     if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class SearchWords:
 
 
 @frozen
-class OutputWords:
+class OutputOptions:
     """The options of where the answer goes, as typed."""
 
     out: str | None = make_option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal.")
@@ -132,18 +132,18 @@ class OutputWords:
     )
     json_: bool = JSON
 
-    def read_output(self, inputs: tuple[str | None, ...], before: str | None) -> Output:
-        """Return where the answer goes.
+    def read_output(self, inputs: tuple[str | None, ...], before: str | None) -> OutputTarget:
+        """Return where the answer goes, after checking all that can be checked before the search.
 
         Parameters
         ----------
         inputs : files that are read.
-        before : one that is read besides, after the search.
+        before : a further file, which is read after the search.
 
         Raises
         ------
         InputError
-            For what cannot be written there, and two things in one place.
+            For outputs that cannot be written, and two outputs in one place.
         """
         listed = read_whole_number("--list", self.list_)
         form = choose_output_form(self.out, self.format_)
@@ -156,12 +156,12 @@ class OutputWords:
         if folder is not None:
             refuse_output_folder(folder, list_picture_names(), inputs, self.force)
         refuse_sheet(self.sheet, (*inputs, before), self.out, self.force)
-        return Output(self.out, form, folder, listed, self.unfit, self.sheet, before, self.json_)
+        return OutputTarget(self.out, form, folder, listed, self.unfit, self.sheet, before, self.json_)
 
 
 @frozen
-class Output:
-    """Where the answer of a search goes.
+class OutputTarget:
+    """Destinations of a search's answer: file, pictures, sheet and terminal.
 
     Parameters
     ----------
@@ -183,12 +183,12 @@ class Output:
 
     @property
     def stream(self) -> TextIO:
-        """Where words go: stderr where stdout carries the file."""
+        """Stream for printed text: stderr where stdout carries the result file, else stdout."""
         return sys.stderr if self.out == STANDARD_OUTPUT else sys.stdout
 
     @property
     def file(self) -> str | None:
-        """The result file that is no terminal."""
+        """Path of the result file; None without one, and where it goes to stdout."""
         return None if self.out == STANDARD_OUTPUT else self.out
 
 
@@ -209,18 +209,18 @@ class DesignTask:
     """
 
     query: Query
-    loaded: Loaded
+    loaded: LoadedPart
     every: bool
     threads: int | None
     engine: str
     thickness: float | None
     unit: Unit
-    output: Output
+    output: OutputTarget
 
 
 @frozen
 class DesignAnswer:
-    """What the search found.
+    """Result of the search.
 
     Parameters
     ----------
@@ -237,13 +237,13 @@ class DesignAnswer:
 def design(
     part: PartArgument,
     *,
-    held_in: ToolkitWords,
-    words: QueryWords,
-    seated_by: SeatingWords,
-    machined: ProgramWords,
-    searched: SearchWords,
-    written: OutputWords,
-    reading: PartWords,
+    held_in: ToolkitOptions,
+    words: QueryOptions,
+    seated_by: SeatingOptions,
+    machined: ProgramOptions,
+    searched: SearchOptions,
+    written: OutputOptions,
+    reading: PartOptions,
 ) -> None:
     """Find every way to hold PART in a vise, or on a plate with a clamp or two.
 
@@ -259,15 +259,15 @@ def design(
 
 def parse(
     part: str,
-    held_in: ToolkitWords,
-    words: QueryWords,
-    seated_by: SeatingWords,
-    machined: ProgramWords,
-    searched: SearchWords,
-    written: OutputWords,
-    reading: PartWords,
+    held_in: ToolkitOptions,
+    words: QueryOptions,
+    seated_by: SeatingOptions,
+    machined: ProgramOptions,
+    searched: SearchOptions,
+    written: OutputOptions,
+    reading: PartOptions,
 ) -> DesignTask:
-    """Read what was typed: all that is cheap before any file, and all of it before the search."""
+    """Return what was typed as a task, with the part read; cheap checks come before any file is read."""
     shown = read_unit(reading.unit)
     threads = read_optional_count("--threads", searched.threads)
     engine = read_choice("--engine", searched.engine, ENGINES)
@@ -304,7 +304,11 @@ def parse(
 
 
 def ask(asked: DesignTask) -> DesignAnswer:
-    """Search, and write the result file, which a search of very many fixtures does by itself."""
+    """Return the result of the search, after writing the result file.
+
+    A search of very many fixtures writes its file itself while it runs. After a Ctrl-C the result is
+    incomplete.
+    """
     query, engine, output, estimated = asked.query, asked.engine, asked.output, None
     start, is_first_run = perf_counter(), False
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
@@ -318,7 +322,7 @@ def ask(asked: DesignTask) -> DesignAnswer:
 
             compile_seating(cancel)
         streamed = output.out if output.form == "npz" and engine == "curves" else None
-        with search_progress() as progress:
+        with show_search_progress() as progress:
             if engine == "curves":
                 progress(0.0, 0)
                 query, estimated = limit_query_to_best(asked, cancel)
@@ -332,13 +336,16 @@ def ask(asked: DesignTask) -> DesignAnswer:
 
 
 def report(asked: DesignTask, answer: DesignAnswer) -> None:
-    """Print what was found, and make the pictures and the sheet that were asked for."""
+    """Print the result, and make the pictures and the sheet asked for;
+    exit with INTERRUPTED where it is incomplete.
+    """
     (report_as_json if asked.output.as_json else report_in_words)(asked, answer)
     if not answer.result.complete:
         raise typer.Exit(INTERRUPTED)
 
 
 def report_as_json(asked: DesignTask, answer: DesignAnswer) -> None:
+    """Print the result as one JSON object, and make the pictures and the sheet asked for."""
     from workhold.listing.identity import make_entries
     from workhold.presenting.data import describe_result
 
@@ -351,6 +358,7 @@ def report_as_json(asked: DesignTask, answer: DesignAnswer) -> None:
 
 
 def report_in_words(asked: DesignTask, answer: DesignAnswer) -> None:
+    """Print the result as tables and sentences, and make the pictures and the sheet asked for."""
     result, output, unit = answer.result, asked.output, asked.unit
     report_found(result, answer.spent, output, unit)
     supported: tuple[Supports, ...] = ()
@@ -386,7 +394,9 @@ def report_in_words(asked: DesignTask, answer: DesignAnswer) -> None:
 def write_sheet_of_first(
     asked: DesignTask, result: Result, supported: tuple[Supports, ...] = ()
 ) -> int | None:
-    """Write the setup sheet of the first choice; return its rank, or None where there is no fixture."""
+    """Write the setup sheet of the first choice;
+    return its rank from 1, or None where there is no fixture.
+    """
     output = asked.output
     assert output.sheet is not None
     return write_first_sheet(
@@ -395,9 +405,10 @@ def write_sheet_of_first(
 
 
 def limit_query_to_best(asked: DesignTask, cancel: Event) -> tuple[Query, int | None]:
-    """Return the query, or one for the best fixtures where there are very many, and about how many.
+    """Return the query to search, and about how many fixtures there are (None where not estimated).
 
-    A remark says so before the search. Refuses all of very many without a file that can carry them.
+    Where there are very many and --all is not given, it is a query for the best only; a remark says so.
+    Raises InputError where all of very many are asked for without a file that can carry them.
     """
     from workhold.limits import choose_thread_count
     from workhold.model.notes import round_to_two_digits
@@ -428,7 +439,11 @@ def limit_query_to_best(asked: DesignTask, cancel: Event) -> tuple[Query, int | 
 def search_and_stream(
     query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any
 ) -> Result:
-    """Return the answer of an engine; where ``streamed`` names a file it is written during the search."""
+    """Return the result of an engine, "curves" or "algebra";
+    where ``streamed`` is a path, write it there during the search.
+
+    ``watching`` are keyword arguments of the search, such as progress and cancel.
+    """
     if engine == "algebra":
         from workhold.algebra.engine import find_fixtures_by_algebra
         from workhold.search.seated import answer_with_seating
@@ -443,8 +458,8 @@ def search_and_stream(
     return answer(query, threads=threads, **watching)
 
 
-def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None:
-    """Print the notes, the best fixtures, how many there are, and the proof."""
+def report_found(result: Result, spent: str, output: OutputTarget, unit: Unit) -> None:
+    """Print notes, the best fixtures, how many there are, the time spent and the proof."""
     from workhold.cli.tables import (
         count_fixtures_in_words,
         count_unfit_in_words,
@@ -481,9 +496,10 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
 
 
 def make_further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
-    """Return why there is no fixture, and the pictures drawn, as plain data.
+    """Return "explanation", why there is no fixture or None,
+    and "pictures", the paths of those drawn, as plain data.
 
-    A search that was interrupted has neither.
+    The pictures are drawn here. A search that was interrupted has neither.
     """
     explained, written = None, []
     folder, unit = asked.output.folder, asked.unit

@@ -25,17 +25,18 @@ THUMBNAILS, NEAREST_MISS = "thumbnails", "nearest-miss"
 
 
 def list_picture_names() -> list[str]:
+    """Return all file names that pictures of a design may have."""
     ranked = (make_picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
     return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
 
 
 def make_picture_name(place: int) -> str:
-    """Return the name of the picture of the entry in a place, counted from 1, without its ending."""
+    """Return the file name, without its ending, of the picture of the entry at a place, counted from 1."""
     return f"fixture-{place:02d}"
 
 
 def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
-    """Draw one fixture of a result into a folder, as SVG and PNG, and return the files written."""
+    """Draw one fixture of a result into a folder, which is created, as SVG and PNG; return both paths."""
     from workhold.drawing.fixture_pictures import draw_fixture
 
     with explain_system_errors(folder):
@@ -45,7 +46,9 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write pictures, by name, as SVG and PNG, and return the files written; if one fails none is left."""
+    """Write SVG texts by name as SVG and PNG into a folder;
+    return the paths. If one fails, remove all and raise again.
+    """
     from workhold.drawing.render import render
     from workhold.files.atomic import write_bytes
 
@@ -67,7 +70,7 @@ def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
 
 
 def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
-    """Draw the best twelve entries and the thumbnails into a folder, as SVG and PNG; return the files.
+    """Draw the best twelve entries and their thumbnails into a folder as SVG and PNG; return the paths.
 
     The folder is created. Pictures of these names from an earlier design are replaced, or removed where this
     design has fewer fixtures; nothing else in the folder is touched.
@@ -98,9 +101,9 @@ MOST_HELPS = 6
 def explain_none(
     result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
 ) -> None:
-    """Explain what each rule took away, what came nearest, and what would help.
+    """Print what each rule took away, what came nearest, and what would help.
 
-    The nearest miss is drawn into the folder, if there is one, as SVG and PNG.
+    The nearest miss is drawn into ``folder``, unless that is None, as SVG and PNG.
     """
     from workhold.search.explaining import explain
 
@@ -114,7 +117,7 @@ def explain_none(
 def print_explanation(
     explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[Note] = ()
 ) -> None:
-    """Print the explanation, without what was said before."""
+    """Print an explanation of why there is no fixture, leaving out what the notes in ``said`` say already."""
     from workhold.cli.tables import tabulate_fixture_setup
 
     print_tables("", stream=stream)

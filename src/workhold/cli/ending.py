@@ -48,7 +48,7 @@ class Terminated(SystemExit):
     """SIGTERM, as an exception."""
 
 
-class Ending:
+class SignalState:
     """The signals that this process has received, and whether it has findings to keep."""
 
     def __init__(self) -> None:
@@ -62,7 +62,7 @@ class Ending:
         self.code: int | None = None
 
     def note(self, number: int) -> None:
-        """Note a signal: the first starts a timer, a second one ends the process."""
+        """Note a signal: the first one starts a timer that ends the process, a second one ends it at once."""
         now = monotonic()
         if self.noted_at is None:
             self.noted_at = now
@@ -73,16 +73,20 @@ class Ending:
             end_now(number)
 
     def end_impatiently(self, number: int) -> None:
-        """End a program that has not ended in order, unless it keeps what it has found."""
+        """End a process that has not ended by itself,
+        unless it is keeping what it has found after a Ctrl-C.
+        """
         if not (number == signal.SIGINT and self.keeping):
             end_now(number)
 
 
-ending = Ending()
+ending = SignalState()
 
 
 def end_on_signals() -> None:
-    """Make Ctrl-C and SIGTERM end this process from now on, within two seconds."""
+    """Install handlers so that Ctrl-C and SIGTERM end this process within two seconds;
+    call it in the main thread.
+    """
     if ending.watched or threading.current_thread() is not threading.main_thread():
         return
     ending.watched = True
@@ -98,26 +102,30 @@ def end_on_signals() -> None:
 
 
 def watch(reader: int) -> None:
-    """Note every signal that Python has a handler for, even while that handler has to wait."""
+    """Note every signal read from a pipe, as a byte each, until it closes; runs in a thread of its own."""
     while numbers := os.read(reader, 1):
         if numbers[0] in CODES:
             ending.note(numbers[0])
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """Raise :class:`Interrupted` on Ctrl-C."""
+    """Raise :class:`Interrupted`; the handler of Ctrl-C."""
     ending.heard = True
     raise Interrupted
 
 
 def terminate(number: int, frame: FrameType | None) -> None:
-    """End on SIGTERM through the interpreter, so that temporary files are removed."""
+    """Raise :class:`Terminated`, so that the interpreter ends and removes temporary files;
+    the handler of SIGTERM.
+    """
     ending.heard, ending.code = True, TERMINATED
     raise Terminated(TERMINATED)
 
 
 def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
-    """End at once where a signal's exception cannot be passed on, as in a callback of a compiled library."""
+    """End at once where the exception of a signal was lost,
+    as in a callback of a compiled library; the unraisable hook.
+    """
     for kind, number in ((Interrupted, signal.SIGINT), (Terminated, signal.SIGTERM)):
         if issubclass(lost.exc_type, kind):
             end_now(number)
@@ -125,16 +133,15 @@ def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
 
 
 def leave(code: int) -> NoReturn:
-    """End the program in order with an exit code."""
+    """Exit with a code through SystemExit, noting the code for :func:`keep_the_code`."""
     ending.code = code
     sys.exit(code)
 
 
 def keep_the_code() -> None:
-    """Make signals leave the exit code alone while Python clears up.
+    """Ignore signals while Python shuts down, so that they do not change the exit code; runs at exit.
 
-    By then the output is written and the threads have ended. A program that has received a signal does not
-    wait for the rest.
+    Output is written and threads have ended by then. A process that has received a signal exits here at once.
     """
     for number in CODES:
         signal.signal(number, signal.SIG_IGN)
@@ -146,7 +153,9 @@ def keep_the_code() -> None:
 
 
 def end_now(number: int) -> None:
-    """End this process from any thread, without unfinished files."""
+    """Remove unfinished files and end this process at once,
+    from any thread, with the exit code of a signal.
+    """
     atomic = sys.modules.get("workhold.files.atomic")
     if atomic is not None:
         atomic.remove_unfinished()
@@ -157,7 +166,7 @@ def end_now(number: int) -> None:
 
 
 def say_interrupted() -> None:
-    """Print one sentence, once."""
+    """Print on stderr, once, that the command was interrupted."""
     if not ending.said:
         ending.said = True
         line = PLAIN_LINE if os.isatty(2) else b""
@@ -166,16 +175,15 @@ def say_interrupted() -> None:
 
 
 def keep_what_is_found() -> None:
-    """Give an interrupted search, if there is one, the time to return what it has found."""
+    """Note that there are findings to keep, so that an interrupted search is given time to return them."""
     ending.keeping = True
 
 
 @contextmanager
 def ask_to_stop(then: str) -> Iterator[threading.Event]:
-    """Yield an event that Ctrl-C within the block sets; ``then`` says on stderr what happens next.
+    """Yield an event that Ctrl-C sets within the block; ``then`` says on stderr what happens next.
 
-    Another Ctrl-C ends the program, and so does a moment without any finding (see
-    :func:`keep_what_is_found`).
+    A second Ctrl-C ends the program, and so does a moment without findings (see :func:`keep_what_is_found`).
     """
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():
@@ -183,6 +191,7 @@ def ask_to_stop(then: str) -> Iterator[threading.Event]:
         return
 
     def stop(number: int, frame: FrameType | None) -> None:
+        """Set the event at the first Ctrl-C, and say so."""
         ending.heard = True
         if not event.is_set():
             event.set()

@@ -13,16 +13,16 @@ from attrs import frozen
 
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import CALLED, PartArgument, PartWords
+from workhold.cli.options import CALLED, PartArgument, PartOptions
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
-from workhold.cli.program_options import SOLIDS, ProgramWords
-from workhold.cli.progress import search_progress
-from workhold.cli.search_options import QueryWords
+from workhold.cli.program_options import SOLIDS, ProgramOptions
+from workhold.cli.progress import show_search_progress
+from workhold.cli.search_options import QueryOptions
 from workhold.cli.table import Table, print_tables
 from workhold.cli.toolkit_options import (
     SWEEP,
     TOOLKIT,
-    ListWords,
+    ToolkitListOptions,
     collect_carrier_heights,
     find_peg_diameter,
     list_toolkits_to_try,
@@ -33,9 +33,9 @@ from workhold.errors import InputError
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.files.part.loaded import Loaded
+    from workhold.files.part.loaded import LoadedPart
     from workhold.model.query import Query
-    from workhold.search.design import Explored
+    from workhold.search.design import ToolkitOutcome
 
 __all__ = ["explore"]
 
@@ -49,7 +49,7 @@ VISES = make_option(
 
 
 @frozen
-class TableWords:
+class TableOptions:
     """The options of where the table goes, as typed."""
 
     out: str | None = make_option(None, "FILE", "Write the table to this file, as comma-separated values.")
@@ -68,15 +68,16 @@ class ExploreTask:
     unit : of lengths shown.
     """
 
-    loaded: Sequence[Loaded]
+    loaded: Sequence[LoadedPart]
     queries: Sequence[tuple[str, Query | InputError]]
-    written: TableWords
+    written: TableOptions
     unit: Unit
 
     @property
     def ranking(self) -> tuple[str, ...]:
-        """The figures in the table: toolkits with one clamp and with two have a usual ranking each, and that
-        of the first that can be asked counts."""
+        """Keys of the figures in the table:
+        those of the first toolkit that can be tried; () where there is none.
+        """
         return next((query.rank_by for _, query in self.queries if not isinstance(query, InputError)), ())
 
 
@@ -86,11 +87,11 @@ def explore(
     *,
     vise: list[str] | None = VISES,
     toolkit: str | None = TOOLKIT,
-    varied: ListWords,
-    words: QueryWords,
-    machined: ProgramWords,
-    written: TableWords,
-    reading: PartWords,
+    varied: ToolkitListOptions,
+    words: QueryOptions,
+    machined: ProgramOptions,
+    written: TableOptions,
+    reading: PartOptions,
 ) -> None:
     """Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.
 
@@ -107,13 +108,13 @@ def parse(
     part: str,
     vise: list[str] | None,
     toolkit: str | None,
-    varied: ListWords,
-    words: QueryWords,
-    machined: ProgramWords,
-    written: TableWords,
-    reading: PartWords,
+    varied: ToolkitListOptions,
+    words: QueryOptions,
+    machined: ProgramOptions,
+    written: TableOptions,
+    reading: PartOptions,
 ) -> ExploreTask:
-    """Read what was typed and the part, and make the query of each toolkit."""
+    """Return what was typed as a task, with the part read and a query made for each toolkit."""
     shown = read_unit(reading.unit)
     toolkits = list_toolkits_to_try(vise, toolkit, varied, shown)
     asked = words.read_arguments(shown, machined.program is not None, machined.has_forces)
@@ -139,18 +140,20 @@ def parse(
 
 
 def read_for(
-    diameters: Iterable[float | None], part: str, heights: Mapping[str, Sequence[float]], reading: PartWords
-) -> dict[float | None, Loaded]:
-    """Read the part once for each diameter of pegs; what was remarked of one reading is not said again."""
-    loaded: dict[float | None, Loaded] = {}
+    diameters: Iterable[float | None], part: str, heights: Mapping[str, Sequence[float]], reading: PartOptions
+) -> dict[float | None, LoadedPart]:
+    """Return the part read once for each diameter of pegs in
+    mm (None: as given), by diameter; print each remark once.
+    """
+    loaded: dict[float | None, LoadedPart] = {}
     for one in dict.fromkeys(diameters):
         said = {remark for each in loaded.values() for remark in each.remarks}
         loaded[one] = reading.load(part, heights, one, said)
     return loaded
 
 
-def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[Loaded]) -> None:
-    """Refuse, before any toolkit is tried, faces that do not exist, and those whose numbers are not sure."""
+def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[LoadedPart]) -> None:
+    """Raise InputError for numbers of faces that do not exist or are not sure in any reading of the part."""
     from workhold.contact.features import find_face_of_segment
     from workhold.files.part.load import refuse_unsure_numbers
 
@@ -161,29 +164,31 @@ def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[Loaded]) -> 
             find_face_of_segment(each.workpiece, number)
 
 
-def ask(asked: ExploreTask) -> list[Explored]:
-    """Try the toolkits, as many as are done before a Ctrl-C."""
+def ask(asked: ExploreTask) -> list[ToolkitOutcome]:
+    """Return the outcome of each toolkit in order, or of those tried before a Ctrl-C."""
     from workhold.cli.warming import compile_kernels
     from workhold.search.design import explore as try_all
 
-    found: list[Explored] = []
+    found: list[ToolkitOutcome] = []
     with ask_to_stop("the results so far are kept") as cancel:
         compile_kernels(cancel)
-        with search_progress() as progress:
+        with show_search_progress() as progress:
             for item in try_all(asked.queries, cancel):
                 found.append(item)
                 progress(len(found) / len(asked.queries), sum(one.fixtures for one in found))
     return found
 
 
-def report(asked: ExploreTask, found: list[Explored]) -> None:
-    """Print the table and the first choice, and write the file."""
+def report(asked: ExploreTask, found: list[ToolkitOutcome]) -> None:
+    """Print the table and the first choice, and write the file;
+    exit with INTERRUPTED where some were not tried.
+    """
     from workhold.files.atomic import write_text_file
     from workhold.files.toolkit_file import is_sold
-    from workhold.search.design import first_choice
+    from workhold.search.design import choose_first_toolkit
 
     out, types = asked.written.out, list(dict.fromkeys(name for one in found for name in one.found))
-    first = first_choice(found, asked.ranking, is_sold)
+    first = choose_first_toolkit(found, asked.ranking, is_sold)
     if not asked.written.json_:
         print_explored(asked, found, types, first)
     if out is not None:
@@ -205,8 +210,10 @@ def report(asked: ExploreTask, found: list[Explored]) -> None:
 FIGURES_KEPT = 3
 
 
-def list_known_figures(item: Explored, query: tuple[str, Query | InputError]) -> dict[str, float]:
-    """Return the figures of a toolkit's first fixture, with an infinite edge distance where there is no edge."""
+def list_known_figures(item: ToolkitOutcome, query: tuple[str, Query | InputError]) -> dict[str, float]:
+    """Return the figures of a toolkit's first fixture by key,
+    the edge distance inf where there is no edge; {} without any.
+    """
     from workhold.presenting.figure_words import find_edgeless_distance, mark_edgeless
 
     asked = query[1]
@@ -216,9 +223,9 @@ def list_known_figures(item: Explored, query: tuple[str, Query | InputError]) ->
 
 
 def print_explored(
-    asked: ExploreTask, found: list[Explored], types: list[str], best: Explored | None
+    asked: ExploreTask, found: list[ToolkitOutcome], types: list[str], best: ToolkitOutcome | None
 ) -> None:
-    """Print the table and say which toolkit is best."""
+    """Print the table, the reasons of toolkits without fixtures, and which toolkit is the first choice."""
     from workhold.cli.tables import explain_sliding_part
     from workhold.files.toolkit_file import is_sold
     from workhold.model.jaw_hold import HOLD_FIGURES
@@ -267,8 +274,8 @@ def print_explored(
         print_tables(*sliding[0])
 
 
-def format_csv_table(found: list[Explored], types: list[str]) -> str:
-    """Format the table as comma-separated values; lengths in mm, forces in N."""
+def format_csv_table(found: list[ToolkitOutcome], types: list[str]) -> str:
+    """Return the table as comma-separated values; lengths in mm, forces in N."""
     from workhold.model.quality import FIGURES
 
     stream = io.StringIO()

@@ -17,16 +17,16 @@ from attrs import frozen
 from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import list_family_parts, make_family_queries
-from workhold.cli.options import PartWords
+from workhold.cli.options import PartOptions
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output
-from workhold.cli.progress import search_progress
-from workhold.cli.search_options import QueryWords
+from workhold.cli.progress import show_search_progress
+from workhold.cli.search_options import QueryOptions
 from workhold.cli.table import Table, format_count, print_tables
-from workhold.cli.toolkit_options import ToolkitWords
+from workhold.cli.toolkit_options import ToolkitOptions
 from workhold.cli.values import (
     choose_printed_unit,
-    number,
     read_choice,
+    read_number,
     read_optional_count,
     read_picture_ending,
     read_positive_number,
@@ -37,9 +37,9 @@ from workhold.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from workhold.family.family import Asked, Family, LeftOut
-    from workhold.family.members import Threshold
-    from workhold.family.plan import Plan, SetUp
+    from workhold.family.family import ExcludedPart, Family, MemberRequest
+    from workhold.family.members import FigureThreshold
+    from workhold.family.plan import FamilyPlan, SetUp
     from workhold.units import Unit
 
 __all__ = ["family"]
@@ -60,7 +60,7 @@ PartsArgument = Annotated[
 
 
 @frozen
-class FamilyWords:
+class FamilyOptions:
     """The options of the set-ups that are sought, as typed."""
 
     max_loss: str | None = make_option(
@@ -103,10 +103,11 @@ class FamilyWords:
 
     @property
     def ask_for_plan(self) -> bool:
+        """Whether a plan is asked for, by a number of set-ups or a largest loss."""
         return self.setups is not None or self.max_loss is not None
 
     def read_arguments(self) -> dict[str, Any]:
-        """Return keyword arguments of ``family.family.make_family``."""
+        """Return keyword arguments of ``family.family.make_family`` from the options as typed."""
         return {
             "most_loss": None if self.max_loss is None else read_largest_loss(self.max_loss),
             "seconds": read_positive_number("--time-limit", self.time_limit),
@@ -118,7 +119,7 @@ class FamilyWords:
 
 
 @frozen
-class FamilyOutputWords:
+class FamilyOutputOptions:
     """The options of where curve and plans go, as typed."""
 
     out: str | None = make_option(OUTPUT, "FILE", "Write curve and plans to this JSON file.")
@@ -135,7 +136,7 @@ class FamilyOutputWords:
     json_: bool = JSON
 
     def refuse(self, inputs: Sequence[str | Path | None], has_plan: bool) -> None:
-        """Refuse, before anything is searched, what cannot be written."""
+        """Raise InputError for outputs that cannot be written, before anything is searched."""
         if self.draw is not None:
             read_picture_ending(Path(self.draw))
         if self.sheets is not None and Path(self.sheets).suffix.lower() not in SHEET_ENDINGS:
@@ -165,12 +166,12 @@ class FamilyTask:
     unit : of lengths shown.
     """
 
-    members: Sequence[Asked]
-    left_out: Sequence[LeftOut]
+    members: Sequence[MemberRequest]
+    left_out: Sequence[ExcludedPart]
     rules: Mapping[str, Any]
     setups: int | None
     has_plan: bool
-    written: FamilyOutputWords
+    written: FamilyOutputOptions
     unit: Unit
 
 
@@ -179,7 +180,7 @@ class FamilyAnswer:
     """The family that was found, the plan that was asked for, and the time it took in words."""
 
     found: Family
-    plan: Plan | None
+    plan: FamilyPlan | None
     spent: str
 
 
@@ -187,11 +188,11 @@ class FamilyAnswer:
 def family(
     parts: PartsArgument,
     *,
-    held_in: ToolkitWords,
-    planned: FamilyWords,
-    words: QueryWords,
-    written: FamilyOutputWords,
-    reading: PartWords,
+    held_in: ToolkitOptions,
+    planned: FamilyOptions,
+    words: QueryOptions,
+    written: FamilyOutputOptions,
+    reading: PartOptions,
 ) -> None:
     """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
 
@@ -208,13 +209,13 @@ def family(
 
 def parse(
     parts: list[str],
-    held_in: ToolkitWords,
-    planned: FamilyWords,
-    words: QueryWords,
-    written: FamilyOutputWords,
-    reading: PartWords,
+    held_in: ToolkitOptions,
+    planned: FamilyOptions,
+    words: QueryOptions,
+    written: FamilyOutputOptions,
+    reading: PartOptions,
 ) -> FamilyTask:
-    """Read what was typed, and the parts."""
+    """Return what was typed as a task, with the parts read."""
     shown = read_unit(reading.unit)
     setups = read_optional_count("--setups", planned.setups)
     rules = planned.read_arguments()
@@ -238,7 +239,10 @@ def parse(
 
 
 def ask(asked: FamilyTask) -> FamilyAnswer:
-    """Look for the patterns that hold the parts, and for the plan."""
+    """Return the family of patterns that hold the parts, and the plan if asked for.
+
+    A Ctrl-C while kernels are compiled exits with INTERRUPTED.
+    """
     from workhold.cli.warming import compile_kernels
 
     start = perf_counter()
@@ -248,14 +252,14 @@ def ask(asked: FamilyTask) -> FamilyAnswer:
         raise typer.Exit(INTERRUPTED)
     from workhold.family.family import make_family
 
-    with search_progress(keeps=False) as progress:
+    with show_search_progress(keeps=False) as progress:
         found = make_family(asked.members, left_out=asked.left_out, progress=progress, **asked.rules)
     plan = found.plan(asked.setups) if found.members and asked.has_plan else None
     return FamilyAnswer(found, plan, f"{perf_counter() - start:.1f} s{compiled}")
 
 
 def report(asked: FamilyTask, answer: FamilyAnswer) -> None:
-    """Write the files, and print the curve and the plan."""
+    """Write the files, and print curve and plan, or JSON."""
     written = write_files(asked, answer)
     if asked.written.json_:
         from json import loads
@@ -270,6 +274,7 @@ def report(asked: FamilyTask, answer: FamilyAnswer) -> None:
 
 
 def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
+    """Write the files that were asked for and can be made; return their names."""
     from workhold.files.atomic import write_bytes
 
     found, plan, names, contents = answer.found, answer.plan, asked.written, dict[str, bytes]()
@@ -296,6 +301,7 @@ def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
 
 
 def print_family(answer: FamilyAnswer, unit: Unit) -> None:
+    """Print what was left out, the curve and the plan, each where there is one."""
     found, plan, spent = answer.found, answer.plan, answer.spent
     toolkit = found.toolkit
     for part in found.left_out:
@@ -324,8 +330,8 @@ def print_family(answer: FamilyAnswer, unit: Unit) -> None:
     print_plan(plan, found, unit)
 
 
-def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
-    """Print which pegs stand where in each set-up, and how each part lies."""
+def print_plan(plan: FamilyPlan, found: Family, unit: Unit) -> None:
+    """Print for each set-up the holes of its pegs, and how each part lies in it."""
     for count, setup in enumerate(plan.setups, 1):
         holes = ", ".join(peg.hole for peg in setup.standing.fixture.placed)
         heading = f"Set-up {count} of {len(plan.setups)}: {holes}"
@@ -345,6 +351,7 @@ def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
 
 
 def tabulate_family_curve(found: Family, unit: Unit) -> Table:
+    """Return a table with a row for each number of set-ups: loss, pegs moved, figure and worst part."""
     from workhold.family.members import format_loss
     from workhold.presenting.figure_words import format_figure_number, make_heading
 
@@ -366,6 +373,9 @@ def tabulate_family_curve(found: Family, unit: Unit) -> Table:
 
 
 def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
+    """Return a table with a row for each part that a set-up holds:
+    fixture, pose, lengths to set, loss and figure.
+    """
     from workhold.family.members import format_loss
     from workhold.model.setup import list_length_settings
     from workhold.presenting.figure_words import format_figure_number, make_heading
@@ -385,13 +395,15 @@ def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
     for one in setup.holdings:
         fixture = one.fixture
         pose = fixture.pose
-        lengths = [unit.number(setting.length) for setting in list_length_settings(fixture, found.toolkit)]
+        lengths = [
+            unit.format_number(setting.length) for setting in list_length_settings(fixture, found.toolkit)
+        ]
         table.add_row(
             one.member.name,
             f"{one.number:,}" + ("'" if one.turned else ""),
             f"{pose.written_deg:.3f}",
-            unit.number(pose.x),
-            unit.number(pose.y),
+            unit.format_number(pose.x),
+            unit.format_number(pose.y),
             *lengths,
             format_loss(one.loss),
             format_figure_number(found.figure, one.figure, unit),
@@ -400,8 +412,8 @@ def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
 
 
 def read_largest_loss(text: str) -> float:
-    """Read a largest loss; refuse what is no number from 1 upward."""
-    value = number(text)
+    """Return a largest loss; raise InputError for what is no number of 1 or more."""
+    value = read_number(text)
     if not (isfinite(value) and value >= 1.0):
         raise InputError(
             f"--max-loss {text!r} is no loss: give 1 (the best each part has) or more, such as 1.25."
@@ -409,13 +421,15 @@ def read_largest_loss(text: str) -> float:
     return value
 
 
-def read_threshold(text: str) -> Threshold:
-    """Read a threshold from words such as ``location-error=0.05``."""
+def read_threshold(text: str) -> FigureThreshold:
+    """Return a threshold of a figure from words such as ``location-error=0.05``;
+    raise InputError for anything else.
+    """
     from workhold.family.members import make_threshold
 
     name, equals, value = text.partition("=")
-    if not equals or not isfinite(number(value)):
+    if not equals or not isfinite(read_number(value)):
         raise InputError(
             f"--limit {text!r} is no limit: give a figure and its value, such as location-error=0.05."
         )
-    return make_threshold(name, number(value))
+    return make_threshold(name, read_number(value))

@@ -5,29 +5,33 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from workhold.cli.need_table import tabulate_needs
-from workhold.cli.strap_tables import first_strap_sentence, strap_table, strapped_fixture_tables
+from workhold.cli.strap_tables import describe_completeness, tabulate_strapped_fixture, tabulate_straps
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_figure_number, format_rounded, make_short_heading
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.listing.identity import Entries
+    from workhold.listing.identity import ShownEntries
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
 
-__all__ = ["explain_first_hold", "hold_fixture_tables", "hold_table"]
+__all__ = ["explain_first_hold", "tabulate_hold_setup", "tabulate_holds"]
 
 # Figures that a table has where all else fits.
 SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "contact_area")
 
 
-def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
-    """Tabulate the best holds: what lies on the fixed jaw, parallels, stop and opening, and figures."""
+def tabulate_holds(result: Result, entries: ShownEntries, count: int, unit: Unit) -> Table:
+    """Return a table of the first ``count`` entries:
+    what lies on the fixed jaw, parallels, stop, opening and figures.
+
+    Toolkits with straps have a table of their own.
+    """
     from workhold.model.hold_words import describe_touched_faces
     from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
 
     if result.toolkit.strap_set is not None:
-        return strap_table(result, entries, count, unit)
+        return tabulate_straps(result, entries, count, unit)
     known = {key for hold in result.holds for key in hold.figures}
     figures = [figure for figure in HOLD_FIGURES if figure.key in SHOWN and figure.key in known]
     short = unit.abbreviation
@@ -51,9 +55,9 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
         table.add_row(
             str(index + 1),
             describe_touched_faces(hold.fixed),
-            unit.number(hold.parallels, 1) if hold.parallels else "bed",
+            unit.format_number(hold.parallels, 1) if hold.parallels else "bed",
             *((hold.stop or "",) if has_stop else ()),
-            unit.number(hold.opening),
+            unit.format_number(hold.opening),
             format_rounded(fixture.pose.written_deg, 3),
             *(
                 format_figure_number(figure, hold.figures[figure.key], unit)
@@ -66,31 +70,36 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
 
 
 def explain_first_hold(result: Result, unit: Unit) -> str:
-    """Say why the first hold stands first, and with which friction."""
-    from workhold.model.hold_words import describe_coefficients, hold_reasons
+    """Return a sentence on why the first hold stands first and,
+    with loads, with which friction forces are stated.
+    """
+    from workhold.model.hold_words import describe_coefficients, list_hold_reasons
 
     first = result[0]
     if result.toolkit.strap_set is not None:
-        return first_strap_sentence(result, unit)
-    said = f"First: {'; '.join(hold_reasons(first, unit))}."
+        return describe_completeness(result, unit)
+    said = f"First: {'; '.join(list_hold_reasons(first, unit))}."
     return f"{said} {describe_coefficients(result.query)}" if result.query.is_loaded else said
 
 
-def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
-    """Say how to set up one hold, with lengths in a unit, and what each load asks for."""
+def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
+    """Return sentences and tables on how to set up one hold, what each load asks for, and its warnings.
+
+    ``rank`` counts from 1, ``total`` is the number of fixtures listed, and ``unit`` is that of lengths shown.
+    """
     from workhold.model.hold_words import describe_coefficients, write_setup_sentences, write_warnings
     from workhold.model.jaw_hold import JawHold
-    from workhold.statics.jaw_program import asked_words
+    from workhold.statics.jaw_program import describe_asked_force
 
     hold, query = fixture.hold, fixture.listing.result.query
     if not isinstance(hold, JawHold):
-        return strapped_fixture_tables(fixture, rank, total, unit)
+        return tabulate_strapped_fixture(fixture, rank, total, unit)
     steps = (f"{step}." for step in write_setup_sentences(fixture, query, unit))
     tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
     if query.is_loaded:
         tables.append(describe_coefficients(query))
     if hold.program_need is not None and query.program is not None:
-        tables.append(asked_words(hold.program_need, query.program, unit))
+        tables.append(describe_asked_force(hold.program_need, query.program, unit))
     if hold.clamp_needed_each:
         tables.append(
             tabulate_needs(

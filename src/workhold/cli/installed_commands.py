@@ -91,22 +91,24 @@ def doctor(json_: bool = JSON) -> None:
 
 
 def tabulate_findings(findings: list[InstallationRow]) -> Table:
-    """Return the findings, one line each; what is missing is red on a terminal."""
+    """Return the findings as a table, one row each; rows of what is missing are red on a terminal."""
     rows: list[tuple[str, ...]] = [(found.what, found.state, found.use) for found in findings]
     missing = {number for number, found in enumerate(findings) if found.remedy}
     return Table(("part", "state", "what it does"), rows, missing)
 
 
 def find_kernels() -> InstallationRow:
-    """Return where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
+    """Return where the compiled kernels come from: the package,
+    or numba and its cache on disk; or that they are missing.
+    """
     use = "The arithmetic of every search."
-    from workhold.kernels.base.libraries import KERNELS, ROOMS, cache_folder, find_in, is_built
+    from workhold.kernels.base.libraries import KERNELS, ROOMS, find_in, is_built, make_cache_folder
 
     if all(find_in(KERNELS, room) for room in ROOMS):
         return InstallationRow("kernels", BUILT, use)
     if find_spec("numba") is None:
         return InstallationRow("kernels", "missing", use, "pip install numba")
-    folder = cache_folder()
+    folder = make_cache_folder()
     if folder is None:
         remedy = "set WORKHOLD_CACHE_DIR to a folder that can be written."
         return InstallationRow(
@@ -117,17 +119,16 @@ def find_kernels() -> InstallationRow:
 
 
 def find_extras(is_built: bool) -> Iterator[InstallationRow]:
-    """Yield what was found of each extra, in the order of :data:`USES`.
+    """Yield what is installed of each extra, in the order of :data:`USES`.
 
-    ``is_built`` says whether the package has compiled kernels for this machine, so that nothing is compiled
-    here.
+    ``is_built`` says that the package has compiled kernels for this machine, so that numba is not needed.
     """
     asked = list_requirements()
     for extra, use in USES.items():
         if extra == "numba" and is_built:
             yield InstallationRow(extra, "not needed here", use)
             continue
-        found = [state_of(name, least) for name, least in asked.get(extra, [])]
+        found = [describe_distribution(name, least) for name, least in asked.get(extra, [])]
         lacking = [state for state, is_usable in found if not is_usable]
         # By the libraries' own names, which are found wherever this copy of workhold came from.
         wanted = [
@@ -144,7 +145,10 @@ def find_extras(is_built: bool) -> Iterator[InstallationRow]:
 
 
 def list_requirements() -> dict[str, list[tuple[str, str]]]:
-    """Return what each extra asks for, with least versions; empty for a copy that was not installed."""
+    """Return for each extra the (distribution, least version) that it asks for, "0" for any version.
+
+    The dict is empty for a copy that was not installed as a package.
+    """
     try:
         lines = metadata.requires("workhold") or []
     except metadata.PackageNotFoundError:
@@ -156,8 +160,10 @@ def list_requirements() -> dict[str, list[tuple[str, str]]]:
     return asked
 
 
-def state_of(name: str, least: str) -> tuple[str, bool]:
-    """Return a distribution's name with its version or what is wrong with it, and whether it can be used."""
+def describe_distribution(name: str, least: str) -> tuple[str, bool]:
+    """Return words on a distribution (its version, or that it is missing or too old),
+    and whether it can be used.
+    """
     if find_spec(MODULES.get(name, name)) is None:
         return f"{name} missing", False
     try:
@@ -171,7 +177,7 @@ def state_of(name: str, least: str) -> tuple[str, bool]:
 
 
 def split_version(version: str) -> list[int]:
-    """Return the numbers of a version, to compare by.
+    """Return the numbers in a version, to compare versions by.
 
     >>> split_version("8.0.1rc2") < split_version("8.1")
     True
@@ -180,7 +186,7 @@ def split_version(version: str) -> list[int]:
 
 
 def find_step_fault() -> str | None:
-    """Return what keeps STEP files from being read, with its remedy: the system may lack a library."""
+    """Return why STEP files cannot be read, with a remedy; None where they can."""
     from workhold.files.step.library import load_step_library
 
     try:
@@ -191,7 +197,7 @@ def find_step_fault() -> str | None:
 
 
 def make_toolkit_schema() -> dict[str, Any]:
-    """Return the schema of a toolkit's TOML file: one of those of the kinds."""
+    """Return the JSON Schema of a toolkit's TOML file: one of the schemas of the kinds."""
     from pydantic import TypeAdapter
 
     from workhold.files.input_forms import FORMS, join_forms
@@ -217,10 +223,10 @@ SCHEMAS = {
 
 
 def make_schema(name: str) -> dict[str, Any]:
-    """Return the JSON Schema of a name.
+    """Return the JSON Schema with a name of :data:`SCHEMAS`.
 
-    Forms of which a word in the file chooses one differ in all they say, so that a file must fit at least one
-    of them.
+    Where a word in the file chooses one of several forms, the forms differ in their fields, so it is enough
+    that a file fits at least one of them.
     """
     from workhold.files.input_forms import LoadsFile, WorkpieceFile
     from workhold.files.result.fixture_forms import ResultFile
@@ -242,7 +248,7 @@ def make_schema(name: str) -> dict[str, Any]:
 
 
 def loosen_schema(schema: Any) -> Any:
-    """Replace "exactly one of these" by "any of these" throughout a schema."""
+    """Return a schema with "oneOf" replaced by "anyOf" at all depths."""
     if isinstance(schema, dict):
         return {("anyOf" if key == "oneOf" else key): loosen_schema(value) for key, value in schema.items()}
     return [loosen_schema(one) for one in schema] if isinstance(schema, list) else schema

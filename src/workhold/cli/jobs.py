@@ -25,14 +25,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from attrs import AttrsInstance, evolve, fields, fields_dict, frozen, resolve_types
 
 from workhold.cli.commands import print_remark
-from workhold.cli.options import CALLED, PartWords
-from workhold.cli.program_options import ProgramWords
-from workhold.cli.search_options import QueryWords, SeatingWords, add_dowel_fit
+from workhold.cli.options import CALLED, PartOptions
+from workhold.cli.program_options import ProgramOptions
+from workhold.cli.search_options import QueryOptions, SeatingOptions, add_dowel_fit
 from workhold.cli.values import read_unit
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.family.family import Asked, LeftOut
+    from workhold.family.family import ExcludedPart, MemberRequest
     from workhold.files.part_list import ListedPart
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Tolerance
@@ -41,8 +41,8 @@ __all__ = ["JOB_ENDINGS", "make_family_queries", "list_family_parts", "read_jobs
 
 JOB_ENDINGS = (".csv", ".toml")
 PART, TOOLKIT = "part", "toolkit"
-GROUPS = PartWords, QueryWords, SeatingWords, ProgramWords
-Words = TypeVar("Words", PartWords, QueryWords, SeatingWords, ProgramWords)
+GROUPS = PartOptions, QueryOptions, SeatingOptions, ProgramOptions
+Words = TypeVar("Words", PartOptions, QueryOptions, SeatingOptions, ProgramOptions)
 KEYS = (PART, TOOLKIT, *(name for group in GROUPS for name in fields_dict(group)))
 KINDS = {one.name: one.type for group in GROUPS for one in fields(resolve_types(group))}
 # How words that are true or false are written.
@@ -53,7 +53,7 @@ FILES = (PART, TOOLKIT, "loads", "program", "tools")
 
 
 @frozen
-class JobWords:
+class JobOptions:
     """A job of a file.
 
     Parameters
@@ -71,14 +71,20 @@ class JobWords:
     options: Mapping[str, Any]
 
     def replace_options(self, typed: Words) -> Words:
-        """Return the options of a group as typed, with those of the file in their place."""
+        """Return a group of options as typed,
+        with each option that the job's file gives replaced by the file's.
+        """
         return evolve(typed, **self.make_options(type(typed)))
 
     def make_options(self, group: type[AttrsInstance]) -> dict[str, Any]:
+        """Return the options that the file gives and this group has, by name."""
         return {name: self.options[name] for name in fields_dict(group) if name in self.options}
 
 
-def read_jobs(path: Path) -> list[JobWords]:
+def read_jobs(path: Path) -> list[JobOptions]:
+    """Return the jobs of a TOML or CSV file in order;
+    raise InputError for a file without jobs or with unknown words.
+    """
     from workhold.files.budget import LIMITS
     from workhold.files.tables import SAVED
     from workhold.files.text import read_text
@@ -98,6 +104,7 @@ def read_jobs(path: Path) -> list[JobWords]:
 
 
 def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
+    """Yield the entries of each job: those above all jobs, then the job's own, which take precedence."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import MOST_COLUMNS
     from workhold.files.text import parse_toml
@@ -118,7 +125,7 @@ def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def read_csv_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yield the cells of each row of a CSV file, without those in which nothing is given."""
+    """Yield the cells of each row by column, empty ones left out; a cell of a list column is split at "|"."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import NOT_GIVEN, read_table
 
@@ -128,11 +135,14 @@ def read_csv_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def normalize_word(key: str) -> str:
-    """Normalize the name of a word: ``jaw-force`` is ``jaw_force``."""
+    """Return the name of a word in small letters with underscores, so that "Jaw-force" is "jaw_force"."""
     return key.strip().lower().replace("-", "_").replace(" ", "_").replace("toolkits", TOOLKIT)
 
 
-def make_job(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
+def make_job(entry: Mapping[str, Any], place: str, folder: Path) -> JobOptions:
+    """Return a job made of a file's entries;
+    ``place`` names it in messages, and files are sought in ``folder`` first.
+    """
     words: dict[str, Any] = {}
     for key, value in entry.items():
         name = normalize_word(key)
@@ -152,10 +162,13 @@ def make_job(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
         words[name] = values if name in LISTS else ",".join(values)
     if PART not in words:
         raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
-    return JobWords(place, words.pop(PART), words.pop(TOOLKIT, None), words)
+    return JobOptions(place, words.pop(PART), words.pop(TOOLKIT, None), words)
 
 
 def read_flag(value: Any, place: str) -> bool:
+    """Return True or False from a boolean or from one of the words in :data:`TRUTHS`;
+    raise InputError for anything else.
+    """
     flag = value if isinstance(value, bool) else TRUTHS.get(str(value).lower())
     if flag is None:
         raise InputError(f"{place} is neither true nor false: write one of {', '.join(TRUTHS)}.")
@@ -163,14 +176,16 @@ def read_flag(value: Any, place: str) -> bool:
 
 
 def format_as_typed(value: Any, place: str) -> str:
-    """Return a value as it would be typed; refuse a value that cannot be typed."""
+    """Return text or a number as it would be typed on the command line;
+    raise InputError for anything else.
+    """
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise InputError(f"{place} is neither text nor a number: write it as on the command line, in quotes.")
     return value if isinstance(value, str) else f"{value!r}" if isinstance(value, float) else str(value)
 
 
 def find_beside_jobs_file(folder: Path, name: str) -> str:
-    """Return the path of a file beside the file of jobs, if there is one; else the name as it is."""
+    """Return the path of ``name`` in the folder if there is such a file, else ``name`` unchanged."""
     try:
         return str(folder / name) if name and (folder / name).exists() else name
     except (OSError, ValueError):
@@ -183,12 +198,15 @@ class FamilyPart:
 
     name: str
     listed: ListedPart
-    words: QueryWords
-    reading: PartWords
+    words: QueryOptions
+    reading: PartOptions
 
 
-def list_family_parts(parts: list[str], words: QueryWords, reading: PartWords) -> list[FamilyPart]:
-    """List the parts of the command line and of files of jobs, each under a name of its own."""
+def list_family_parts(parts: list[str], words: QueryOptions, reading: PartOptions) -> list[FamilyPart]:
+    """Return the parts of the command line and of files of jobs, each with its options and a name of its own.
+
+    A name that occurs again gets a number. Raises InputError for a job that names a toolkit or a program.
+    """
     from workhold.files.part_list import list_parts
 
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
@@ -200,7 +218,7 @@ def list_family_parts(parts: list[str], words: QueryWords, reading: PartWords) -
                     f"{job.place} names a toolkit, but all parts of a family use the toolkit of the command "
                     "line: leave it out."
                 )
-            if job.make_options(ProgramWords):
+            if job.make_options(ProgramOptions):
                 raise InputError(
                     f"{job.place} names a program, but a family of parts is planned without one: leave it out."
                 )
@@ -221,7 +239,8 @@ def list_family_parts(parts: list[str], words: QueryWords, reading: PartWords) -
 
 
 def shorten_part_name(name: str, names: list[str]) -> str:
-    """Name a part by its file alone, unless another path ends in the same file.
+    """Return the file name of a path, or the whole path
+    where another of ``names`` ends in the same file name.
 
     >>> shorten_part_name("a/x.dxf", ["a/x.dxf", "b/y.dxf"]), shorten_part_name("a/x.dxf", ["a/x.dxf", "b/x.dxf"])
     ('x.dxf', 'a/x.dxf')
@@ -238,20 +257,20 @@ def make_family_queries(
     zero: str | None,
     *,
     both_sides: bool = False,
-) -> tuple[list[Asked], list[LeftOut]]:
-    """Make the query of each part that can be read, and list the parts that cannot.
+) -> tuple[list[MemberRequest], list[ExcludedPart]]:
+    """Return the query of each part that can be read, and the parts that cannot, with reasons.
 
-    ``both_sides`` makes a second one of each part turned over; the file of a solid is read again for it.
-    Refuses a zero that a part does not have.
+    ``both_sides`` adds a query of each part turned over; the file of a solid is read again for that. Remarks
+    are printed. Raises InputError for a zero that a part does not have, and faces whose numbers are not sure.
     """
     from hashlib import sha256
 
-    from workhold.family.family import Asked, LeftOut
+    from workhold.family.family import ExcludedPart, MemberRequest
     from workhold.family.members import OTHER_SIDE, RANKINGS
     from workhold.files.part.load import refuse_unsure_numbers
     from workhold.files.part_list import read_listed
     from workhold.model.query import Query
-    from workhold.model.setup import part_zero
+    from workhold.model.setup import choose_part_zero
     from workhold.model.solid import flip_up_axis
 
     usual = RANKINGS[toolkit.travels]
@@ -264,7 +283,7 @@ def make_family_queries(
         }
         read, path = read_listed(job.listed, **options), job.listed.path
         if read.loaded is None:
-            left_out.append(LeftOut(job.name, str(path), read.refusal.rstrip(".")))
+            left_out.append(ExcludedPart(job.name, str(path), read.refusal.rstrip(".")))
             continue
         for remark in read.loaded.remarks:
             print_remark(f"{job.name}: {remark}")
@@ -279,10 +298,10 @@ def make_family_queries(
             raise InputError(f"{job.name}: {error}") from error
         digest = sha256(Path(path).read_bytes()).hexdigest() if Path(path).is_file() else ""
         try:
-            at = part_zero(workpiece, zero, unit)
+            at = choose_part_zero(workpiece, zero, unit)
         except InputError as error:
             raise InputError(f"{job.name}: {error}") from error
-        one = Asked(job.name, Query(workpiece, toolkit, types, **asked), str(path), digest, at)
+        one = MemberRequest(job.name, Query(workpiece, toolkit, types, **asked), str(path), digest, at)
         members.append(one)
         if not both_sides:
             continue
@@ -291,7 +310,7 @@ def make_family_queries(
             continue
         read = read_listed(job.listed, **{**options, "axis": flip_up_axis(workpiece.solid.axis)})
         if read.loaded is None:
-            left_out.append(LeftOut(f"{job.name}, {OTHER_SIDE}", str(path), read.refusal.rstrip(".")))
+            left_out.append(ExcludedPart(f"{job.name}, {OTHER_SIDE}", str(path), read.refusal.rstrip(".")))
         else:
             members.append(one.turn_over(read.loaded.workpiece))
     return members, left_out

@@ -120,14 +120,14 @@ MODULES = {name: f"{name}_command" for name in COMMANDS} | {
 
 
 def import_command(name: str) -> Callable[..., None]:
-    """Import the module of a command and return its function."""
+    """Return the function of a command, importing its module."""
     command: Callable[..., None] = getattr(import_module(f"workhold.cli.{MODULES[name]}"), name)
     return command
 
 
 @contextmanager
 def handle_exits() -> Iterator[None]:
-    """Handle two outcomes that Typer would handle with words and a code of its own."""
+    """Raise typer.Exit with workhold's exit codes for Ctrl-C and a broken pipe within the block."""
     try:
         yield
     except KeyboardInterrupt as error:
@@ -138,7 +138,7 @@ def handle_exits() -> Iterator[None]:
         raise typer.Exit(NO_READER) from error
 
 
-class Workhold(PlainGroup):
+class WorkholdGroup(PlainGroup):
     """The commands, each of which ends with an exit code and at most one sentence about what went wrong."""
 
     def __init__(self, **about: Any) -> None:
@@ -146,7 +146,7 @@ class Workhold(PlainGroup):
         self.commands = {name: PlainCommand(name, help=words) for name, words in COMMANDS.items()}
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Import a command; return None for a word that names none."""
+        """Return a command, importing its module; None for a word that names none."""
         if cmd_name not in COMMANDS:
             return None
         alone = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -154,12 +154,16 @@ class Workhold(PlainGroup):
         return get_command(alone)
 
     def make_context(self, *args: Any, **extra: Any) -> Any:
-        """Parse the arguments; a help that was asked for is shown here."""
+        """Return the context of the parsed arguments,
+        or exit after printing the help where it is asked for.
+        """
         with handle_exits():
             return super().make_context(*args, **extra)
 
     def _main_shell_completion(self, ctx_args: Any, prog_name: str, complete_var: str | None = None) -> None:
-        """Complete words for a shell; Typer knows the shells only after its set-up."""
+        """Complete words for a shell where the environment asks for it;
+        Typer knows the shells only after its set-up.
+        """
         if any(name.endswith("_COMPLETE") for name in os.environ):
             import typer.completion
 
@@ -167,7 +171,7 @@ class Workhold(PlainGroup):
         super()._main_shell_completion(ctx_args, prog_name, complete_var)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
+        """Return what the command returns, after refusing to run in too little address space."""
         refuse_little_space(LEAST_SPACE, "workhold", "raise the limit")
         with handle_exits():
             return super().invoke(ctx)
@@ -181,7 +185,9 @@ class Workhold(PlainGroup):
         windows_expand_args: bool = True,
         **extra: Any,
     ) -> Any:
-        """Parse the arguments and runs the command; end the process unless ``standalone_mode`` is off."""
+        """Run the command of the arguments; exit the process,
+        or return the exit code where ``standalone_mode`` is off.
+        """
         command = super().main
         code = exit_code(lambda: command(args, prog_name, complete_var, False, windows_expand_args, **extra))
         if standalone_mode:
@@ -191,7 +197,7 @@ class Workhold(PlainGroup):
 
 app = typer.Typer(
     name="workhold",
-    cls=Workhold,
+    cls=WorkholdGroup,
     help="Finds every way to hold a flat part: pegs in a vise, dowels and clamps on a plate, a fence and a "
     "stop.",
     epilog=EXAMPLES,
@@ -202,6 +208,7 @@ app = typer.Typer(
 
 
 def show_version(wanted: bool) -> None:
+    """Print the version and exit, if wanted."""
     if wanted:
         typer.echo(f"workhold {__version__}")
         raise typer.Exit
@@ -218,7 +225,7 @@ def options(
 
 
 def run() -> NoReturn:
-    """Run the console command and end the process."""
+    """Run workhold on the arguments of the process, and end the process."""
     for stream in (sys.stdout, sys.stderr):
         # A part's name must not end the program on a terminal that lacks a letter.
         with suppress(AttributeError, ValueError):
@@ -231,7 +238,7 @@ def run() -> NoReturn:
 
 
 def exit_code(command: Callable[[], Any]) -> int:
-    """Run a command and turns its outcome into an exit code, with one sentence on stderr if it failed."""
+    """Return the exit code of a command that is run here; print one sentence on stderr if it failed."""
     try:
         return int(command() or DONE)
     except InputError as error:
@@ -261,7 +268,7 @@ def exit_code(command: Callable[[], Any]) -> int:
 
 
 def complain(error: Exception) -> int:
-    """Say what is wrong with the command line, and where the help is."""
+    """Print what is wrong with the command line, and where the help is; return BAD_INPUT."""
     message = str(getattr(error, "message", "") or error)
     with suppress(Exception):
         message = error.format_message()  # type: ignore[attr-defined]
@@ -272,12 +279,14 @@ def complain(error: Exception) -> int:
 
 
 def say(message: str) -> None:
-    """Print one line on stderr, whatever the message holds."""
+    """Print a message on stderr as one remark, line breaks replaced by spaces."""
     print_remark(" ".join(message.split()))
 
 
 def report_fault(error: Exception) -> None:
-    """Report a mistake of the program, and keep the traceback for the user's report."""
+    """Print that the program has a mistake,
+    and write the traceback to a temporary file, or to stderr if so set.
+    """
     import tempfile
     import traceback
 

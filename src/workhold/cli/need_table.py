@@ -12,7 +12,9 @@ __all__ = ["tabulate_needs"]
 
 
 def tabulate_needs(names: Iterable[str], needs: Sequence[float | None], heading: str, unit: Unit) -> Table:
-    """Tabulate the force in N that each load of a name asks for; None where no force holds it."""
+    """Return a table of the force in N that each load needs,
+    by the names of loads; None is "no force holds it".
+    """
     table = Table((">load", "name", f">{heading} {unit.force}"))
     for number, (name, need) in enumerate(zip(names, needs, strict=True), 1):
         text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)

@@ -23,13 +23,13 @@ from workhold.cli.values import read_unit, read_usual_unit, read_whole_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.files.part.loaded import Loaded
+    from workhold.files.part.loaded import LoadedPart
     from workhold.model.result import Result
 
 __all__ = [
     "SHOWN_UNIT",
     "PartArgument",
-    "PartWords",
+    "PartOptions",
     "RankArgument",
     "ResultArgument",
     "read_rank",
@@ -43,7 +43,7 @@ RankArgument = Annotated[str, typer.Argument(metavar="N", help="Rank of the fixt
 
 
 def read_rank(text: str) -> int:
-    """Read a rank, counted from 1."""
+    """Return a rank of 1 or more; raise InputError for anything else."""
     rank = read_whole_number("fixture", text)
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
@@ -51,7 +51,9 @@ def read_rank(text: str) -> int:
 
 
 def read_result_with_rank(path: str | Path, rank: int) -> Result:
-    """Read a result file for its fixture of a rank; refuse one that lists fewer."""
+    """Return the result of a file that lists a fixture of this rank;
+    raise InputError where it lists fewer.
+    """
     from workhold.files.result.one_fixture import read_one
 
     return read_one(path, rank)
@@ -89,12 +91,12 @@ SHOWN_UNIT = make_option(
 
 
 def is_at_terminal() -> bool:
-    """Return whether a user at a terminal can be asked."""
+    """Return whether stdin and stderr are a terminal, so that the user can be asked."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
 @frozen(these=make_option_attributes(OF_READING, layers={"unit": make_word_attribute(LENGTHS_UNIT)}))
-class PartWords:
+class PartOptions:
     """The options of reading the part, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -103,12 +105,12 @@ class PartWords:
         peg_height: str | None
 
     def to_read_arguments(self) -> dict[str, Any]:
-        """Make the keyword arguments of ``files.part.load.read_workpiece``."""
-        from workhold.files.questions import number_or_name
+        """Return the keyword arguments of ``files.part.load.read_workpiece``, without the part."""
+        from workhold.files.questions import read_number_or_name
 
         rows = [row for row in OF_READING if row.name != "unit"]
         asked = read_words(rows, self, read_unit(self.unit)) | {"unit": self.drawing_unit}
-        asked["part_number"] = number_or_name(asked["part_number"])
+        asked["part_number"] = read_number_or_name(asked["part_number"])
         return asked | {"usual_unit": self.unit or read_usual_unit(), "called": CALLED}
 
     def load(
@@ -117,13 +119,15 @@ class PartWords:
         heights: Mapping[str, Sequence[float]] | None = None,
         peg_diameter: float | None = None,
         said: Collection[str] = (),
-    ) -> Loaded:
-        """Read a part and print remarks about the drawing on stderr.
+    ) -> LoadedPart:
+        """Return the part that is read, after printing remarks on the drawing on stderr.
+
+        At a terminal the user is asked for the unit of a drawing that does not give it.
 
         Parameters
         ----------
         part : a file or a built-in name.
-        heights, peg_diameter : as of ``files.part.load.read_workpiece``.
+        heights, peg_diameter : as for ``files.part.load.read_workpiece``.
         said : remarks that are not printed once more.
 
         Raises

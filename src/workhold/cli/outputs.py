@@ -51,21 +51,25 @@ CALLED = "--force"
 def refuse_output(
     path: str | Path, inputs: Iterable[str | Path | None], force: bool, called: str = CALLED
 ) -> None:
-    """Refuse an output file of a command, see :func:`workhold.files.replacing.refuse_output`."""
+    """Raise InputError for an output file that must not be written, see
+    :func:`workhold.files.replacing.refuse_output`.
+    """
     replacing.refuse_output(path, inputs, force, called)
 
 
 def refuse_output_folder(
     folder: Path, names: Iterable[str], inputs: Iterable[str | Path | None], force: bool
 ) -> None:
-    """Refuse an output folder of a command, see :func:`workhold.files.replacing.refuse_output_folder`."""
+    """Raise InputError for an output folder with files that must not be replaced, see
+    :func:`workhold.files.replacing.refuse_output_folder`.
+    """
     replacing.refuse_output_folder(folder, names, inputs, force, CALLED)
 
 
 def read_picture_path(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
     """Return the path of the picture asked for; None where none is.
 
-    Refuses another ending than .svg and .png.
+    Raises InputError for another ending than .svg and .png, and for a file that must not be replaced.
     """
     if draw is None:
         return None
@@ -76,7 +80,7 @@ def read_picture_path(draw: str | None, inputs: Iterable[str | Path | None], for
 
 
 def write_picture(path: Path, svg: str) -> None:
-    """Write SVG text as a picture of the kind that the name of the file says."""
+    """Write SVG text as SVG or PNG, by the ending of the path."""
     from workhold.drawing.render import render
     from workhold.files.atomic import write_bytes
 
@@ -97,9 +101,9 @@ FORMAT = make_option(
 
 
 def choose_output_form(out: str | None, asked: str | None) -> str:
-    """Return the form of a result file: the one asked for, or the one that its name suggests.
+    """Return "json", "csv" or "npz": the form asked for, else that of the file's ending, else "json".
 
-    Refuses one that no terminal can take.
+    Raises InputError for npz on stdout.
     """
     ending = "" if out is None else out.lower().rpartition(".")[2]
     form = (ending if ending in FORMS else "json") if asked is None else read_choice("--format", asked, FORMS)
@@ -109,12 +113,13 @@ def choose_output_form(out: str | None, asked: str | None) -> str:
 
 
 def refuse_result_file(out: str, form: str, inputs: Iterable[str | Path | None], force: bool) -> None:
-    """Refuse a result file before anything is read or searched."""
+    """Raise InputError for a result file that cannot be written or whose ending belongs to another form."""
     refuse_output(out, inputs, force)
     replacing.refuse_other_ending(out, [f".{form}"], "such a result file")
 
 
 def write_output(result: Result, out: str, form: str) -> None:
+    """Write a result in a form to a file, or to stdout for "-"."""
     if out != STANDARD_OUTPUT:
         from workhold.files.result.save import save
 
@@ -129,7 +134,10 @@ def write_output(result: Result, out: str, form: str) -> None:
 
 
 def write_found(result: Result, out: str, form: str) -> Result:
-    """Write what a search found and return it; after a Ctrl-C it writes only the best of millions."""
+    """Write what a search found and return it.
+
+    After a Ctrl-C during the writing of millions of fixtures, write and return only the best.
+    """
     try:
         write_output(result, out, form)
     except Interrupted:
@@ -138,7 +146,7 @@ def write_found(result: Result, out: str, form: str) -> Result:
         if out == STANDARD_OUTPUT or len(result) <= LISTED_LATE:
             raise
         keep_what_is_found()
-        result = result.part(slice(LISTED_LATE)).cut_short(LISTED_LATE)
+        result = result.slice_rows(slice(LISTED_LATE)).mark_cut_short(LISTED_LATE)
         write_output(result, out, form)
     return result
 
@@ -149,7 +157,7 @@ JSON = make_flag(
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:
-    """Refuse two things on standard output."""
+    """Raise InputError where --json and the result file would both go to stdout."""
     if as_json and out == STANDARD_OUTPUT:
         raise InputError(
             "--json and the result file would both go to the terminal (-): leave one of them out."
@@ -157,13 +165,13 @@ def refuse_both(as_json: bool, out: str | None) -> None:
 
 
 def print_json(**content: Any) -> None:
-    """Print an object as JSON, in a line of ASCII."""
+    """Print the keyword arguments as one JSON object, in one line of ASCII."""
     sys.stdout.write(json.dumps(content, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 
 def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
-    """Print which files were written, in a sentence or as JSON."""
+    """Print which files were written: the sentence, or their paths as JSON."""
     if as_json:
         print_json(written=[str(path) for path in paths])
         return

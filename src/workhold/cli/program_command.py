@@ -70,7 +70,7 @@ RUN_THICKNESS = make_option(
         stock=make_word_attribute(STOCK),
     )
 )
-class RunWords:
+class ProgramViewOptions:
     """The options of a program that is looked at alone, as typed."""
 
     if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def program(
         str, typer.Argument(metavar="PROGRAM", help="A program of RS-274 (G-code), for the mill.")
     ],
     *,
-    words: RunWords,
+    words: ProgramViewOptions,
     draw: str | None = make_option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
@@ -119,13 +119,13 @@ def program(
 
 
 def convert_program_to_data(read: ReadProgram) -> dict[str, Any]:
-    """Return what was understood, as plain data; lengths in mm."""
+    """Return what was understood of a program as plain data; lengths in mm."""
     from workhold.model.program_figures import bound_tip, measure_tools
 
     program = read.program
     low, high = bound_tip(program.moves)
     return {
-        **program.head(),
+        **program.make_head(),
         "lines": read.lines,
         "moves": len(program.moves),
         "calls": [{"line": line, "tool": number} for line, number in read.calls],
@@ -140,7 +140,11 @@ def convert_program_to_data(read: ReadProgram) -> dict[str, Any]:
 
 
 def list_tool_forces(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str, Any]]:
-    """Return the largest force, torque and axial forces of each tool, in N and N mm."""
+    """Return for each tool, in order of first use,
+    the largest force and torque and the least and largest axial force.
+
+    ``tool`` (M,) has the tool's number for each move; forces are in N and torques in N mm.
+    """
     return [
         {
             "tool": number,
@@ -156,6 +160,7 @@ def list_tool_forces(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dic
 
 
 def tabulate_tool_forces(program: Program, unit: Unit) -> list[Table | str]:
+    """Return a table of the forces of each tool and sentences about them; [] where no forces are known."""
     forces = program.forces
     if forces is None:
         return []
@@ -170,7 +175,7 @@ def tabulate_tool_forces(program: Program, unit: Unit) -> list[Table | str]:
             unit.format_force_rounded_up(up),
         )
     where = "in any direction" if forces.direction == "any" else "within 60 degrees of against the feed"
-    said = forces.said(program.moves, program.tools).values()
+    said = forces.describe_tools(program.moves, program.tools).values()
     return [
         "",
         table,
@@ -181,6 +186,7 @@ def tabulate_tool_forces(program: Program, unit: Unit) -> list[Table | str]:
 
 
 def describe_stock(program: Program, unit: Unit) -> str:
+    """Return a sentence on the stock on which alone tools press."""
     stock = program.stock
     assert stock is not None
     shape = "the part's outline" if stock.shape == "outline" else "the block around the part"
@@ -191,6 +197,9 @@ def describe_stock(program: Program, unit: Unit) -> str:
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
+    """Print the figures of each tool and a summary;
+    ``from_z_zero`` says that heights count from the program's Z0.
+    """
     from workhold.model.program_figures import bound_tip, measure_tools
 
     program = read.program
@@ -214,19 +223,19 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
         tool = program.tools[one.tool]
         table.add_row(
             f"T{one.tool}",
-            unit.number(tool.diameter),
+            unit.format_number(tool.diameter),
             tool.name,
             str(calls[one.tool]),
             str(one.first_line),
-            unit.number(one.cutting, 0 if unit.millimetres == 1 else 1),
-            unit.number(one.rapid, 0 if unit.millimetres == 1 else 1),
+            unit.format_number(one.cutting, 0 if unit.millimetres == 1 else 1),
+            unit.format_number(one.rapid, 0 if unit.millimetres == 1 else 1),
             # A plus sign stands behind a time where some moves have no feed.
             format_time(one.seconds) + ("+" if one.untimed else ""),
-            "" if one.lowest_cut is None else unit.number(one.lowest_cut),
+            "" if one.lowest_cut is None else unit.format_number(one.lowest_cut),
         )
     low, high = bound_tip(program.moves)
     spans = ", ".join(
-        f"{axis} {unit.number(one)} to {unit.number(other)}"
+        f"{axis} {unit.format_number(one)} to {unit.format_number(other)}"
         for axis, one, other in zip("XYZ", low.tolist(), high.tolist(), strict=True)
     )
     above = "the program's Z0" if from_z_zero else "the part's lower side"
@@ -243,7 +252,7 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
 
 
 def format_time(seconds: float) -> str:
-    """Return a time in hours, minutes and seconds.
+    """Return seconds as text, "minutes:seconds" or "hours:minutes:seconds".
 
     >>> format_time(75.4), format_time(3675)
     ('1:15', '1:01:15')

@@ -15,7 +15,7 @@ from workhold.asking.declaring import list_declarations
 from workhold.asking.program import FORCES, PROGRAM, CuttingQuestion, ProgramQuestion
 from workhold.cli.commands import make_default_group, make_option, print_remark
 from workhold.cli.declared import make_option_attributes, make_word_attribute, read_words
-from workhold.cli.options import PartWords
+from workhold.cli.options import PartOptions
 from workhold.cli.values import (
     read_choice,
     read_length,
@@ -34,7 +34,7 @@ __all__ = [
     "OF_PROGRAM",
     "SOLIDS",
     "STOCK",
-    "ProgramWords",
+    "ProgramOptions",
     "make_reader_arguments",
     "read_program_zero",
 ]
@@ -78,7 +78,7 @@ NO_HEIGHT: dict[str, Any] = {"peg_height": None}
         thickness=make_word_attribute(THICKNESS),
     )
 )
-class ProgramWords:
+class ProgramOptions:
     """The options of a program, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -91,11 +91,14 @@ class ProgramWords:
 
     @property
     def files(self) -> tuple[str | None, ...]:
+        """Paths of the program and of the table of tools; None for those not given."""
         return self.program, self.tools
 
     @property
     def has_forces(self) -> bool:
-        """Whether the forces of the tools are asked for, of all or in their table."""
+        """Whether forces of the tools are asked for,
+        by an option or in the table of tools, which is read here.
+        """
         if self.program is None:
             return False
         if any(getattr(self, name) is not None for name in ("cutting_force", "power", "material")):
@@ -107,15 +110,21 @@ class ProgramWords:
         tools, _ = read_tools(self.tools, MILLIMETRE)
         return any(tool.cutting.asks_for_forces for tool in tools.values())
 
-    def adapt_part_options(self, part: str, reading: PartWords) -> PartWords:
-        """Return how a part is read: of a drawing the peg height is no question of the reader but of the fixtures."""
+    def adapt_part_options(self, part: str, reading: PartOptions) -> PartOptions:
+        """Return the options for reading a part:
+        those of a drawing without the peg height, which counts for the fixtures only.
+        """
         is_drawing = Path(part).suffix.lower() not in SOLIDS
         return evolve(reading, **NO_HEIGHT) if is_drawing else reading
 
     def read_query_arguments(
         self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None
     ) -> dict[str, Any]:
-        """Read the program, print remarks on it on stderr, and return keyword arguments of a query.
+        """Return "program", "thickness" and "peg_height" of a query, in mm;
+        without a program the heights alone.
+
+        Without a program it is {} for a solid and for a part that is not read yet. Remarks on the program are
+        printed.
 
         Parameters
         ----------
@@ -125,15 +134,15 @@ class ProgramWords:
         Raises
         ------
         InputError
-            For words that mean nothing, a program that cannot be read, and heights that are needed and not
-            given; for words about a program without one.
+            For words that cannot be read, a program that cannot be read, and heights that are needed and not
+            given; also for options of a program without a program.
         """
         if self.program is None:
             # Of a thickness other options make use as well.
-            usual = make_default_group(ProgramWords, thickness=self.thickness)
+            usual = make_default_group(ProgramOptions, thickness=self.thickness)
             given = [
                 one.name
-                for one in fields(ProgramWords)
+                for one in fields(ProgramOptions)
                 if getattr(self, one.name) != getattr(usual, one.name)
             ]
             if given:
@@ -157,13 +166,12 @@ class ProgramWords:
         return {"program": read_once(self, unit, thick, zero), **heights}
 
     def read_heights(self, unit: Unit, peg_height: str | None) -> dict[str, float | None]:
-        """Return the thickness of a drawn part and the height of the pegs in mm, None where they are not
-        given.
+        """Return "thickness" of a drawn part and "peg_height" in mm, None for those not given.
 
         Raises
         ------
         InputError
-            For what is no length above 0.
+            For anything but lengths above 0.
         """
         return {
             "thickness": read_optional_positive_length("--thickness", self.thickness, unit),
@@ -172,7 +180,8 @@ class ProgramWords:
 
 
 def read_stock_arguments(text: str, unit: Unit) -> dict[str, Any]:
-    """Return what the part is cut from, as ``model.stock.Stock.of`` takes it.
+    """Return the stock's fields that are given,
+    as :meth:`workhold.model.stock.Stock.from_value` takes them; lengths in mm.
 
     Examples
     --------
@@ -193,32 +202,33 @@ def read_stock_arguments(text: str, unit: Unit) -> dict[str, Any]:
 
 
 def read_program_zero(text: str, unit: Unit) -> tuple[float, float]:
-    """Return the place of the program's zero on the part, in mm."""
+    """Return the point (x, y) in mm of the part at which the program has X0 Y0, from two lengths."""
     return read_two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
 def read_program_zero_on_part(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
-    """Return the place of the program's zero in mm, which the part's own places may name as on the setup
-    sheet.
+    """Return the point (x, y) in mm of the part at which the program has X0 Y0,
+    from two lengths or a place of the part.
 
-    Refuses a place that the part does not have, or that is named where no part is known.
+    Places are named as on the setup sheet, such as "corner" or "hole 2". Raises InputError for a place that
+    the part does not have, and for a named place where no part is known.
     """
     if workpiece is None or not text.strip()[:1].isalpha():
         return read_program_zero(text, unit)
-    from workhold.model.setup import part_zero
+    from workhold.model.setup import choose_part_zero
 
-    return part_zero(workpiece, text, unit).point
+    return choose_part_zero(workpiece, text, unit).point
 
 
 def make_reader_arguments(
     words: Any, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> dict[str, Any]:
-    """Return keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in
-    mm.
+    """Return keyword arguments of ``files.program.reader.read_program``;
+    ``thickness`` and ``zero`` are in mm.
 
     Parameters
     ----------
-    words : options of a program; what they do not have is as usual.
+    words : options of a program as attributes; an option without an attribute has its default.
     """
     from workhold.model.cutting_tool import CuttingData
 
@@ -238,8 +248,12 @@ def make_reader_arguments(
 
 
 @cache
-def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
-    """Read the program, and print remarks on it; ``thickness`` of the part and ``zero`` in mm."""
+def read_once(
+    words: ProgramOptions, unit: Unit, thickness: float | None, zero: tuple[float, float]
+) -> Program:
+    """Return the program, read from its file and cached,
+    after printing remarks; ``thickness`` and ``zero`` are in mm.
+    """
     assert words.program is not None
     asked = make_reader_arguments(words, unit, thickness, zero)
     from workhold.files.program.reader import read_program

@@ -17,7 +17,7 @@ from workhold.errors import make_printable
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-__all__ = ["BatchProgress", "show_batch_progress", "show_progress", "search_progress"]
+__all__ = ["BatchProgress", "show_batch_progress", "show_progress", "show_search_progress"]
 
 # Seconds without a bar; loading it takes a tenth of one.
 MOMENT = 1.0
@@ -25,14 +25,16 @@ ONLY_TASK = cast("TaskID", 0)
 
 
 @contextmanager
-def search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]]:
-    """Yield the progress bar of a search, as a function of the fraction done and the fixtures found.
+def show_search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]]:
+    """Yield a function that shows progress of a search:
+    call it with the fraction done and the number of fixtures found.
 
-    Where ``keeps`` is set an interrupted search gets the time to return what it has found.
+    Where ``keeps`` is true, an interrupted search with findings gets the time to return them.
     """
     with show_progress("Searching", "found") as show:
 
         def progress(fraction: float, found: int) -> None:
+            """Show progress, and note that there are findings to keep."""
             if found and keeps:
                 keep_what_is_found()
             show(fraction, found)
@@ -44,11 +46,16 @@ def search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]
 def show_progress(
     doing: str, counted: str, first: str | None = None
 ) -> Iterator[Callable[[float, int], None]]:
-    """Yield a progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
+    """Yield a function that shows a progress bar on stderr:
+    call it with the fraction done and a count; silent in a pipe.
 
-    It appears when there is progress after a moment, so that what is done at once is not kept waiting for it.
-    ``doing`` is what is being done, ``counted`` the word behind the number, and ``first`` what is said until
-    the first progress; the bar appears with it at once.
+    The bar appears at the first call after :data:`MOMENT` seconds, or at once where ``first`` is given.
+
+    Parameters
+    ----------
+    doing : what is being done.
+    counted : word behind the count.
+    first : text until the first call; None to show nothing until then.
     """
     if not sys.stderr.isatty():
         yield lambda fraction, count: None
@@ -57,6 +64,7 @@ def show_progress(
     bars = [make_progress_bar(first, counted)] if first else []
 
     def progress(fraction: float, count: int) -> None:
+        """Advance the bar, making it if its time has come."""
         if not bars:
             if perf_counter() - begun < MOMENT:
                 return
@@ -71,6 +79,7 @@ def show_progress(
 
 
 def make_progress_bar(words: str, counted: str) -> Progress:
+    """Return a started bar of rich with one task from 0 to 1, the word ``counted`` behind its count."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -94,7 +103,7 @@ LONGEST_TITLE = 60
 
 @define(eq=False)
 class BatchProgress:
-    """The progress of a batch (``batch.run.Counting``, ``batch.tasks.Watcher``); silent without bars.
+    """The progress of a batch (``batch.run.ProgressCounter``, ``batch.tasks.TaskObserver``); silent without bars.
 
     Parameters
     ----------
@@ -110,7 +119,9 @@ class BatchProgress:
     done: int = field(default=0, init=False)
 
     def begin_stage(self, doing: str, count: int, seconds: float) -> None:
-        """Begin a stage of ``count`` tasks, which take about ``seconds`` seconds in all."""
+        """Begin a stage of ``count`` tasks that take about ``seconds`` in all;
+        it replaces the bar of the stage before.
+        """
         self.count, self.done = count, 0
         if self.bars is None or count == 0:
             return
@@ -120,16 +131,17 @@ class BatchProgress:
 
     @property
     def words(self) -> str:
-        """How many tasks are done."""
+        """Text such as "3 of 12": tasks done of those in the stage."""
         return f"{self.done:,} of {self.count:,}"
 
     def count_done(self, seconds: float) -> None:
-        """Count a task that is done, and advance the bar by its expected seconds."""
+        """Count a task as done, and advance the bar by the seconds it was expected to take."""
         self.done += 1
         if self.bars is not None and self.whole is not None:
             self.bars.update(self.whole, advance=seconds, words=self.words)
 
     def note_begun(self, worker: str, title: str) -> None:
+        """Show the task that a worker has begun, in a line of its own."""
         if self.bars is None:
             return
         self.note_ended(worker)
@@ -137,10 +149,12 @@ class BatchProgress:
         self.hands[worker] = self.bars.add_task(f"  {worker}: {words}", total=None, words="")
 
     def note_ended(self, worker: str) -> None:
+        """Remove the line of a worker's task, if there is one."""
         if self.bars is not None and worker in self.hands:
             self.bars.remove_task(self.hands.pop(worker))
 
     def notify(self, sentence: str) -> None:
+        """Keep a sentence among the events, and print it."""
         self.events.append(sentence)
         if self.bars is None:
             print_remark(sentence)
@@ -150,7 +164,7 @@ class BatchProgress:
 
 @contextmanager
 def show_batch_progress() -> Iterator[BatchProgress]:
-    """Yield the progress of a batch on stderr; in a pipe, print only what happens to workers."""
+    """Yield the progress of a batch, with bars on stderr at a terminal; in a pipe only events are printed."""
     if not sys.stderr.isatty():
         yield BatchProgress(None)
         return

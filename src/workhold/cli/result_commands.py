@@ -27,14 +27,14 @@ from workhold.cli.outputs import (
     refuse_result_file,
     write_output,
 )
-from workhold.cli.progress import search_progress, show_progress
+from workhold.cli.progress import show_progress, show_search_progress
 from workhold.cli.table import format_count, print_tables
 from workhold.cli.values import read_optional_count, read_whole_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
     from workhold.verification import Verification
-    from workhold.verification.listing import Listing
+    from workhold.verification.listing import WrittenListing
 
 __all__ = ["convert", "verify"]
 
@@ -46,8 +46,8 @@ def convert(
     force: bool = FORCE,
     json_: bool = JSON,
 ) -> None:
-    """Write a result file in another form: JSON, columns (npz) for a great many fixtures, or CSV for a
-    spreadsheet.
+    """Write a result file in another form:
+    JSON, columns (npz) for a great many fixtures, or CSV for a spreadsheet.
 
     A file that goes from JSON to columns and back has the same bytes again.
 
@@ -90,7 +90,7 @@ class VerifyTask:
 
 @frozen
 class VerifyAnswer:
-    """What was proven, the time it took in words, and what was not looked at."""
+    """Outcome of a verification, the time it took in words, and sentences on what was not looked at."""
 
     outcome: Verification
     spent: str
@@ -128,7 +128,7 @@ def verify(
 
 
 def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: bool) -> VerifyTask:
-    """Read what was typed."""
+    """Return what was typed as a task."""
     listed, workers = read_whole_number("--list", list_), read_optional_count("--threads", threads)
     from workhold.verification.supports import is_supports_file
 
@@ -141,7 +141,9 @@ def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: b
 
 
 def ask(asked: VerifyTask) -> VerifyAnswer:
-    """Verify all that the file lists, and search again if that was asked."""
+    """Return the verification of all that the file lists,
+    compared with a new search if that was asked for.
+    """
     from workhold.verification.listing import read_listing
     from workhold.verification.supports import verify_supports_file
     from workhold.verification.verify import verify_listing
@@ -159,7 +161,9 @@ def ask(asked: VerifyTask) -> VerifyAnswer:
 
 
 def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
-    """Print what is not proven, and end with a code that says so."""
+    """Print what is not proven; exit with REFUTED where something is refuted,
+    INTERRUPTED where the comparison is missing.
+    """
     outcome = answer.outcome
     if asked.as_json:
         from workhold.presenting.data import describe_verification
@@ -178,17 +182,21 @@ def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
         raise typer.Exit(REFUTED)
 
 
-def compare_with_search(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
+def compare_with_search(outcome: Verification, listing: WrittenListing, workers: int | None) -> Verification:
+    """Return the verification with the outcome of a new
+    search of the file's query, or unchanged after a Ctrl-C.
+    """
     from workhold.cli.warming import compile_kernels
     from workhold.completeness import complete_verification
 
     with ask_to_stop("nothing is compared") as cancel:
         compile_kernels(cancel)
-        with search_progress() as progress:
+        with show_search_progress() as progress:
             return complete_verification(outcome, listing, threads=workers, progress=progress, cancel=cancel)
 
 
-def describe_verified_scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
+def describe_verified_scope(outcome: Verification, asked: bool, listing: WrittenListing) -> list[str]:
+    """Return sentences on what was compared, or on what a file alone cannot show."""
     from workhold.verification.verify import list_not_shown
 
     if outcome.is_compared:
@@ -200,6 +208,7 @@ def describe_verified_scope(outcome: Verification, asked: bool, listing: Listing
 
 
 def summarize_verification(outcome: Verification) -> str:
+    """Return a sentence with the numbers of fixtures proven, refuted and undecided."""
     return (
         f"{format_count(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
         f"{outcome.undecided} undecided at {outcome.bits} bits"
@@ -207,7 +216,9 @@ def summarize_verification(outcome: Verification) -> str:
 
 
 def explain_unproven(outcome: Verification, count: int) -> list[str]:
-    """Say what is wrong with the file and with the first fixtures not proven, the refuted ones first."""
+    """Return a sentence for each fault of the file and for the
+    first ``count`` fixtures not proven, refuted ones first.
+    """
     sentences = [f"The file: {fault}." for fault in outcome.faults]
     unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")
     for fixture in unproven[: max(count, 0)]:

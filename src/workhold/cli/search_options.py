@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from attrs import evolve, frozen
 
 from workhold.asking.declaring import list_declarations
-from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEATING, RuledOut, SearchQuestion
+from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEATING, RestrictionQuestion, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
 from workhold.cli.commands import make_option
 from workhold.cli.declared import (
@@ -34,9 +34,9 @@ __all__ = [
     "JAW_FORCE",
     "LOAD",
     "LOADS_FILE",
-    "LoadWords",
-    "QueryWords",
-    "SeatingWords",
+    "LoadOptions",
+    "QueryOptions",
+    "SeatingOptions",
     "read_asked_loads",
     "parse_load",
     "add_dowel_fit",
@@ -91,7 +91,7 @@ LOADS_TYPED = {"load": make_list_attribute(LOAD), "loads": make_word_attribute(L
 
 
 @frozen(these=make_option_attributes(OF_LOADS, jaw_force=LOADS_TYPED))
-class LoadWords:
+class LoadOptions:
     """The options of loads on a fixture that is known, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -99,16 +99,18 @@ class LoadWords:
         loads: str | None
 
     def read_arguments(self, unit: Unit) -> dict[str, Any]:
-        """Return the jaw force in N, how stiff the jaw is and the friction, None for those not given, and the loads."""
-        from workhold.statics.loads import jaw_stiffness
+        """Return "jaw_force" in N, "jaw" (stiffness), "friction" and "loads";
+        force and friction are None where not given.
+        """
+        from workhold.statics.loads import read_jaw_stiffness
 
         asked = read_words(OF_LOADS, self, unit)
-        asked["jaw"] = jaw_stiffness(asked["jaw"])
+        asked["jaw"] = read_jaw_stiffness(asked["jaw"])
         return asked | {"loads": read_asked_loads(self.load, self.loads, unit)}
 
 
 # What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are no fields.
-OF_RESTRICTIONS = list_declarations(RuledOut)
+OF_RESTRICTIONS = list_declarations(RestrictionQuestion)
 OF_SEARCHES = list_declarations(SearchQuestion, (RULING_OUT, LOADS, RANKING))
 OF_SEATING = list_declarations(SearchQuestion, (SEATING,))
 BESIDE = {
@@ -155,7 +157,7 @@ BESIDE = {
 
 
 @frozen(these=make_option_attributes((*OF_RESTRICTIONS, *OF_SEARCHES), **BESIDE))
-class QueryWords:
+class QueryOptions:
     """The options of what is asked for, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -169,17 +171,17 @@ class QueryWords:
     def read_arguments(
         self, unit: Unit, has_program: bool = False, has_forces: bool = False
     ) -> dict[str, Any]:
-        """Return keyword arguments of a query; the tolerance is None where none was typed.
+        """Return keyword arguments of a query, lengths in mm; the tolerance is None where none was typed.
 
         Parameters
         ----------
-        has_program : whether fixtures are to let a program pass.
-        has_forces : whether its tools press on the part.
+        has_program : whether the tools of a program must clear the fixtures.
+        has_forces : whether forces of its tools on the part are known.
 
         Raises
         ------
         InputError
-            For words that mean nothing, figures that are not known, and a file that cannot be used.
+            For words that cannot be read, figures that are not known, and a file that cannot be used.
         """
         from workhold.model.quality import read_asked_ranking
         from workhold.model.requirements import Restrictions
@@ -197,10 +199,11 @@ class QueryWords:
 def avoid_faces_cut_before(
     restrictions: Restrictions, workpiece: Workpiece, before: str | None
 ) -> Restrictions:
-    """Return the restrictions that also avoid what another set-up of the same solid avoided, because it was
-    cut there.
+    """Return restrictions that also avoid the faces of the
+    solid that an earlier set-up avoided because it cut them.
 
-    ``before`` is the result file of the other set-up. Refuses parts whose faces have no numbers of a solid.
+    ``before`` is the result file of that set-up, None for none. Raises InputError for parts without a solid's
+    face numbers.
     """
     if before is None:
         return restrictions
@@ -214,12 +217,13 @@ def avoid_faces_cut_before(
             f"--not-on-faces-cut-in needs the faces of the same solid in both set-ups, and {lacking} "
             "has none: read both from the STEP file, with --peg-height."
         )
-    cut = query.workpiece.numbered.faces_over(query.restrictions.avoid)
-    avoid = workpiece.numbered.segments_under(cut)
+    cut = query.workpiece.numbered.list_faces_over(query.restrictions.avoid)
+    avoid = workpiece.numbered.list_segments_under(cut)
     return evolve(restrictions, avoid=(*restrictions.avoid, *avoid))
 
 
 def read_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
+    """Return the tolerance from "PEG" (for faces, too) or "PEG,FACE"; None for None."""
     from workhold.model.requirements import Tolerance
 
     if text is None:
@@ -234,13 +238,16 @@ def read_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
 
 
 def add_dowel_fit(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
-    """Return the tolerance asked for, or that of a named vise; keep the fit of the named vise's dowels."""
+    """Return the tolerance asked for, with the dowels' fit of the named toolkit;
+    where one of them is None, the other one.
+    """
     if asked is None or named is None:
         return asked or named
     return evolve(asked, fit=named.fit)
 
 
 def read_asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:
+    """Return the loads typed, then those of the file; lengths without a unit are in ``unit``."""
     if not loads and file is None:
         return ()
     from workhold.files.loads_file import read_loads
@@ -250,16 +257,16 @@ def read_asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> t
 
 
 @frozen(these=make_option_attributes(OF_SEATING))
-class SeatingWords:
+class SeatingOptions:
     """The options of seating, as typed; None for those not given."""
 
     def read_arguments(self, unit: Unit) -> dict[str, Any]:
-        """Return keyword arguments of a query.
+        """Return the keyword arguments of a query that ask for seating, lengths in mm.
 
         Raises
         ------
         InputError
-            For words that are no number or length, and for rules of seating where that is not asked for.
+            For words that are no number or length, and for rules of seating where seating is not asked for.
         """
         asked = read_words(OF_SEATING, self, unit)
         if asked["seating"] is None and any(asked.values()):

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from workhold.model.seating import Seat, Seating
     from workhold.seating.clamping import Gauge
 
-__all__ = ["describe_steps_by_hand", "seat", "seat_table", "describe_seating"]
+__all__ = ["describe_steps_by_hand", "seat", "tabulate_seats", "describe_seating"]
 
 SIDES = ("both", "drawn", "turned-over")
 
 
 @frozen
-class SeatWords:
+class SeatOptions:
     """The options of what is shown of a seating and where it is drawn, as typed."""
 
     side: str = make_option(
@@ -67,19 +67,22 @@ class SeatTask:
 
     @property
     def fixture(self) -> Fixture:
+        """The fixture of the rank."""
         return self.result[self.rank - 1]
 
     @property
     def title(self) -> str:
+        """Heading with rank, number of fixtures and part."""
         return f"Seating of fixture {self.rank} of {len(self.result)}: {self.result.workpiece.name}"
 
     @property
     def written(self) -> list[str]:
+        """Paths of what is written: the picture, or none."""
         return [] if self.picture is None else [str(self.picture)]
 
 
 @spread_option_groups
-def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords) -> None:
+def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatOptions) -> None:
     """Report whether the part ends up in the pose of fixture N when you tighten the vise or the clamp.
 
     The report says how wide the jaws may stand open when you let the part go, and how far off its place the
@@ -95,8 +98,8 @@ def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords)
         report_by_hand(asked)
 
 
-def parse(result_file: str, rank: int, words: SeatWords) -> SeatTask:
-    """Read what was typed, and the fixture."""
+def parse(result_file: str, rank: int, words: SeatOptions) -> SeatTask:
+    """Return what was typed as a task, with the result read."""
     shown, side = read_unit(words.unit), read_choice("--side", words.side, SIDES)
     opened = read_optional_positive_length("--opening", words.opening, shown)
     picture = read_picture_path(words.draw, (result_file,), words.force)
@@ -106,22 +109,22 @@ def parse(result_file: str, rank: int, words: SeatWords) -> SeatTask:
 
 
 def ask(asked: SeatTask) -> Seating:
-    """Find where the part can come to rest, where the result does not say it."""
+    """Return the fixture's seating: that of the result, else worked out here."""
     result = asked.result
     known: Seating | None = asked.fixture.seating
     if known is not None:
         return known
     from workhold.cli.warming import compile_seating
     from workhold.seating.pattern import refuse_unseated
-    from workhold.seating.solver import Solver
+    from workhold.seating.solver import SeatingSolver
 
     refuse_unseated(result.toolkit)
     compile_seating(Event())
-    return Solver(result.workpiece, result.toolkit).of(asked.fixture)
+    return SeatingSolver(result.workpiece, result.toolkit).solve(asked.fixture)
 
 
 def report(asked: SeatTask, seating: Seating) -> None:
-    """Print how the part comes home and where else it can rest, and draw it."""
+    """Print how the part settles in its place and where else it can rest, and draw that if asked."""
     from workhold.seating.clamping import Gauge
 
     result, fixture, unit = asked.result, asked.fixture, asked.unit
@@ -133,7 +136,7 @@ def report(asked: SeatTask, seating: Seating) -> None:
             *describe_setting(seating, gauge, unit),
             "",
             *describe_wrong_seats(seating, seats, asked.opened, gauge, unit),
-            seat_table(seats, gauge, unit),
+            tabulate_seats(seats, gauge, unit),
         )
     for words in seating.unsettled:
         print_remark(words)
@@ -143,22 +146,22 @@ def report(asked: SeatTask, seating: Seating) -> None:
         held = (fixture, result.workpiece, result.toolkit)
         write_picture(asked.picture, draw_seats(seats, *held, title=f"Fixture {asked.rank}", unit=unit))
     if asked.as_json:
-        print_json(rank=asked.rank, seating=seating.as_fields(), written=asked.written)
+        print_json(rank=asked.rank, seating=seating.to_fields(), written=asked.written)
     else:
         print_tables(*(f"Drawn in {path}." for path in asked.written))
 
 
 def report_by_hand(asked: SeatTask) -> None:
-    """Print how a part that two clamps hold is put in, and draw the fixture."""
+    """Print how a part that two clamps hold is put in by hand, and draw the fixture if asked."""
     from workhold.drawing.fixture_pictures import draw_fixture
-    from workhold.seating.clamping import by_hand
+    from workhold.seating.clamping import plan_hand_loading
 
     result, unit = asked.result, asked.unit
     held = (asked.fixture, result.workpiece, result.toolkit)
     if asked.picture is not None:
         write_picture(asked.picture, draw_fixture(*held, title=f"Fixture {asked.rank}", unit=unit))
     if asked.as_json:
-        steps = by_hand(*held).as_fields(unit.format_length)
+        steps = plan_hand_loading(*held).to_fields(unit.format_length)
         print_json(rank=asked.rank, seating=None, by_hand=steps, written=asked.written)
         return
     print_tables(asked.title, *describe_steps_by_hand(asked.rank, result, unit))
@@ -166,15 +169,21 @@ def report_by_hand(asked: SeatTask) -> None:
 
 
 def describe_steps_by_hand(rank: int, result: Result, unit: Unit) -> list[str]:
-    """List in numbered steps how to put in a part that two clamps hold."""
-    from workhold.seating.clamping import WHY, by_hand
+    """Return lines with the numbered steps to put in a part that two clamps hold."""
+    from workhold.seating.clamping import WHY, plan_hand_loading
 
-    steps = by_hand(result[rank - 1], result.workpiece, result.toolkit).steps(unit.format_length)
+    steps = plan_hand_loading(result[rank - 1], result.workpiece, result.toolkit).list_steps(
+        unit.format_length
+    )
     return ["", WHY, "", *(f"{number}. {step}" for number, step in enumerate(steps, 1))]
 
 
 def list_shown_seats(seating: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
-    """List the seats that can be reached; the fixture's own is first."""
+    """Return the fixture's own seat, then the other seats that can be reached.
+
+    ``side`` is "both", "drawn" or "turned-over"; ``opened`` is how far the jaws are opened, in mm, None
+    without a limit.
+    """
     own = [one for one in seating.seats if one.is_own]
     rest = [
         one
@@ -188,7 +197,7 @@ def list_shown_seats(seating: Seating, side: str, opened: float | None, result: 
 
 
 def describe_seating(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """Say of the seating of a fixture what to do, what to read, and what to beware of."""
+    """Return sentences on a fixture's seating: what to set, what to read, and what to beware of."""
     from workhold.seating.clamping import Gauge
 
     seating: Seating = fixture.seating
@@ -204,9 +213,12 @@ def describe_seating(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
 
 
 def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
+    """Return sentences on how far to open, what the setting then reads,
+    and how far off its place the part may lie.
+    """
     from workhold.model.seating import DRY_STEEL
 
-    setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
+    setting, carrier, ways = gauge.setting, gauge.carrier, gauge.opening_words
     named = "" if setting.tip is None else f"a {setting.name} of "
     more, less = ("more", "less") if gauge.grows else ("less", "more")
     if seating.is_untold:
@@ -217,7 +229,7 @@ def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     elif seating.capture_opening is None:
         words = [f"However {ways.far}, the part cannot get to another place: put it in and {ways.close}."]
     else:
-        wide = gauge.at(gauge.fixture.travel + seating.clamping * seating.capture_opening)
+        wide = gauge.compute_reading(gauge.fixture.travel + seating.clamping * seating.capture_opening)
         words = [
             f"{ways.open} to {named}{less} than {unit.format_length(wide)}, which is "
             f"{unit.format_length(seating.capture_opening)} from where {ways.hold} the part. Put the part in "
@@ -237,7 +249,7 @@ def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         shifts = (
             (seating.cage.x, seating.cage.y) if carrier.line == "row" else (seating.cage.y, seating.cage.x)
         )
-        along, across = (" to ".join(unit.number(end) for end in ends) for ends in shifts)
+        along, across = (" to ".join(unit.format_number(end) for end in ends) for ends in shifts)
         words += [
             f"The part may lie off its place by {low:.2f} to {high:.2f} degrees and by {along} "
             f"{unit.abbreviation} along the {ways.whose} way, {across} {unit.abbreviation} across it, "
@@ -257,11 +269,14 @@ def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
 def describe_wrong_seats(
     seating: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit
 ) -> list[str]:
+    """Return sentences on the wrong places in which the part can rest;
+    ``opened`` is in mm, None without a limit.
+    """
     wrong = [one for one in seats if one.is_wrong]
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []
     if seating.capture_opening is not None and opened is not None and opened < seating.capture_opening:
-        far = f"{gauge.ways.done} by {unit.format_length(opened)}"
+        far = f"{gauge.opening_words.done} by {unit.format_length(opened)}"
         words.append(
             f"{far}, a part let go near its place reaches no other place; a part let go elsewhere may."
         )
@@ -269,7 +284,7 @@ def describe_wrong_seats(
         words.append("There is no wrong place in which the part can come to rest.")
     else:
         near = min(wrong, key=lambda one: abs(one.difference))
-        more = gauge.at(near.jaw_separation) > gauge.setting.length
+        more = gauge.compute_reading(near.jaw_separation) > gauge.setting.length
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
         words.append(
             f"The part can come to rest in {places}; the reading nearest to the right one is "
@@ -292,7 +307,8 @@ KINDS = {
 }
 
 
-def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
+def tabulate_seats(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
+    """Return a table of seats: reading, difference, angle, side, depth and contacts."""
     of, fixture = unit.abbreviation, gauge.fixture
     kinds = {**KINDS, "fixture": gauge.toolkit.setup_words.resting}
     table = Table(
@@ -304,11 +320,11 @@ def seat_table(seats: list[Seat], gauge: Gauge, unit: Unit) -> Table:
         words = "right" if one.is_own else "same place" if one.same_place else kinds[one.kind]
         table.add_row(
             str(k + 1),
-            unit.number(gauge.at(one.jaw_separation)),
-            unit.number(gauge.at(one.jaw_separation) - gauge.setting.length),
+            unit.format_number(gauge.compute_reading(one.jaw_separation)),
+            unit.format_number(gauge.compute_reading(one.jaw_separation) - gauge.setting.length),
             f"{one.pose.theta_deg:.1f}" if one.mirrored else f"{turned:.1f}",
             "over" if one.mirrored else "up",
-            "-" if one.depth is None else unit.number(one.depth),
+            "-" if one.depth is None else unit.format_number(one.depth),
             f"{words}{': ' if pegs else ''}{pegs}",
         )
     return table

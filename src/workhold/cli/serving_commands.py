@@ -46,15 +46,17 @@ FIRST_RUN = (
 )
 
 
-def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
-    """Make an option that is a limit and can come from the environment."""
+def make_limit_option(default: str | None, metavar: str, variable: str, help: str) -> Any:
+    """Return a Typer option of a limit, which can also come
+    from the environment as WORKHOLD_ and ``variable``.
+    """
     return typer.Option(
         default, metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
     )
 
 
 @frozen
-class ServerWords:
+class ServerOptions:
     """The options of where a server listens and to whom, as typed."""
 
     host: str = make_option(
@@ -78,13 +80,14 @@ class ServerWords:
     )
 
     def read_port(self) -> int:
+        """Return the port; raise InputError for what is no port."""
         at = read_whole_number("--port", self.port)
         if not 0 <= at <= HIGHEST_PORT:
             raise InputError(f"--port {self.port} is no port: give a number from 0 to {HIGHEST_PORT}.")
         return at
 
     def read_proxies(self) -> list[str]:
-        """Return the proxies that are trusted; refuse what is no address."""
+        """Return the addresses of trusted proxies; raise InputError for what is no IP address."""
         for proxy in self.trust_proxy or ():
             try:
                 ip_address(proxy)
@@ -95,7 +98,7 @@ class ServerWords:
         return self.trust_proxy or []
 
     def announce(self, address: str) -> None:
-        """Say where the page is, and show it if that was asked."""
+        """Print where the page is, and open it in the browser if asked."""
         from workhold.web.serve import is_for_others
 
         typer.echo(f"workhold is at {address} (Ctrl-C stops it)")
@@ -108,22 +111,26 @@ class ServerWords:
 
 
 @frozen
-class LimitWords:
+class LimitOptions:
     """The options of how much a server gives, as typed or as the environment says."""
 
-    upload_size: str = limit("20", "MB", "UPLOAD_SIZE", "Largest file with a part.")
-    searches: str = limit("2", "N", "SEARCHES", "Number of searches that run at the same time.")
-    seconds: str = limit(
+    upload_size: str = make_limit_option("20", "MB", "UPLOAD_SIZE", "Largest file with a part.")
+    searches: str = make_limit_option("2", "N", "SEARCHES", "Number of searches that run at the same time.")
+    seconds: str = make_limit_option(
         "120", "S", "SECONDS", "Longest time of a search; the fixtures found by then are shown."
     )
-    memory: str | None = limit(
+    memory: str | None = make_limit_option(
         None, "MB", "MEMORY", "Most memory of each search: 4096, or less on a small machine."
     )
-    fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
-    life: str = limit("60", "MINUTES", "LIFE", "Time that a search is kept after its last use.")
+    fixtures: str = make_limit_option(
+        "300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones."
+    )
+    life: str = make_limit_option("60", "MINUTES", "LIFE", "Time that a search is kept after its last use.")
 
     def read_limits(self) -> ServerLimits:
-        """Return the limits of the server; refuse what is no number, and counts that are too small or too large."""
+        """Return the server's limits in bytes, seconds and counts;
+        raise InputError for what is too small or too large.
+        """
         upload_size = int(1e6 * read_positive_number("--upload-size", self.upload_size))
         searches = int(read_positive_number("--searches", self.searches))
         seconds = read_positive_number("--seconds", self.seconds)
@@ -150,7 +157,7 @@ class LimitWords:
 
 
 @spread_option_groups
-def serve(*, words: ServerWords, limits: LimitWords) -> None:
+def serve(*, words: ServerOptions, limits: LimitOptions) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 
     Only this machine can use the page, unless --host says otherwise. Other programs can use the same server:
@@ -169,7 +176,7 @@ def serve(*, words: ServerWords, limits: LimitWords) -> None:
 
 
 def prepare() -> None:
-    """Compile the kernels on a first run, before workers would do so one after the other."""
+    """Compile the kernels if that has not been done, so that workers need not do so one after the other."""
     from workhold.cli.warming import compile_kernels, compile_seating
     from workhold.kernels.base.libraries import ROOMS, is_built
 
@@ -209,6 +216,7 @@ def mcp() -> None:
     import anyio
 
     async def serve(folder: Path) -> None:
+        """Serve the tools on stdin and stdout until the client closes them."""
         server = make_tool_server(folder)
         async with stdio_server() as (incoming, outgoing):
             await server.run(incoming, outgoing, server.create_initialization_options())
@@ -218,7 +226,7 @@ def mcp() -> None:
 
 
 def make_tool_server(folder: Path) -> Any:
-    """Make the server of the tools; results for which no file is named are written into the folder."""
+    """Return the MCP server of the tools; results for which no file is named are written into the folder."""
     import mcp_types as types
     from anyio import get_cancelled_exc_class
     from anyio.to_thread import run_sync
@@ -227,6 +235,7 @@ def make_tool_server(folder: Path) -> Any:
     from workhold.cli.agent_tools import TOOLS
 
     async def list_tools(context: Any, asked: Any) -> types.ListToolsResult:
+        """Return all tools with descriptions and schemas of arguments."""
         return types.ListToolsResult(
             tools=[
                 types.Tool(name=name, description=tool.words, input_schema=tool.arguments.model_json_schema())
@@ -235,6 +244,7 @@ def make_tool_server(folder: Path) -> Any:
         )
 
     async def call_tool(context: Any, asked: types.CallToolRequestParams) -> types.CallToolResult:
+        """Return what a tool says, with its picture; a cancelled call stops the tool's search."""
         cancel = Event()
         try:
             work = partial(run_tool, asked.name, asked.arguments, folder, cancel)
@@ -256,7 +266,9 @@ def make_tool_server(folder: Path) -> Any:
 def run_tool(
     name: str, arguments: dict[str, Any] | None, folder: Path, cancel: Event
 ) -> tuple[dict[str, Any] | str, str | None, bool]:
-    """Run a tool; return its data or a sentence, its picture as PNG in base 64, and whether it failed."""
+    """Return a tool's data, its picture as PNG in base 64 or None,
+    and whether it failed; then the data are a sentence.
+    """
     from workhold.cli.agent_arguments import check_arguments
     from workhold.cli.agent_tools import TOOLS
 
@@ -280,7 +292,7 @@ def run_tool(
 
 
 SHELLS = ("bash", "zsh", "fish")
-# What the shell sets when it asks for words; see Workhold in ``cli.main``.
+# What the shell sets when it asks for words; see ``WorkholdGroup`` in ``cli.main``.
 VARIABLE = "_WORKHOLD_COMPLETE"
 
 

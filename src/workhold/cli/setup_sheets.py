@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "PART_FILE",
-    "BodyWords",
+    "BodyOptions",
     "list_asked_model_files",
     "choose_supports_from_file",
     "choose_best_supports",
@@ -47,7 +47,7 @@ PART_FILE = make_option(
 
 
 @frozen
-class BodyWords:
+class BodyOptions:
     """The options of a set-up in three dimensions, as typed; None for those not given."""
 
     glb: str | None = make_option(
@@ -70,7 +70,9 @@ class BodyWords:
     part: str | None = PART_FILE
 
     def list_given_model_files(self, inputs: Sequence[str | None], force: bool) -> list[Path]:
-        """Return the files to write; refuse an option of them where there are none."""
+        """Return the GLB and STEP files to write;
+        raise InputError for an option that needs them where there are none.
+        """
         of_files = {"thickness": self.thickness, "supports": self.supports, "part": self.part}
         return list_asked_model_files(self.glb, self.step, (*inputs, self.part), force, **of_files)
 
@@ -83,10 +85,10 @@ MOST_ASKED = 200
 def list_asked_model_files(
     glb: str | None, step: str | None, inputs: Sequence[str | None], force: bool, **of_files: object
 ) -> list[Path]:
-    """Return the paths of the GLB and STEP files asked for.
+    """Return the paths of the GLB and STEP files asked for, none, one or two.
 
-    ``of_files`` are options that only these files have, by name; none is given where a value is None or
-    False. Refuses an option without a file.
+    ``of_files`` are options that only count with such a file, by name; None or False is not given. Raises
+    InputError for one of them without a file, a wrong ending, and a file that must not be replaced.
     """
     paths = []
     for name, given, endings in (("--glb", glb, (".glb",)), ("--step", step, (".step", ".stp"))):
@@ -107,7 +109,9 @@ def list_asked_model_files(
 
 
 def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
-    """Write a set-up as GLB and STEP files, and say what the part was taken to be."""
+    """Write a set-up as GLB and STEP files;
+    print remarks where the part's height was assumed or its shape simplified.
+    """
     for path in paths:
         assembly.write(path)
     if not paths:
@@ -126,7 +130,7 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
 
 
 def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | None, force: bool) -> None:
-    """Refuse a sheet before anything is searched; None is no sheet."""
+    """Raise InputError for a setup sheet that cannot be written; None is no sheet."""
     if sheet is None:
         return
     path = Path(sheet)
@@ -146,12 +150,15 @@ def write_first_sheet(
     before: str | None,
     supported: Sequence[Supports] = (),
 ) -> int | None:
-    """Write the sheet of the first choice and return its rank; None where there is no fixture.
+    """Write the sheet of the first choice and return its rank from 1; None where there is no fixture.
 
-    The hash of ``out``, the file of the result, stands on the sheet. The part's thickness in mm is given
-    where supports are wanted. Then the first choice is the first that has some; ``supported`` are those of
-    the best fixtures where they are known already, in order. ``before`` is the result of the set-up of the
-    part's other side before this one.
+    Parameters
+    ----------
+    out : path of the result file, whose hash stands on the sheet.
+    thickness : of the part in mm, where supports are wanted: then the first choice is the first fixture that
+        has some.
+    before : result file of the set-up of the part's other side before this one.
+    supported : supports of the best fixtures, in order, where they are known already.
     """
     from workhold.presenting.papers import write_paper
 
@@ -174,10 +181,11 @@ def write_first_sheet(
 def find_first_supported(
     result: Result, thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
-    """Return the rank of the best fixture that three supports hold up, and these; the first one where none
-    has any.
+    """Return the rank of the best fixture that three supports hold up, and these;
+    (1, None) where none has any.
 
-    Supports that are known already go before others, and larger pads before smaller ones.
+    Supports that are known already are tried first, then larger pads before smaller ones. Remarks are
+    printed.
     """
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import try_smaller_requests
@@ -203,7 +211,7 @@ def find_first_supported(
         if one.triples:
             if rank > 1:
                 print_remark(f"no such supports hold up fixture 1, so the sheet shows fixture {rank}.")
-            return rank, ChosenSupports.of(one)
+            return rank, ChosenSupports.from_supports(one)
     print_remark(
         "no three supports hold the part under any of the best, so the sheet has none: another side up "
         "(--axis) or a finer pitch may help, or parallels under it instead."
@@ -214,7 +222,10 @@ def find_first_supported(
 def choose_supports_from_file(
     path: str, number: int, settings: dict[str, Any], loads: Sequence[Load] | None
 ) -> ChosenSupports:
-    """Return the set of three of a number in a file of supports; refuse what the file has decided already."""
+    """Return the set of three with this number from a file of supports.
+
+    Raises InputError for a thickness, a jaw force or loads, which the file has decided already.
+    """
     from workhold.files.supports_file import read_supports
     from workhold.model.support_triples import ChosenSupports
 
@@ -225,7 +236,7 @@ def choose_supports_from_file(
             )
     if loads:
         raise InputError(f"{path} has the loads for which its supports were chosen: leave --load out.")
-    return ChosenSupports.of(read_supports(path), number)
+    return ChosenSupports.from_supports(read_supports(path), number)
 
 
 def choose_best_supports(
@@ -235,10 +246,10 @@ def choose_best_supports(
     loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports:
-    """Return the best three supports under a fixture, of the usual sizes or else of smaller ones.
+    """Return the best three supports under the fixture of a rank, of the usual sizes or else of smaller ones.
 
-    A jaw force under which a load would lift the part off a peg is left out: the sheet warns of it anyway.
-    Refuses where there are none, and where nobody knows how thick the part is.
+    A jaw force under which a load would lift the part off a peg is not used: the sheet warns of it anyway.
+    Raises InputError where there are no supports, and where the part's thickness is not known.
     """
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import support_with_smaller_sizes, try_smaller_requests
@@ -255,16 +266,19 @@ def choose_best_supports(
             f"under fixture {rank} no three supports hold the part: see workhold supports with its "
             "--pad-radius, --tip-radius and --out, or leave --supports out."
         )
-    return ChosenSupports.of(found)
+    return ChosenSupports.from_supports(found)
 
 
 def find_first_side(result: Result, rank: int, before: str) -> FirstSide:
-    """Return what a fixture shares with the best fixture of another result, whose part had another side up.
+    """Return what a fixture shares with the best fixture of another result,
+    in which the solid has another side up.
 
-    Refuses parts that are not of one solid.
+    Raises InputError for parts that are not of one solid.
     """
     from workhold.files.result.reader import read_result
-    from workhold.model.first_side import first_side
+    from workhold.model.first_side import compare_with_first_side
 
     other = read_result(before)
-    return first_side(result[rank - 1], result.query, other.query, other[0] if len(other) else None)
+    return compare_with_first_side(
+        result[rank - 1], result.query, other.query, other[0] if len(other) else None
+    )

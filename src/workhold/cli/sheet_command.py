@@ -62,7 +62,7 @@ FIRST_SETUP = make_option(
         jaw_force={"load": make_list_attribute(LOAD), "loads": make_word_attribute(LOADS_FILE)},
     )
 )
-class SheetWords:
+class SheetOptions:
     """The options of what stands on a sheet, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -94,12 +94,13 @@ class SheetTask:
     rank: int
     settings: dict[str, Any]
     loads: tuple[Load, ...]
-    words: SheetWords
+    words: SheetOptions
     unit: str | None
     on_supports: bool
 
     @property
     def is_for_cam(self) -> bool:
+        """Whether the file is a set-up for CAM or a list of pins, not a sheet."""
         from workhold.presenting.papers import MODEL_ENDINGS
 
         return self.path.suffix.lower() in MODEL_ENDINGS
@@ -133,7 +134,7 @@ def sheet(
     *,
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
-    words: SheetWords,
+    words: SheetOptions,
     json_: bool = JSON,
 ) -> None:
     """Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality,
@@ -151,11 +152,11 @@ def sheet(
     print_written(json_, f"Written to {asked.path}.", asked.path)
 
 
-def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str | None) -> SheetTask:
-    """Read what was typed, and refuse what does not belong into such a file."""
+def parse(result_file: str, rank: int, path: Path, words: SheetOptions, unit: str | None) -> SheetTask:
+    """Return what was typed as a task; raise InputError for options that do not belong into such a file."""
     from workhold.presenting.assembly import STEP_ENDINGS
     from workhold.presenting.papers import MODEL_ENDINGS, PAPER_ENDINGS
-    from workhold.statics.loads import jaw_stiffness
+    from workhold.statics.loads import read_jaw_stiffness
     from workhold.verification.supports import is_supports_file
 
     ending = path.suffix.lower()
@@ -166,7 +167,7 @@ def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str 
         )
     shown = read_unit(unit)
     settings = read_words(OF_SHEET, words, shown)
-    settings["jaw"] = jaw_stiffness(settings["jaw"])
+    settings["jaw"] = read_jaw_stiffness(settings["jaw"])
     settings["day"] = settings["day"] or date.today()
     given = read_asked_loads(words.load, words.loads, shown)
     if words.part is not None and ending not in STEP_ENDINGS and words.material is None:
@@ -207,8 +208,8 @@ def write(asked: SheetTask) -> None:
 
 
 def read_sheet_content(asked: SheetTask) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
-    """Return the result and rank of the fixture, what stands on its sheet besides what was typed, and the
-    loads " "on it.
+    """Return the result, the fixture's rank,
+    further settings of the sheet (its supports), and the loads on it.
     """
     settings, loads = asked.settings, asked.loads
     if asked.on_supports:
@@ -238,7 +239,11 @@ def refuse_in_space(
     support_height: str | None,
     first_setup: str | None,
 ) -> None:
-    """Refuse what stands on paper only in a file for a CAM system, and a height of no supports."""
+    """Raise InputError for what only paper can show in a file for CAM, for supports where the file has none,
+    and for a support height without supports.
+
+    ``for_cam`` says that the file is one for CAM, ``shows_supports`` that such a file has supports.
+    """
     if for_cam and first_setup is not None:
         raise InputError(
             f"--first-setup belongs to a sheet on paper, not to {path}: let the name end in .pdf, "

@@ -10,9 +10,9 @@ from attrs import frozen
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
-from workhold.cli.search_options import LoadWords
+from workhold.cli.search_options import LoadOptions
 from workhold.cli.seat_command import describe_seating, describe_steps_by_hand
-from workhold.cli.setup_sheets import BodyWords, choose_best_supports, write_bodies
+from workhold.cli.setup_sheets import BodyOptions, choose_best_supports, write_bodies
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import choose_printed_unit, read_optional_positive_length, read_unit
 from workhold.errors import InputError
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from workhold.statics.bent_pegs import BentPegs
     from workhold.statics.loads import LoadCase
 
-__all__ = ["load_tables", "show"]
+__all__ = ["tabulate_load_cases", "show"]
 
 
 @frozen
@@ -36,7 +36,7 @@ class ShowTask:
 
     Parameters
     ----------
-    pressed_by : the loads, jaw force, jaw and friction that were typed, see ``LoadWords``.
+    pressed_by : the loads, jaw force, jaw and friction that were typed, see ``LoadOptions``.
     picture, models : files to write, in two and in three dimensions.
     part : the file of the part's own shape for the latter.
     height : of the part in them, in mm.
@@ -58,11 +58,12 @@ class ShowTask:
 
     @property
     def fixture(self) -> Fixture:
+        """The fixture of the rank."""
         return self.result[self.rank - 1]
 
     @property
     def closing(self) -> tuple[float | None, float]:
-        """The jaw force in N that was typed, and how stiff the jaw is."""
+        """Jaw force typed, in N or None, and the stiffness of the jaw."""
         return self.pressed_by["jaw_force"], self.pressed_by["jaw"]
 
 
@@ -72,9 +73,9 @@ def show(
     number: RankArgument,
     *,
     draw: str | None = make_option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
-    bodies: BodyWords,
+    bodies: BodyOptions,
     force: bool = FORCE,
-    words: LoadWords,
+    words: LoadOptions,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
@@ -94,13 +95,13 @@ def parse(
     result_file: str,
     rank: int,
     draw: str | None,
-    bodies: BodyWords,
+    bodies: BodyOptions,
     force: bool,
-    words: LoadWords,
+    words: LoadOptions,
     unit: str | None,
     as_json: bool,
 ) -> ShowTask:
-    """Read what was typed, and the fixture."""
+    """Return what was typed as a task, with the result read."""
     shown = read_unit(unit)
     pressed_by = words.read_arguments(shown)
     picture = read_picture_path(draw, (result_file, words.loads), force)
@@ -124,8 +125,10 @@ def parse(
 
 
 def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
-    """Find what the loads do to the fixture."""
-    from workhold.statics.loads import load_cases
+    """Return what each load does to the fixture;
+    () for a fixture held by friction, whose loads belong to the design.
+    """
+    from workhold.statics.loads import compute_load_cases
 
     result, pressed_by = asked.result, asked.pressed_by
     if asked.fixture.hold is not None:
@@ -137,7 +140,7 @@ def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
     force, stiffness = asked.closing
     closed_with = result.query.jaw_force if force is None else force
     loads, friction = pressed_by["loads"] or result.query.loads, pressed_by["friction"]
-    return load_cases(
+    return compute_load_cases(
         asked.fixture, result.workpiece, result.toolkit, loads, closed_with, friction, stiffness
     )
 
@@ -153,7 +156,7 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
     if not asked.as_json:
         print_tables(*(f"Drawn in {path}." for path in written))
         return
-    from workhold.presenting.data import describe_fixture, load_case_data
+    from workhold.presenting.data import describe_fixture, describe_load_case
 
     print_json(
         fixture=describe_fixture(asked.fixture, result.toolkit, rank),
@@ -161,7 +164,7 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
         **({} if asked.fixture.hold is not None else convert_bending_to_data(result, rank, asked.closing[0])),
         listed=len(result),
         complete=bool(result.complete),
-        loads=[load_case_data(case) for case in cases],
+        loads=[describe_load_case(case) for case in cases],
         written=[str(path) for path in written],
     )
 
@@ -192,7 +195,7 @@ def print_fixture(
 ) -> None:
     """Print how to set up the fixture of a rank, its quality and what loads do to it.
 
-    ``closing`` is the jaw force in N, None where it is open, and how stiff the jaw is.
+    ``closing`` is the jaw force in N, None where it was not typed, and the stiffness of the jaw.
     """
     from workhold.cli.tables import (
         describe_part_overhang,
@@ -219,16 +222,18 @@ def print_fixture(
     print_tables(
         *describe_bending(result, rank, unit, closing[0]),
         *describe_program_clearances(result, rank, unit, *closing),
-        *load_tables(cases, fixture, toolkit, unit),
+        *tabulate_load_cases(cases, fixture, toolkit, unit),
     )
 
 
 def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
-    """Find how far the pegs of the fixture of a rank bend, at a jaw force in N or at the result's."""
-    from workhold.statics.bent_pegs import bent_pegs
+    """Return how far the pegs of a fixture bend, at a jaw force in N,
+    else the result's; None where no heights are known.
+    """
+    from workhold.statics.bent_pegs import compute_bent_pegs
 
     query = result.query
-    return bent_pegs(
+    return compute_bent_pegs(
         result[rank - 1],
         result.workpiece,
         result.toolkit,
@@ -238,9 +243,10 @@ def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> B
 
 
 def describe_bending(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
-    """Say how far each peg bends, and what that moves the part by; nothing where no heights are known.
+    """Return a table and sentences on how far pegs bend and what that moves the part by;
+    [] where no heights are known.
 
-    The jaw force in N stands instead of the result's.
+    ``jaw_force`` in N replaces the result's.
     """
     bent = compute_peg_bending(result, rank, jaw_force)
     if bent is None:
@@ -263,27 +269,28 @@ def describe_bending(result: Result, rank: int, unit: Unit, jaw_force: float | N
         table.add_row(
             peg.hole,
             unit.format_short_length(peg.diameter),
-            unit.number(peg.height, unit.decimals - 1),
+            unit.format_number(peg.height, unit.decimals - 1),
             f"{peg.force / unit.newtons:.0f}",
-            unit.number(peg.deflection),
-            unit.number(peg.worst_deflection),
+            unit.format_number(peg.deflection),
+            unit.format_number(peg.worst_deflection),
             unit.format_stress_number(peg.stress),
             unit.format_stress_number(peg.worst_stress),
         )
     error = result[rank - 1].figures.get("location_error")
     return [
         "",
-        f"Pegs bend as follows, {bent.at_force(mover, unit)}, if they are built in at the plate; "
+        f"Pegs bend as follows, {bent.describe_force(mover, unit)}, if they are built in at the plate; "
         "in a real hole they give way more:",
         table,
-        bent.sentence(mover, unit, error),
-        *(f"Beware: {sentence}" for sentence in bent.cautions(mover, unit)),
+        bent.describe_bending(mover, unit, error),
+        *(f"Beware: {sentence}" for sentence in bent.list_cautions(mover, unit)),
     ]
 
 
-def load_tables(
+def tabulate_load_cases(
     cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
+    """Return tables and sentences on what each load needs and does; () without load cases."""
     if not cases:
         return ()
     from workhold.statics.loads import describe_jaw
@@ -304,7 +311,7 @@ def load_tables(
             case.load.name or f"load {number}",
             unit.format_force_number(worst.value),
             fixture.pegs[worst.peg].hole,
-            f"({unit.number(worst.point[0])}, {unit.number(worst.point[1])})",
+            f"({unit.format_number(worst.point[0])}, {unit.format_number(worst.point[1])})",
             f"{worst.direction:.1f}",
         ]
         table.add_row(
@@ -337,9 +344,10 @@ def load_tables(
 def list_program_clearances(
     result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> dict[str, Any]:
-    """Return where the program's tools come nearest, and which forces they ask for, as plain data.
+    """Return "program_clearance" and "program_forces" as plain data; those that are not known are left out.
 
-    Nothing without a program. Jaw force and jaw are as of :func:`describe_program_clearances`.
+    They say where tools of the program come nearest, and which forces they ask for. Jaw force and jaw are as
+    of :func:`describe_program_clearances`.
     """
     from workhold.statics.program_clearance import find_nearest_passing
     from workhold.statics.program_forces import find_cutting_need
@@ -352,7 +360,7 @@ def list_program_clearances(
 
 
 def convert_bending_to_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
-    """Return how far pegs bend as plain data; nothing where no heights are known."""
+    """Return how far pegs bend as plain data under "pins"; {} where no heights are known."""
     bent = compute_peg_bending(result, rank, jaw_force)
     return {} if bent is None else {"pins": bent.to_dict()}
 
@@ -360,10 +368,10 @@ def convert_bending_to_data(result: Result, rank: int, jaw_force: float | None =
 def describe_program_clearances(
     result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> list[str]:
-    """Say how near the program's tools come to the fixture of a rank, and which forces they ask for.
+    """Return sentences on how near the program's tools come to a
+    fixture and which forces they ask for; [] without a program.
 
-    Nothing without a program. The jaw force in N stands instead of the result's. For the jaw see
-    :func:`workhold.statics.loads.jaw_stiffness`.
+    ``jaw_force`` in N replaces the result's. For ``jaw`` see :func:`workhold.statics.loads.jaw_stiffness`.
     """
     from workhold.statics.program_clearance import find_nearest_passing
     from workhold.statics.program_forces import find_cutting_need
@@ -372,7 +380,9 @@ def describe_program_clearances(
     if program is None:
         return []
     near, need = find_nearest_passing(result, rank - 1), find_cutting_need(result, rank - 1, jaw_force, jaw)
-    forces = [] if need is None else need.words(result.toolkit.moving.noun, unit, result.toolkit.travels)
+    forces = (
+        [] if need is None else need.list_sentences(result.toolkit.moving.noun, unit, result.toolkit.travels)
+    )
     if near is None:
         return [
             f"No tool of {program.name} comes down to the height of anything that holds the part.",

@@ -10,14 +10,14 @@ from workhold.presenting.figure_words import format_rounded
 from workhold.units import Unit
 
 if TYPE_CHECKING:
-    from workhold.listing.identity import Entries
+    from workhold.listing.identity import ShownEntries
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
 
-__all__ = ["first_strap_sentence", "strap_table", "strapped_fixture_tables"]
+__all__ = ["describe_completeness", "tabulate_straps", "tabulate_strapped_fixture"]
 
 
-def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
+def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Unit) -> Table:
     """Tabulate the best seats: locators, bolts, the force of each strap, and figures of the seat."""
     from workhold.model.straps import StrappedHold
 
@@ -43,7 +43,7 @@ def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tab
             table.red.add(len(table.rows))
         need = hold.clamp_needed
         force = "-" if need is None else format_rounded(need / unit.newtons, 0)
-        bolts = " ".join(straps.bolts.place_name(*one.hole) for one in hold.straps) or "-"
+        bolts = " ".join(straps.bolts.name_place(*one.hole) for one in hold.straps) or "-"
         push = (
             "?" if not hold.is_looked_at else "none" if hold.push is None else f"{hold.push.direction_deg:g}°"
         )
@@ -54,44 +54,44 @@ def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tab
             format_rounded(fixture.pose.written_deg, 3),
             *((force, bolts) if has_loads else ()),
             push,
-            unit.number(quality["location_error"]),
-            unit.number(quality["edge_distance"], 1),
+            unit.format_number(quality["location_error"]),
+            unit.format_number(quality["edge_distance"], 1),
         )
     return table
 
 
-def first_strap_sentence(result: Result, unit: Unit) -> str:
+def describe_completeness(result: Result, unit: Unit) -> str:
     """Say what is complete of a list of seats, and with which friction forces are stated."""
     from workhold.model.straps import StrappedHold
-    from workhold.supports.straps import question_of
-    from workhold.supports.words_of_straps import reckoned_with
+    from workhold.supports.straps import make_question
+    from workhold.supports.words_of_straps import describe_assumptions
 
     looked_at = sum(isinstance(hold, StrappedHold) and hold.is_looked_at for hold in result.holds)
     said = f"All seats are listed; a push by hand was looked for at {looked_at} of them"
     if not result.query.is_loaded:
         return f"{said}."
     places = "straps, the best of a finite set of places, too"
-    return f"{said}, and {places}. {reckoned_with(question_of(result.query))}"
+    return f"{said}, and {places}. {describe_assumptions(make_question(result.query))}"
 
 
-def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
+def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
     """Say how to set up one seat with its straps, with lengths in a unit, and what each load asks for."""
     from workhold.model.straps import StrappedHold
-    from workhold.supports.straps import question_of
+    from workhold.supports.straps import make_question
     from workhold.supports.words_of_straps import (
+        describe_assumptions,
         describe_program_need,
         list_remarks,
         list_steps,
         list_warnings,
-        reckoned_with,
     )
 
     hold, query = fixture.hold, fixture.listing.result.query
     assert isinstance(hold, StrappedHold)
-    asked, short = question_of(query), unit.abbreviation
+    asked, short = make_question(query), unit.abbreviation
     pegs = Table(("hole", f">x {short}", f">y {short}", ">face"))
     for peg in fixture.pegs:
-        pegs.add_row(peg.hole, unit.number(peg.x), unit.number(peg.y), str(peg.face))
+        pegs.add_row(peg.hole, unit.format_number(peg.x), unit.format_number(peg.y), str(peg.face))
     angle = format_rounded(fixture.pose.written_deg, 6)
     tables: list[Table | str] = [
         f"Fixture {rank} of {total}: part turned by {angle} degrees",
@@ -105,17 +105,19 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
             ("strap", "bolt in", f">tip at x {short}", f">tip at y {short}", f">heel {short} high")
         )
         for number, one in enumerate(hold.straps, 1):
-            where = asked.bolts(fixture).place_name(*one.hole)
-            straps.add_row(str(number), where, *(unit.number(value) for value in (*one.at, one.height)))
+            where = asked.get_bolt_holes(fixture).name_place(*one.hole)
+            straps.add_row(
+                str(number), where, *(unit.format_number(value) for value in (*one.at, one.height))
+            )
         tables += ["", straps]
     if hold.clamp_needed_each:
         needs = tabulate_needs(
             (load.name for load in query.loads), hold.clamp_needed_each, "force of each strap", unit
         )
-        tables += ["", reckoned_with(asked), needs]
+        tables += ["", describe_assumptions(asked), needs]
     if hold.program_need is not None and query.program is not None:
         tables += ["", describe_program_need(hold.program_need, query.program, unit)]
-        tables += [] if hold.clamp_needed_each else [reckoned_with(asked)]
+        tables += [] if hold.clamp_needed_each else [describe_assumptions(asked)]
     quality = fixture.quality
     error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))
     tables.append(f"Location error {error}; nearest edge {edge}.")

@@ -37,7 +37,7 @@ STRAPS, PART, LOADS = "Straps", "Heights of the part", "Loads"
 
 
 @frozen
-class StrapWords:
+class StrapOptions:
     """The options of straps and of what acts on the part, as typed; None for those not given."""
 
     count: str = make_option(STRAPS, "K", "Number of straps, 1 to 4.", default="2")
@@ -71,7 +71,7 @@ def straps(
     result_file: ResultArgument,
     number: RankArgument,
     *,
-    words: StrapWords,
+    words: StrapOptions,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
@@ -102,12 +102,12 @@ def straps(
         raise typer.Exit(INTERRUPTED)
 
 
-def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
+def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion:
     """Read what was typed."""
-    from workhold.model.friction import SAFETY, coefficients_of
+    from workhold.model.friction import SAFETY, to_coefficients
     from workhold.model.straps import StrapHardware
     from workhold.model.support_request import SpatialLoad
-    from workhold.supports.straps import NO_LOADS, StrapQuestion, usual_request
+    from workhold.supports.straps import NO_LOADS, StrapQuestion, make_usual_request
 
     count, tip = (
         read_optional_count("--count", words.count),
@@ -125,15 +125,15 @@ def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
     loads = (
         [read_spatial_load(text, high, unit) for text in words.load]
         if words.load
-        else [SpatialLoad.of(load) for load in result.query.loads]
+        else [SpatialLoad.from_planar_load(load) for load in result.query.loads]
     )
     if not loads:
         raise InputError(NO_LOADS)
     return StrapQuestion(
         hardware,
-        usual_request(result.query, high, tip, zones),
+        make_usual_request(result.query, high, tip, zones),
         tuple(loads),
-        coefficients_of(None if words.friction is None else read_coefficients("--friction", words.friction)),
+        to_coefficients(None if words.friction is None else read_coefficients("--friction", words.friction)),
         SAFETY if words.safety is None else read_positive_number("--safety", words.safety),
         read_optional_force("--weight", words.weight) or 0.0,
     )
@@ -147,10 +147,10 @@ def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dic
         "type": "strapped",
         "pegs": [
             {"column": peg.column, "row": peg.row, "x": peg.x, "y": peg.y, "segment": peg.face}
-            for peg in asked.locators(fixture)
+            for peg in asked.list_locators(fixture)
         ],
         "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
-        **found.as_data(),
+        **found.to_data(),
         "friction": {name: find_friction_coefficient(asked.friction, name) for name in COUNTED_BY_STRAPS},
         "safety": asked.safety,
         "weight": asked.weight,
@@ -162,20 +162,22 @@ def tabulate(
 ) -> list[Table | str]:
     """Say how to set the straps up, and what each load asks for."""
     from workhold.cli.need_table import tabulate_needs
-    from workhold.supports.words_of_straps import list_remarks, list_steps, reckoned_with
+    from workhold.supports.words_of_straps import describe_assumptions, list_remarks, list_steps
 
     short = unit.abbreviation
     out: list[Table | str] = [f"Straps over the locators of fixture {rank}", ""]
     out += [f"{step}." for step in list_steps(found, fixture, asked, unit)] + list_remarks(found)
     if found.straps:
         table = Table(("strap", "bolt in", f">tip at x {short}", f">tip at y {short}"))
-        plate = asked.bolts(fixture)
+        plate = asked.get_bolt_holes(fixture)
         for number, one in enumerate(found.straps, 1):
-            table.add_row(str(number), plate.place_name(*one.hole), *(unit.number(value) for value in one.at))
+            table.add_row(
+                str(number), plate.name_place(*one.hole), *(unit.format_number(value) for value in one.at)
+            )
         out += ["", table]
     if found.clamp_needed_each:
         needs = tabulate_needs(
             (load.name for load in asked.loads), found.clamp_needed_each, "force of each strap", unit
         )
-        out += ["", reckoned_with(asked), needs]
+        out += ["", describe_assumptions(asked), needs]
     return out

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from workhold.cli.progress import show_progress
 from workhold.cli.search_options import parse_load
 from workhold.cli.table import format_count
-from workhold.cli.values import number
+from workhold.cli.values import read_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,10 +35,11 @@ MOST_PLACES = 100_000_000
 def find_supports_within_limit(
     fixtures: Sequence[Fixture], query: Query, requests: Iterable[SupportRequest], **how: Any
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
-    """Return the best supports of some fixtures as far as a limit of the work allows, with a bar on a
-    terminal.
+    """Return the best supports of each fixture,
+    and those of the usual sizes, as far as a limit of work allows.
 
-    For the arguments see :func:`workhold.supports.asking.support_with_smaller_sizes`.
+    Arguments and values are those of :func:`workhold.supports.asking.support_with_smaller_sizes`. A bar shows
+    progress.
     """
     from workhold.supports.asking import support_with_smaller_sizes
     from workhold.supports.choosing import WorkLimit
@@ -54,9 +55,10 @@ def find_supports_within_limit(
 
 
 def describe_stopped_search(last: int, count: int) -> str:
-    """Say at which fixture the search of supports was stopped, what was skipped, and how to get the rest.
+    """Return a sentence: at which fixture the search of supports stopped,
+    what was skipped, and how to get the rest.
 
-    ``last`` is the rank of that fixture, ``count`` how many fixtures were asked for.
+    ``last`` is the rank of that fixture, ``count`` the number of fixtures asked for.
     """
     skipped = list(range(last + 1, count + 1))
     rest = f", and under {format_number_runs(skipped)} at none" if skipped else ""
@@ -68,7 +70,7 @@ def describe_stopped_search(last: int, count: int) -> str:
 
 
 def format_number_runs(numbers: Sequence[int]) -> str:
-    """Return the rising numbers in words, three and more that follow one another as a range.
+    """Return ascending numbers as text, three and more consecutive ones as a range.
 
     Examples
     --------
@@ -88,10 +90,12 @@ def format_number_runs(numbers: Sequence[int]) -> str:
 def note_support_sizes(
     found: Sequence[Supports], usual: Sequence[Supports], bare: Sequence[int], unit: Unit
 ) -> list[str]:
-    """Say of which sizes the supports of some fixtures are, and why some have none.
+    """Return sentences on the sizes of the supports found, and on why some fixtures have none.
 
-    Of each fixture in order ``found`` are those that are listed, ``usual`` those of the usual sizes. ``bare``
-    are the ranks of those without supports among the listed ones.
+    Parameters
+    ----------
+    found, usual : for each fixture in order the supports listed, and those of the usual sizes.
+    bare : ranks of the fixtures that have none in ``found``.
     """
     from workhold.supports.words import explain_no_set
 
@@ -125,22 +129,21 @@ def note_support_sizes(
 def list_clamp_forces_with_friction(
     found: Supports, count: int | None, friction: float | None
 ) -> list[float]:
-    """Return the least clamp forces in N with friction, of the sets that are listed; none where it is not
-    asked for.
+    """Return for each of the first ``count`` sets the least clamp force in N with friction;
+    [] where none is asked for.
 
-    Refuses a coefficient that is too large, and one where there is no load.
+    Raises InputError without loads, and for a coefficient that is too large.
     """
     if friction is None:
         return []
     if not found.loads:
         raise InputError("--friction needs loads: give --load too.")
-    return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
+    return [found.bound_clamp_force(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
 
 
 def describe_friction_gain(friction: float, helped: list[float], unit: Unit) -> str:
-    """Say what friction could add to the sets that are listed.
-
-    ``helped`` are their least clamp forces in N.
+    """Return sentences on what friction could add;
+    ``helped`` are the least clamp forces in N of the sets listed.
     """
     forces = ", ".join(unit.format_force(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
@@ -152,7 +155,11 @@ def describe_friction_gain(friction: float, helped: list[float], unit: Unit) -> 
 
 
 def read_spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
-    """Return a load with its heights, its axial force and what tilts, from the text of ``--load``."""
+    """Return a load in space from the text of ``--load``:
+    height, axial force and tilt besides the words of a planar load.
+
+    It acts at the part's upper side, ``thickness`` mm high, where no height is given.
+    """
     from workhold.model.support_request import SpatialLoad
 
     place = f'--load "{text}"'
@@ -180,17 +187,19 @@ def read_spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
         directions=planar.directions,
         axial=read_number_range(place, own.get("axial"), (0.0, 0.0)),
         moment=planar.moment,
-        tilt=(number(tilt[0]), number(tilt[1])),
+        tilt=(read_number(tilt[0]), read_number(tilt[1])),
         name=planar.name,
     )
 
 
 def read_number_range(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
-    """Return one number or a range LOW..HIGH."""
+    """Return (low, high) from one number or LOW..HIGH,
+    ``usual`` for None; raise InputError for anything else.
+    """
     if text is None:
         return usual
     low, _, high = text.partition("..")
-    found = number(low), number(high or low)
+    found = read_number(low), read_number(high or low)
     if not all(map(isfinite, found)):
         raise InputError(f"{place} cannot be used at '{text}': give a number, or a range LOW..HIGH.")
     return found

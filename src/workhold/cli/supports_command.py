@@ -106,7 +106,7 @@ OF_HARDWARE = [row for table in (PADS, CLAMP) for row in table.fields if row.typ
         friction=make_word_attribute(FRICTION),
     )
 )
-class SupportWords:
+class SupportOptions:
     """The options of supports and the clamp on top, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -121,7 +121,9 @@ class SupportWords:
         friction: str | None
 
     def read_sizes(self, unit: Unit) -> dict[str, Any]:
-        """Return what of a :class:`workhold.model.support_request.SupportRequest` was given."""
+        """Return the fields of a ``SupportRequest``
+        (``model.support_request``) that were given, lengths in mm.
+        """
         own = read_words(OF_HARDWARE, self, unit) | {
             "band": None if self.band is None else read_separated_lengths("--band", self.band, ":", 2, unit),
             "bottom_zones": [read_zone(KEEP_OFF[0], text, unit) for text in self.keep_out_below or ()],
@@ -135,7 +137,7 @@ class SupportWords:
 
 @frozen
 class SupportsTask:
-    """What supports are asked for, and where the answer goes.
+    """Supports that are asked for, and where the answer goes.
 
     Parameters
     ----------
@@ -164,6 +166,7 @@ class SupportsTask:
 
     @property
     def fixture(self) -> Fixture:
+        """The fixture of the rank."""
         return self.result[self.rank - 1]
 
 
@@ -172,7 +175,7 @@ def supports(
     result_file: ResultArgument,
     number_: RankArgument,
     *,
-    words: SupportWords,
+    words: SupportOptions,
     triples: str = make_option(None, "K", "Number of sets of three to list.", default="3"),
     out: str | None = make_option(
         None, "FILE", "Write all sets of three, with every figure, into this file."
@@ -215,14 +218,14 @@ def supports(
 def parse(
     result_file: str,
     rank: int,
-    words: SupportWords,
+    words: SupportOptions,
     count: int | None,
     out: str | None,
     models: Sequence[Path],
     part: str | None,
     unit: str | None,
 ) -> SupportsTask:
-    """Read what was typed, and the fixture."""
+    """Return what was typed as a task, with the result read."""
     shown = read_unit(unit)
     closing = read_optional_force("--jaw-force", words.jaw_force)
     friction = None if words.friction is None else read_positive_number("--friction", words.friction)
@@ -255,7 +258,9 @@ def parse(
 
 
 def ask(asked: SupportsTask) -> Supports:
-    """Look for the supports."""
+    """Return the supports found, with smaller pads where the usual ones find no place;
+    the best so far after a Ctrl-C.
+    """
     from workhold.supports.asking import support_with_smaller_sizes
 
     with (
@@ -284,7 +289,9 @@ def ask(asked: SupportsTask) -> Supports:
 
 
 def write(asked: SupportsTask, found: Supports) -> None:
-    """Write the file of supports, and the bodies of the best."""
+    """Write the file of supports, and the bodies of the best set;
+    raise InputError for bodies where there is no set.
+    """
     if asked.out is not None:
         from workhold.files.supports_file import write_supports
 
@@ -299,7 +306,7 @@ def write(asked: SupportsTask, found: Supports) -> None:
 
         why = explain_no_set(found, asked.printed)
         raise InputError(f"{why[:1].lower()}{why[1:]}")
-    best, shape = ChosenSupports.of(found), read_part_shape(asked.part, asked.result.workpiece)
+    best, shape = ChosenSupports.from_supports(found), read_part_shape(asked.part, asked.result.workpiece)
     lengths = {"support_height": asked.raised}
     write_bodies(
         Assembly.from_fixture(asked.fixture, asked.result, lengths, best, shape), asked.models, asked.unit
@@ -307,9 +314,11 @@ def write(asked: SupportsTask, found: Supports) -> None:
 
 
 def read_asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
-    """Return how thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
+    """Return the thickness of a part in mm where supports are wanted:
+    as typed, else its solid's height; None if not wanted.
 
-    Refuses where nobody knows, or it is said of a solid without supports.
+    Raises InputError where neither is known, and for a thickness typed for a solid where supports are not
+    wanted.
     """
     if not wanted:
         if text is not None and workpiece.solid is not None:
@@ -323,12 +332,13 @@ def read_asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, u
 
 
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
-    """Print which three supports hold up the best fixtures of a result best, if any do, and return them.
+    """Print the best three supports of each of the best twenty fixtures,
+    if any, and return the supports of all.
 
-    They are of the usual sizes, or where these hold up none of the fixtures, of smaller ones.
+    They are of the usual sizes or, where these hold up none of the fixtures, of smaller ones.
     """
     from workhold.supports.asking import try_smaller_requests
-    from workhold.supports.words import place_notes, set_headings, set_row, write_flat_faces_notes
+    from workhold.supports.words import format_set_row, list_set_headings, place_notes, write_flat_faces_notes
 
     fixtures = [result[k] for k in range(min(MOST_SUPPORTED, len(result)))]
     if not fixtures:
@@ -336,10 +346,10 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     requests = try_smaller_requests(result.query, thickness)
     found, usual = find_supports_within_limit(fixtures, result.query, requests)
     with_loads = result.query.is_loaded
-    table = Table((">rank", *set_headings(unit, with_loads)))
+    table = Table((">rank", *list_set_headings(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
-            table.add_row(str(rank), *set_row(one.triples[0], unit, with_loads))
+            table.add_row(str(rank), *format_set_row(one.triples[0], unit, with_loads))
     bare = [rank for rank, one in enumerate(found, 1) if not one.triples and not one.stopped]
     notes = note_support_sizes(found, usual, bare, unit)
     if found[-1].stopped:
@@ -358,7 +368,7 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
 
 
 def explain_holes_before_first(listed: Sequence[Triple]) -> list[str]:
-    """Say how holes before column A or row 1 are named, where there are such."""
+    """Return a sentence on how holes before column A or row 1 are named; [] where no set uses one."""
     if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
         return []
     return ["A hole before column A or row 1 is written as (column,row), where A1 is (1,1)."]
@@ -374,6 +384,7 @@ def report(
     friction: float | None,
     helped: list[float],
 ) -> None:
+    """Print the sets listed, as tables or JSON, what friction could add, and what was written."""
     listed = found.triples[:count]
     if as_json:
         rows = [asdict(triple) for triple in listed]
@@ -398,18 +409,20 @@ def report(
 
 
 def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit) -> None:
-    from workhold.supports.words import set_headings, set_row
+    """Print a table of the sets listed and notes on them."""
+    from workhold.supports.words import format_set_row, list_set_headings
 
     with_loads = bool(found.loads)
-    table = Table((">set", *set_headings(unit, with_loads)))
+    table = Table((">set", *list_set_headings(unit, with_loads)))
     for place, triple in enumerate(listed, 1):
-        table.add_row(str(place), *set_row(triple, unit, with_loads))
+        table.add_row(str(place), *format_set_row(triple, unit, with_loads))
     number_of = "" if found.count is None else f" of {found.count}"
     head = f"Fixture {rank}: the best {len(listed)}{number_of} sets of three supports and a clamp on top."
     print_tables(head, table, *list_support_notes(found, listed, unit))
 
 
 def list_support_notes(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
+    """Return sentences on how to read the table of sets, and on the holes and faces used."""
     from workhold.conventions import STEADY
     from workhold.supports.words import write_listing_notes
 

@@ -26,7 +26,7 @@ MORE = "A wider terminal or a pipe shows them; --json has all."
 
 
 @frozen
-class Fitted:
+class FittedTable:
     """A table as lines of text; ``red`` are the numbers of the lines that a terminal shows in red."""
 
     headings: list[str]
@@ -52,17 +52,18 @@ class Table:
     spare: int = 0
 
     def add_row(self, *words: str) -> None:
+        """Add a row, one word for each column."""
         self.rows.append(words)
 
     def format_lines(self) -> list[str]:
-        """Return the table as lines without a limit of width: headings, a rule, and a line for each row."""
+        """Return the lines of the table without a limit of width: headings, a rule, and the rows."""
         fitted = self.fit_to_width(None)
         return [*fitted.headings, *fitted.lines]
 
-    def fit_to_width(self, width: int | None) -> Fitted:
-        """Fit the table into a width.
+    def fit_to_width(self, width: int | None) -> FittedTable:
+        """Return the table as lines of at most ``width`` characters; None is no limit.
 
-        A table that is wider has its headings wrapped first. Then the spare columns are left out, which a
+        A table that is too wide has its headings wrapped first. Then the spare columns are left out, which a
         last line says. Then columns of words are wrapped, the widest first. At last further columns are left
         out from the right, but never the first. No number is cut.
         """
@@ -104,6 +105,7 @@ class Table:
                 left_out = f"No room for: {', '.join(headings[kept:])}. {MORE}"
 
         def lines_of(cells: list[list[str]], low: bool) -> list[str]:
+            """Return the lines of one row, shorter cells filled up from above (``low``) or from below."""
             high = max(map(len, cells[:kept]))
             filled = [
                 [""] * (high - len(cell)) + cell if low else cell + [""] * (high - len(cell))
@@ -126,17 +128,21 @@ class Table:
             if number in self.red:
                 red.update(range(len(lines), len(lines) + len(written)))
             lines += written
-        return Fitted(
+        return FittedTable(
             lines_of(tops, low=True), lines + wrap(left_out, max(width or 0, 1), break_long_words=False), red
         )
 
 
 def measure_longest_word(texts: Iterable[str]) -> int:
+    """Return the length of the longest word in the texts; 0 without words."""
     return max((len(word) for text in texts for word in text.split()), default=0)
 
 
 def narrow_columns(widths: list[int], least: list[int], over: int) -> list[int]:
-    """Narrow columns by ``over`` characters in all, each time the widest that can be narrowed.
+    """Return widths less ``over`` characters in all,
+    taken one by one from the widest column above its least width.
+
+    Where all have their least width, the rest of ``over`` is not taken.
 
     >>> narrow_columns([30, 10, 40], [24, 10, 24], 14)
     [28, 10, 28]
@@ -151,11 +157,12 @@ def narrow_columns(widths: list[int], least: list[int], over: int) -> list[int]:
 
 
 def sum_widths(widths: list[int], gap: int) -> int:
+    """Return the width of a table with columns of these widths and gaps between them."""
     return sum(widths) + gap * (len(widths) - 1)
 
 
 def format_count(count: int, word: str) -> str:
-    """Return a number and its noun.
+    """Return a number and its noun, with an s unless the number is 1.
 
     >>> format_count(1, "fixture"), format_count(2, "fixture")
     ('1 fixture', '2 fixtures')
@@ -166,8 +173,7 @@ def format_count(count: int, word: str) -> str:
 def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
     """Print tables and sentences to a stream, stdout by default.
 
-    On a terminal headings are bold. What is printed is as wide as the terminal at most, where no single word
-    is longer.
+    On a terminal headings are bold, and lines are no longer than it is wide unless a single word is.
     """
     stream = stream or sys.stdout
     width = find_terminal_width(stream)
@@ -186,7 +192,8 @@ def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
 
 
 def wrap_sentence(sentence: str, width: int | None) -> list[str]:
-    """Wrap a sentence into lines of a width, all of them indented as it is.
+    """Return a sentence as lines of at most ``width`` characters
+    (None: no limit), all indented as the sentence is.
 
     >>> wrap_sentence("  one two three", 10)
     ['  one two', '  three']
@@ -206,7 +213,9 @@ def wrap_sentence(sentence: str, width: int | None) -> list[str]:
 
 
 def find_terminal_width(stream: TextIO) -> int | None:
-    """Return the columns of a terminal, or those that the environment says; None where there is no limit."""
+    """Return the width in characters: that of the environment's COLUMNS,
+    else the terminal's; None where there is no limit.
+    """
     given = os.environ.get("COLUMNS", "")
     if given.isascii() and given.isdigit() and int(given[:6]):
         return int(given[:6])

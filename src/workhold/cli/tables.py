@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import degrees, hypot, inf, nan, pi
 from typing import TYPE_CHECKING
 
-from workhold.cli.hold_tables import explain_first_hold, hold_fixture_tables, hold_table
+from workhold.cli.hold_tables import explain_first_hold, tabulate_hold_setup, tabulate_holds
 from workhold.cli.table import Table, format_count
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.model.solid import flip_up_axis
@@ -20,17 +20,17 @@ from workhold.presenting.figure_words import (
     list_shown_figures,
     make_short_heading,
     mark_edgeless,
-    place_of,
+    name_peg_place,
 )
 from workhold.units import MILLIMETRE, Unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.geometry.loop import Face
-    from workhold.listing.identity import Entries
+    from workhold.listing.identity import ShownEntries
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
-    from workhold.model.search_report import Proof
+    from workhold.model.search_report import ProofReport
     from workhold.model.setup import LengthSetting
     from workhold.model.solid import FileSolid, HeightRow
     from workhold.model.workpiece import Workpiece
@@ -63,7 +63,9 @@ UNDECIDED = (
 
 
 def count_fixtures_in_words(result: Result) -> str:
-    """Say how many fixtures there are, of which type, and how many differ under the part's symmetry."""
+    """Return a phrase on how many fixtures there are, of which type,
+    and how many are distinct under the part's symmetry.
+    """
     total = sum(result.found.values())
     kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
     of_types = f": {kinds}" if len(result.toolkit.types) > 1 else ""
@@ -80,16 +82,16 @@ def count_fixtures_in_words(result: Result) -> str:
 
 
 def explain_first_fixture(result: Result, unit: Unit) -> str:
-    """Say why the first fixture stands first; nothing where another order was asked for."""
+    """Return a sentence on why the first fixture stands first; "" where another order was asked for."""
     if result.holds:
         return explain_first_hold(result, unit)
-    from workhold.statics.why_first import why_first
+    from workhold.statics.why_first import explain_why_first
 
-    return why_first(result, unit)
+    return explain_why_first(result, unit)
 
 
 def count_unfit_in_words(unfit: int, toolkit: Toolkit | None = None) -> str:
-    """Say how many fixtures are hidden because they are unfit for a workshop, and how to see them."""
+    """Return a sentence on how many fixtures are hidden as unfit for a workshop, why, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
     why = "the part may lie anywhere, or one peg hardly holds"
     if toolkit is not None and toolkit.flat_jaws is not None:
@@ -100,9 +102,11 @@ def count_unfit_in_words(unfit: int, toolkit: Toolkit | None = None) -> str:
 
 
 def describe_proof_and_undecided(result: Result, written: str | None = None) -> list[str]:
-    """Say in a line how the search was proven, and below it names the first undecided candidates.
+    """Return a line on how the search was proven,
+    and below it lines that name the first undecided candidates.
 
-    ``written`` is the name of the JSON file that lists all of them, if there is one.
+    ``written`` is the name of the JSON file that lists all of them, None if there is none. The list is empty
+    without a proof.
     """
     proof = result.proof
     if proof is None:
@@ -124,7 +128,8 @@ def describe_proof_and_undecided(result: Result, written: str | None = None) -> 
     return [f"{sentence}, {lost} undecided:", *named, UNDECIDED]
 
 
-def describe_proof(proof: Proof, complete: bool) -> str:
+def describe_proof(proof: ProofReport, complete: bool) -> str:
+    """Return a phrase on how the search was proven, with the numbers of candidates."""
     settled = max(proof.escalated - len(proof.undecided), 0)
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
@@ -137,16 +142,16 @@ def describe_proof(proof: Proof, complete: bool) -> str:
     return f"{head}: {candidates}, {proof.verified:,} verified, {settled:,} decided by interval arithmetic"
 
 
-def tabulate_result(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
-    """Tabulate the best entries of a result, one line each, with lengths in a unit.
+def tabulate_result(result: Result, entries: ShownEntries, count: int, unit: Unit = MILLIMETRE) -> Table:
+    """Return a table of the first ``count`` entries of a result, one line each, lengths in a unit.
 
-    What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
-    table looks as sorted as it is.
+    Figures that fixtures are ranked by are rounded as the ranking rounds them, all but the last to two
+    digits, so that the table looks as sorted as it is.
     """
     if result.toolkit.holds_by_friction:
-        return hold_table(result, entries, count, unit)
+        return tabulate_holds(result, entries, count, unit)
     from workhold.model.setup import list_length_settings
-    from workhold.statics.judging import unfit
+    from workhold.statics.judging import are_unfit
 
     figures, ranked = list_shown_figures(result)
     headings = [f">{make_short_heading(figure, unit)}" for figure in figures]
@@ -158,7 +163,7 @@ def tabulate_result(result: Result, entries: Entries, count: int, unit: Unit = M
     # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
     decimals, degrees_decimals = (unit.decimals, 3) if toolkit.closes_at_once else (unit.decimals - 2, 1)
     red, longest = (
-        unfit(result.table.quality, result.query.tolerance),
+        are_unfit(result.table.quality, result.query.tolerance),
         find_edgeless_distance(result.workpiece, toolkit),
     )
     for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
@@ -170,12 +175,13 @@ def tabulate_result(result: Result, entries: Entries, count: int, unit: Unit = M
             str(index + 1),
             f"+{like:,}" if like else "",
             *(
-                " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
+                " ".join(name_peg_place(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
                 for names in groups.values()
             ),
             *(f"{result.table.pairs[index]:,}" for _ in pairs),
             " ".join(
-                unit.number(setting.length, decimals) for setting in list_length_settings(fixture, toolkit)
+                unit.format_number(setting.length, decimals)
+                for setting in list_length_settings(fixture, toolkit)
             ),
             format_rounded(fixture.pose.written_deg, degrees_decimals),
             *(
@@ -196,13 +202,13 @@ def tabulate_quality(
     jaw_force: float | None = None,
     longest: float = inf,
 ) -> Table:
-    """Tabulate the figures of quality of a fixture, and their meaning where ``mover`` (a jaw) presses.
+    """Return a table of a fixture's figures of quality,
+    with meanings where ``mover`` (such as "jaw") presses.
 
-    Pegs bend at a jaw force in N, None where it is not known. ``longest`` is the edge distance that stands
-    for none, see :func:`no_edge`.
+    ``jaw_force`` is in N, None where it is not known. An edge distance above ``longest`` mm stands for none.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
-    from workhold.statics.bent_pegs import at_force
+    from workhold.statics.bent_pegs import describe_force
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
     known = mark_edgeless(fixture.quality, longest)
@@ -211,16 +217,18 @@ def tabulate_quality(
             of = find_figure_unit(figure, unit)
             better = "more" if figure.more_is_better else "less"
             value = format_figure_number(figure, known[figure.key], unit)
-            words, meaning = figure.named_for(mover)
+            words, meaning = figure.name_for(mover)
             if figure.key in PIN_KEYS:
-                at = at_force(jaw_force, mover, unit)
+                at = describe_force(jaw_force, mover, unit)
                 meaning = meaning.replace(f"at the {mover} force or for each kN of it", at)
             table.add_row(words, value, of, better, meaning)
     return table
 
 
 def describe_part_overhang(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """Say how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
+    """Return sentences on where on its plate the setup sheet puts the set-up,
+    and on how far the part hangs over.
+    """
     from workhold.drawing.panel import describe_move
     from workhold.model.moved_setup import describe_overhang, find_move_to_middle, move_fixture_by_holes
 
@@ -238,9 +246,11 @@ def describe_part_overhang(fixture: Fixture, result: Result, unit: Unit) -> list
 def tabulate_fixture_setup(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """Say how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
+    """Return sentences and a table on how to set up one fixture,
+    lengths in a unit; ``rank`` counts from 1.
+    """
     if fixture.hold is not None:
-        return hold_fixture_tables(fixture, rank, total, unit)
+        return tabulate_hold_setup(fixture, rank, total, unit)
     from workhold.model.setup import list_length_settings
 
     noun, several = toolkit.moving.noun, len(toolkit.plates) > 1
@@ -250,33 +260,36 @@ def tabulate_fixture_setup(
     pegs = Table(("hole", noun if several else "peg", x, y, ">face", *[">flat at"] * flats, per))
     for peg in fixture.pegs:
         stands_on = peg.carrier if several else toolkit.find_carrier(peg.carrier).peg
-        where = unit.number(peg.x), unit.number(peg.y)
+        where = unit.format_number(peg.x), unit.format_number(peg.y)
         looks = ["" if peg.flat_deg is None else f"{format_rounded(peg.flat_deg, 2)}°"] * flats
-        pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:z.3f}")
+        pegs.add_row(
+            name_peg_place(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:z.3f}"
+        )
     pose = fixture.pose
     return (
         f"Fixture {rank} of {total}, type {toolkit.find_arrangement(fixture.type, fixture.direction).title}",
         *(describe_length_setting(setting, unit) for setting in list_length_settings(fixture, toolkit)),
         *describe_clamp_order(fixture),
         f"The part is turned by {format_rounded(pose.written_deg, 3)} degrees, its origin lies at "
-        f"{place((pose.x, pose.y), unit)} {unit.abbreviation} from {toolkit.datum.full}",
+        f"{format_place((pose.x, pose.y), unit)} {unit.abbreviation} from {toolkit.datum.full}",
         pegs,
     )
 
 
 def describe_length_setting(setting: LengthSetting, unit: Unit) -> str:
+    """Return a sentence on a length to set."""
     mover, length = setting.carrier, unit.format_length(setting.length)
     if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
     place = setting.mounting.there.format(place=setting.place)
-    return f"The {mover.noun}, {place}, pushes {mover.towards}; {setting.title} {length}"
+    return f"The {mover.noun}, {place}, pushes {mover.direction_words}; {setting.title} {length}"
 
 
 def describe_clamp_order(fixture: Fixture) -> list[str]:
-    """Say in which order two clamps are tightened and with what forces; empty for other fixtures."""
-    from workhold.model.clamps import compute_clamp_shares, name_clamps, order_words
+    """Return sentences on the order and forces of two clamps; [] for other fixtures."""
+    from workhold.model.clamps import compute_clamp_shares, describe_tightening_order, name_clamps
 
-    order = order_words(fixture)
+    order = describe_tightening_order(fixture)
     if not order:
         return []
     each = [
@@ -290,9 +303,9 @@ def describe_clamp_order(fixture: Fixture) -> list[str]:
 
 
 def tabulate_faces(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
-    """Tabulate the numbered faces of a part, with lengths in a unit.
+    """Return a table of the numbered faces of a part, lengths in a unit.
 
-    Where a face ends the next one begins, so that its end is left out where there is little room.
+    A face ends where the next one begins, so the column of ends is left out where there is little room.
     """
     table = Table((">face", "kind", f"size {unit.abbreviation}", "loop", "from", "to"), spare=1)
     loop_of, pieces = list[str](), workpiece.pieces
@@ -306,7 +319,7 @@ def tabulate_faces(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
 
 
 def explain_missing_face_numbers(workpiece: Workpiece) -> list[str]:
-    """Say why some numbers are not in the table of faces; empty where none is missing."""
+    """Return a sentence on why some numbers are not in the table of faces; [] where none is missing."""
     further = [str(number) for face in workpiece.faces for number in face.segments if number != face.number]
     if not further:
         return []
@@ -320,64 +333,67 @@ def explain_missing_face_numbers(workpiece: Workpiece) -> list[str]:
 
 
 def describe_face(face: Face, unit: Unit) -> tuple[str, str, str, str]:
-    """Return kind, size, start and end of a face, with lengths in a unit."""
+    """Return kind, size, start and end of a face as text, lengths in a unit."""
     from workhold.geometry.segment import Arc
 
     segment = face.segment
-    start, end = place(segment.start, unit), place(segment.end, unit)
+    start, end = format_place(segment.start, unit), format_place(segment.end, unit)
     if not isinstance(segment, Arc):
         length = hypot(segment.end[0] - segment.start[0], segment.end[1] - segment.start[1])
-        return "line", f"length {unit.number(length)}", start, end
+        return "line", f"length {unit.format_number(length)}", start, end
     kind = "arc, convex" if segment.sign > 0 else "arc, concave"
-    radius = unit.number(segment.radius)
+    radius = unit.format_number(segment.radius)
     if segment.half_sweep > pi - 1e-9:
-        return kind, f"radius {radius}, full circle", f"about {place(segment.center, unit)}", ""
+        return kind, f"radius {radius}, full circle", f"about {format_place(segment.center, unit)}", ""
     return kind, f"radius {radius}, sweep {degrees(2 * segment.half_sweep):.2f} deg", start, end
 
 
-def place(point: tuple[float, float], unit: Unit) -> str:
-    """Format the coordinates of a point in mm as numbers of a unit."""
-    return f"({unit.number(point[0])}, {unit.number(point[1])})"
+def format_place(point: tuple[float, float], unit: Unit) -> str:
+    """Return the coordinates of a point in mm as text in a unit, such as "(1.00, 2.00)"."""
+    return f"({unit.format_number(point[0])}, {unit.format_number(point[1])})"
 
 
 def tabulate_solids(solids: Sequence[FileSolid], unit: Unit) -> Table:
+    """Return a table of the solids in a STEP file."""
     short, named = unit.abbreviation, any(solid.name for solid in solids)
     table = Table((">solid", *(("name",) if named else ()), f"size {short}", "lowest corner"))
     for solid in solids:
-        size = " x ".join(unit.number(length) for length in solid.size)
-        corner = ", ".join(unit.number(value) for value in solid.low)
+        size = " x ".join(unit.format_number(length) for length in solid.size)
+        corner = ", ".join(unit.format_number(value) for value in solid.low)
         table.add_row(str(solid.number), *((solid.name,) if named else ()), size, f"({corner})")
     return table
 
 
 def tabulate_face_heights(workpiece: Workpiece, unit: Unit) -> list[Table]:
-    """Tabulate the heights at which each face is touched; nothing for a part without heights."""
+    """Return a table of the heights at which each face is touched; [] for a part without heights."""
     solid = workpiece.solid
     if solid is None:
         return []
     table = Table((">face", f"touched at heights {unit.abbreviation}", "faces of the solid"))
     for face in workpiece.faces:
         band = solid.bands[face.number]
-        words = "never" if band is None else " to ".join(unit.number(end) for end in band)
+        words = "never" if band is None else " to ".join(unit.format_number(end) for end in band)
         over = sorted({number for k in face.segments for number in (solid.faces[k] if solid.faces else ())})
         table.add_row(str(face.number), words, ", ".join(str(number) for number in over))
     return [table]
 
 
 def tabulate_peg_heights(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
-    """Tabulate what the part offers to pegs of other heights; no tables if other heights were not tried."""
+    """Return a table of what the part offers to pegs of other heights; [] where others were not tried."""
     if not rows:
         return []
     names = ("pegs above", "up to", "outline", "touchable", "least band")
     table = Table(tuple(f">{name} {unit.abbreviation}" for name in names))
     for row in rows:
         lengths = (row.low, row.high, row.border, row.touchable, row.band)
-        table.add_row(*(unit.number(length) for length in lengths))
+        table.add_row(*(unit.format_number(length) for length in lengths))
     return [table]
 
 
 def touches_parallel_faces_only(workpiece: Workpiece) -> bool:
-    """Return whether pegs can touch some faces of a solid, and all these are flat and parallel."""
+    """Return whether all faces of a solid that pegs can
+    touch are flat and parallel, and there is at least one.
+    """
     from workhold.geometry.segment import are_parallel_lines
 
     assert workpiece.solid is not None
@@ -387,7 +403,7 @@ def touches_parallel_faces_only(workpiece: Workpiece) -> bool:
 
 
 def explain_sliding_part(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
-    """Return what holds a solid that slides along all that pegs of any height touch of it; nothing for others."""
+    """Return advice for a solid that slides along all that pegs of any height touch; [] for other parts."""
     if workpiece.solid is None or not touches_parallel_faces_only(workpiece):
         return []
     if any(row.touchable > 0 and not row.slides for row in rows):
@@ -402,10 +418,11 @@ def explain_sliding_part(workpiece: Workpiece, rows: Sequence[HeightRow]) -> lis
 
 
 def suggest_other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
-    """Return what may help where pegs as high as these hold a solid nowhere: other heights, and the other
-    side up.
+    """Return sentences on what may help where pegs of this height hold a solid nowhere:
+    other heights, or another side up.
 
-    ``rows`` are what other heights of the pegs offer; those with more to touch are named first.
+    ``rows`` are what other heights offer; those with more to touch are named first. [] for a part without a
+    solid.
     """
     solid = workpiece.solid
     if solid is None:
@@ -419,7 +436,7 @@ def suggest_other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit:
         if not row.low < solid.peg_height <= row.high and row.touchable > 0 and not (slides and row.slides)
     ]
     longest = sorted(others, key=lambda row: (-row.touchable, -row.high))[:MOST_NAMED]
-    named = [f"--peg-height {unit.number(row.high)}" for row in longest]
+    named = [f"--peg-height {unit.format_number(row.high)}" for row in longest]
     turned = flip_up_axis(solid.axis)
     offers = f"its other side up (--axis={turned}): workhold features shows what pegs can touch in each."
     if not named:

@@ -37,9 +37,9 @@ if TYPE_CHECKING:
 __all__ = [
     "READERS",
     "TOOLKIT",
-    "ListWords",
-    "Named",
-    "ToolkitWords",
+    "ToolkitListOptions",
+    "NamedToolkit",
+    "ToolkitOptions",
     "collect_carrier_heights",
     "find_peg_diameter",
     "make_query",
@@ -62,7 +62,7 @@ MIN_OPENING = make_option(
 
 
 def make_toolkit_options() -> dict[str, Any]:
-    """Make the attributes of :class:`ToolkitWords` in the order of the help, from the field table."""
+    """Return the attrs attributes of :class:`ToolkitOptions` by name, in the order of the help."""
     out = {
         "vise": make_option(
             TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change its values."
@@ -82,7 +82,7 @@ def make_toolkit_options() -> dict[str, Any]:
 
 
 @frozen(these=make_toolkit_options())
-class ToolkitWords:
+class ToolkitOptions:
     """The options of the toolkit, as typed; None for those not given."""
 
     if TYPE_CHECKING:
@@ -91,7 +91,7 @@ class ToolkitWords:
         min_opening: str | None
 
     def read_given_fields(self, unit: Unit) -> dict[str, Any]:
-        """Make keyword arguments of a toolkit, in mm, of the options that were given."""
+        """Return keyword arguments of a toolkit from the options that were given, lengths in mm."""
         return {
             row.name: READERS[row.form](row.option, words, unit)
             for row in OPTIONS
@@ -99,7 +99,7 @@ class ToolkitWords:
         }
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
-        """Refuse options that a kind of toolkit does not have."""
+        """Raise InputError for an option given that this kind of toolkit does not have."""
         from workhold.fixels.kinds import find_owner
 
         known = {row.name for row in kind.table.fields}
@@ -114,12 +114,12 @@ class ToolkitWords:
                 )
 
     def read_toolkit(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
-        """Return the toolkit, and the tolerance that a named one comes with.
+        """Return the toolkit, and the tolerance that a named one comes with, None for a kind.
 
         Raises
         ------
         InputError
-            For words that mean nothing, options that are missing, and a vise that cannot be.
+            For words that cannot be read, options that are missing, and values that make no toolkit.
         """
         fields, tolerance = self.read_given_fields(unit), None
         opening = read_optional_length("--min-opening", self.min_opening, unit)
@@ -169,18 +169,20 @@ class ToolkitWords:
 
 
 def read_lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Read lengths with commas between them; return them in mm."""
+    """Return lengths in mm from text with commas between them."""
     return tuple(read_length(option_name, word, unit) for word in text.split(","))
 
 
 def read_length_range(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Read the least and the most of a length; return them in mm."""
+    """Return the least and the most of a length in mm, from two lengths with a comma between them."""
     remedy = "two lengths: give the least and the most, such as 10,35."
     return read_two_lengths(option_name, text, unit, remedy)
 
 
 def read_directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
-    """Read directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``; refuse both together."""
+    """Return directions from ``-x,-y``, or pairs of them from ``-x:-y,-x:+y``;
+    raise InputError for a mixture.
+    """
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
         raise InputError(
@@ -224,7 +226,7 @@ PLURALS = {
 
 
 def list_options() -> dict[str, Any]:
-    """Make the attributes of :class:`ListWords` in the order of the help, from the field table."""
+    """Return the attrs attributes of :class:`ToolkitListOptions` by name, in the order of the help."""
     words: Any = str | None
     made = {}
     for row in LISTED:
@@ -237,17 +239,17 @@ def list_options() -> dict[str, Any]:
 
 
 @frozen(these=list_options())
-class ListWords:
+class ToolkitListOptions:
     """Lists of figures of toolkits, as typed; None for those not given."""
 
     def list_given_fields(self) -> list[tuple[ToolkitField, str]]:
-        """List the fields that are varied, each with its list."""
+        """Return the fields that are varied, each with its list as typed."""
         typed = ((row, getattr(self, row.name)) for row in LISTED)
         return [(row, text) for row, text in typed if isinstance(text, str)]
 
     @property
     def has_pitches(self) -> bool:
-        """Whether pitches are varied, with which lists alone can make toolkits."""
+        """Whether pitches are varied; only then can lists make toolkits without a named one."""
         return any(row is PITCH for row, _ in self.list_given_fields())
 
 
@@ -256,7 +258,7 @@ MOST_TOOLKITS = 1000
 
 
 @frozen
-class Named:
+class NamedToolkit:
     """A toolkit to try: its name, its kind and keyword arguments, and its tolerance where it has one."""
 
     name: str
@@ -264,14 +266,15 @@ class Named:
     fields: dict[str, Any]
     tolerance: Tolerance | None = None
 
-    def apply_changes(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
+    def apply_changes(self, changes: list[tuple[str, dict[str, Any]]]) -> NamedToolkit:
+        """Return a toolkit with fields changed and the words of each change added to its name."""
         name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
         fields = {key: value for _, change in changes for key, value in change.items()}
-        return Named(name, self.kind, self.fields | fields, self.tolerance)
+        return NamedToolkit(name, self.kind, self.fields | fields, self.tolerance)
 
 
-def make_query(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
-    """Make the query for a toolkit, or returns the error that says why there is no such toolkit."""
+def make_query(workpiece: Workpiece, named: NamedToolkit, asked: dict[str, Any]) -> Query | InputError:
+    """Return the query for a toolkit, or the error (not raised) that says why there is no such toolkit."""
     from workhold.fixels.kinds import make_toolkit
     from workhold.model.query import Query
 
@@ -285,10 +288,12 @@ def make_query(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Que
         return error
 
 
-def collect_carrier_heights(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
-    """Find the heights of carriers, by role, with which one reading of a part serves all toolkits.
+def collect_carrier_heights(toolkits: Sequence[NamedToolkit]) -> dict[str, tuple[float, ...]]:
+    """Return the heights (low, high) in mm of carriers by role,
+    so that one reading of a part serves all toolkits.
 
-    Refuses toolkits that differ in the heights of a role.
+    Toolkits that cannot be made are left out. Raises InputError where two toolkits differ in the heights of a
+    role.
     """
     from workhold.fixels.kinds import make_toolkit
 
@@ -308,8 +313,8 @@ def collect_carrier_heights(toolkits: Sequence[Named]) -> dict[str, tuple[float,
     return found
 
 
-def find_peg_diameter(named: Named) -> float | None:
-    """Find the diameter of a toolkit's pegs in mm; None where there is no such toolkit."""
+def find_peg_diameter(named: NamedToolkit) -> float | None:
+    """Return the diameter of a toolkit's pegs in mm; None where the toolkit cannot be made."""
     from workhold.fixels.kinds import make_toolkit
 
     try:
@@ -319,13 +324,21 @@ def find_peg_diameter(named: Named) -> float | None:
 
 
 def list_toolkits_to_try(
-    names: list[str] | None, toolkit: str | None, varied: ListWords, unit: Unit
-) -> list[Named]:
-    """List the toolkits to try.
+    names: list[str] | None, toolkit: str | None, varied: ToolkitListOptions, unit: Unit
+) -> list[NamedToolkit]:
+    """Return the toolkits to try: each named one, or kind, with each combination of the lists' figures.
 
-    ``names`` are names and files with commas between them, and ``toolkit`` is one more of them, or a kind.
-    ``varied`` are the lists of figures, which are combined with each other and with each toolkit. The unit is
-    of lengths without one. Refuses lists that do not make a toolkit, and more than a thousand toolkits.
+    Parameters
+    ----------
+    names : names and files, with commas between them; None for all presets that have the varied fields.
+    toolkit : one more name or file, or a kind; None for none.
+    varied : lists of figures, which are combined with each other.
+    unit : of lengths typed without one.
+
+    Raises
+    ------
+    InputError
+        For lists that do not make a toolkit, and more than :data:`MOST_TOOLKITS` toolkits.
     """
     from workhold.fixels.kinds import ALIASES, KINDS, USUAL, find_table, resolve_kind
 
@@ -335,7 +348,10 @@ def list_toolkits_to_try(
         names = [*(names or ()), toolkit]
     given = varied.list_given_fields()
     lists = [
-        [(name_of(row, word), {row.name: read(row, word, unit)}) for word in split_words(row.option, text)]
+        [
+            (make_entry_name(row, word), {row.name: read(row, word, unit)})
+            for word in split_words(row.option, text)
+        ]
         for row, text in given
     ]
     if kind is not None:
@@ -343,7 +359,7 @@ def list_toolkits_to_try(
     if names is None and varied.has_pitches:
         refuse_too_few(find_table(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
         refuse_missing_fields(find_table(kind or USUAL), given)
-        bases = [Named("", kind or USUAL, dict(said))]
+        bases = [NamedToolkit("", kind or USUAL, dict(said))]
     else:
         bases = load_named_toolkits(names, kind, said, given)
     count = len(bases) * prod(len(entries) for entries in lists)
@@ -356,10 +372,12 @@ def list_toolkits_to_try(
 
 def load_named_toolkits(
     names: list[str] | None, kind: str | None, said: Mapping[str, Any], given: list[tuple[ToolkitField, str]]
-) -> list[Named]:
-    """Load the toolkits that are named, or all presets that have every field that is varied.
+) -> list[NamedToolkit]:
+    """Return the toolkits that are named, or all presets that
+    have every varied field, with the fields ``said`` set.
 
-    Refuses fields that a named toolkit does not have, and fields that none is left with.
+    A kind keeps only those of its table, and makes them of that kind. Raises InputError for fields that a
+    named toolkit does not have, and where no toolkit is left.
     """
     from workhold.files.toolkit_file import list_preset_names, load_toolkit
     from workhold.fixels.kinds import find_table
@@ -376,7 +394,7 @@ def load_named_toolkits(
             refuse_missing_fields(find_table(one.kind), given)
     # A kind picks those of the kind, and makes one sort of toolkit of another.
     bases = [
-        Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
+        NamedToolkit(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
         for one in loaded
         if kind is None or find_table(kind) is find_table(one.kind)
     ]
@@ -390,11 +408,13 @@ def load_named_toolkits(
 
 
 def list_unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> list[ToolkitField]:
+    """Return the varied fields that a kind's table lacks."""
     known = {row.name for row in table.fields}
     return [row for row, _ in given if row.name not in known]
 
 
 def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
+    """Raise InputError for a varied field that a kind's table lacks."""
     from workhold.fixels.kinds import find_owner
 
     for row in list_unknown_fields(table, given):
@@ -405,7 +425,7 @@ def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str
 
 
 def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:
-    """Refuse lists that lack a figure without which there is no toolkit."""
+    """Raise InputError where a required field of a toolkit is not among the known ones."""
     missing = [row.option for row in table.fields if row.is_required and row.name not in known]
     if missing:
         alone = "a list of pitches alone makes" if len(given) == 1 else "these lists alone make"
@@ -415,7 +435,7 @@ def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[Toolkit
 
 
 def read(row: ToolkitField, word: str, unit: Unit) -> Any:
-    """Read an entry of the list of a field; lengths come in mm."""
+    """Return the value of one entry of a field's list, lengths in mm."""
     if row.form == PITCH.form:
         return read_pitch(row.option, word, unit)
     if row.form == TRAVEL.form and word.count(":") != 1:
@@ -429,8 +449,8 @@ def read(row: ToolkitField, word: str, unit: Unit) -> Any:
     return value
 
 
-def name_of(row: ToolkitField, word: str) -> str:
-    """Return what an entry of a list adds to the name of a toolkit.
+def make_entry_name(row: ToolkitField, word: str) -> str:
+    """Return what an entry of a field's list adds to the name of a toolkit.
 
     >>> name_of(COLUMNS, "1"), name_of(PEG_RADIUS, "2.5"), name_of(PITCH, "8")
     ('1 column', 'radius 2.5', 'pitch 8')
@@ -442,6 +462,7 @@ def name_of(row: ToolkitField, word: str) -> str:
 
 
 def split_words(option: str, text: str) -> list[str]:
+    """Return the words between commas, stripped; raise InputError where one is empty."""
     words = [word.strip() for word in text.split(",")]
     if not all(words):
         raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")
@@ -449,6 +470,6 @@ def split_words(option: str, text: str) -> list[str]:
 
 
 def read_pitch(option_name: str, word: str, unit: Unit) -> tuple[float, float]:
-    """Read a pitch for both directions, or ``XxY``."""
+    """Return a pitch (x, y) in mm from one length for both directions, or from ``XxY``."""
     x, cross, y = word.partition("x")
     return read_length(option_name, x, unit), read_length(option_name, y if cross else x, unit)

@@ -22,7 +22,7 @@ __all__ = [
     "read_length",
     "read_length_from_zero",
     "read_unit",
-    "number",
+    "read_number",
     "read_optional_count",
     "read_optional_force",
     "read_optional_length",
@@ -45,21 +45,24 @@ FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]
 
 
 def read_unit(name: str | None) -> Unit:
-    """Return the unit of lengths given and shown, millimetres where none is asked for, or the pixels of a drawing."""
+    """Return the unit of lengths typed and shown: the named one, else that of the environment, else mm.
+
+    It is mm, too, for the name of a drawing's pixels, such as px96.
+    """
     name = read_usual_unit() if name is None else name
     return MILLIMETRE if name is None or find_pixels_per_inch(name) is not None else find_unit(name)
 
 
 def read_usual_unit() -> str | None:
-    """Return the unit that a shop has set for good in the environment, ``WORKHOLD_UNIT``; None where it has
-    set none.
+    """Return the name of the unit in the environment variable ``WORKHOLD_UNIT``;
+    None where that is not set.
     """
     return os.environ.get("WORKHOLD_UNIT") or None
 
 
 def choose_printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
-    """Return the unit of lengths shown of a fixture: the one asked for or set for good, else that of the
-    toolkit's holes.
+    """Return the unit of lengths shown of a fixture:
+    the one named or that of the environment, else that of the holes.
 
     Numbers that are typed without a unit stay in the unit of :func:`read_unit`.
     """
@@ -67,11 +70,11 @@ def choose_printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
 
 
 def read_length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
-    """Read a finite length in mm; the toolkit checks its sign.
+    """Return a finite length in mm, of any sign; raise InputError for anything else.
 
     Parameters
     ----------
-    option : what to call it in a message.
+    option : name of the option, for messages.
     text : a number or a fraction, which may carry a unit of its own.
     unit : of a number without one.
 
@@ -84,7 +87,7 @@ def read_length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     value = nan
     if match is not None:
         own = match["unit"]
-        value = (unit if own is None else find_unit(own)).to_mm(number(match["number"]))
+        value = (unit if own is None else find_unit(own)).to_mm(read_number(match["number"]))
     if not isfinite(value):
         raise InputError(
             f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, "
@@ -95,7 +98,9 @@ def read_length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
 
 
 def read_length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
-    """Return a length of 0 or more in mm."""
+    """Return a length of 0 or more in mm, read as by :func:`read_length`;
+    raise InputError for anything else.
+    """
     value = read_length(option, text, unit)
     if value < 0:
         raise InputError(f"{option} {text} is negative: give 0 or more.")
@@ -103,9 +108,9 @@ def read_length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> fl
 
 
 def read_two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float]:
-    """Return two lengths in mm with a comma between them.
+    """Return two lengths in mm with a comma between them; raise InputError for anything else.
 
-    ``remedy`` says what other words are not, and what to give.
+    The message says that the text "is not ``remedy``".
     """
     words = text.split(",")
     if len(words) != 2:
@@ -114,7 +119,7 @@ def read_two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[f
 
 
 def read_three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float, float]:
-    """Return three lengths in mm with commas between them; ``remedy`` is as of :func:`read_two_lengths`."""
+    """Return three lengths in mm with commas between them; ``remedy`` is as in :func:`read_two_lengths`."""
     words = text.split(",")
     if len(words) != 3:
         raise InputError(f"{option} {text!r} is not {remedy}")
@@ -122,8 +127,10 @@ def read_three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple
     return x, y, z
 
 
-def number(text: str) -> float:
-    """Read a number, or a fraction such as 1/2 or 1-1/2; NaN or infinite for anything else."""
+def read_number(text: str) -> float:
+    """Return a number, or a fraction such as 1/2 or 1-1/2, as a float;
+    NaN for anything else, inf for a fraction over 0.
+    """
     fraction = FRACTION.fullmatch(text)
     if fraction is None:
         try:
@@ -136,12 +143,14 @@ def number(text: str) -> float:
 
 
 def read_optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
-    """Return a finite length in mm, or None where the option is not given."""
+    """Return a finite length in mm, read as by :func:`read_length`, or None for None."""
     return None if text is None else read_length(option, text, unit)
 
 
 def read_optional_positive_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
-    """Return a length above zero in mm, or None where the option is not given."""
+    """Return a length above 0 in mm, read as by :func:`read_length`,
+    or None for None; raise InputError for anything else.
+    """
     value = read_optional_length(option, text, unit)
     if value is not None and value <= 0:
         raise InputError(f"{option} {text!r} is not above 0: give a positive length.")
@@ -149,7 +158,7 @@ def read_optional_positive_length(option: str, text: str | None, unit: Unit = MI
 
 
 def read_pitches(option_name: str, text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
-    """Return the x and y pitch in mm, from one length or two.
+    """Return the pitch (x, y) in mm from one length for both directions, or from two.
 
     Parameters
     ----------
@@ -176,7 +185,7 @@ def read_pitches(option_name: str, text: str, unit: Unit = MILLIMETRE) -> tuple[
 
 
 def read_whole_number(option: str, text: str) -> int:
-    """Read a whole number; its sign is checked elsewhere."""
+    """Return an int of any sign; raise InputError for anything else."""
     try:
         return int(text)
     except ValueError:
@@ -184,19 +193,20 @@ def read_whole_number(option: str, text: str) -> int:
 
 
 def read_optional_count(option: str, text: str | None) -> int | None:
-    """Return a number of things, from 1, or None where the option is not given."""
+    """Return an int of 1 or more, or None for None; raise InputError for anything else."""
     return None if text is None else check_count(option, read_whole_number(option, text))
 
 
 def read_positive_number(option: str, text: str) -> float:
-    value = number(text.strip())
+    """Return a finite number above 0; raise InputError for anything else."""
+    value = read_number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
     return value
 
 
 def read_optional_force(option: str, text: str | None) -> float | None:
-    """Return a force above zero in N, or None where the option is not given.
+    """Return a force above 0 in N, or None for None; raise InputError for anything else.
 
     Examples
     --------
@@ -214,21 +224,25 @@ def read_optional_force(option: str, text: str | None) -> float | None:
 def read_quantity(
     option: str, text: str, words: re.Pattern[str], units: Mapping[str, float], usual: str, remedy: str
 ) -> float:
-    """Return a number above zero with a unit of its own, in what its units are counted in.
+    """Return a finite number above 0, converted by its unit; raise InputError for anything else.
 
-    ``words`` is what is typed, with the groups ``number`` and ``unit``. Units are by their names in small
-    letters; ``usual`` is that of a number without one. ``remedy`` says what the text is not, and what to
-    give.
+    Parameters
+    ----------
+    words : pattern of what is typed, with the groups ``number`` and ``unit``.
+    units : factor of each unit, by its name in small letters.
+    usual : name of the unit of a number without one.
+    remedy : what the message says that the text is not.
     """
     match = words.fullmatch(text)
-    value = nan if match is None else number(match["number"]) * units[(match["unit"] or usual).lower()]
+    value = nan if match is None else read_number(match["number"]) * units[(match["unit"] or usual).lower()]
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not {remedy}")
     return value
 
 
 def read_choice(option: str, text: str, among: Sequence[str]) -> str:
-    """Return one of several words, in any mixture of capitals.
+    """Return the one of several words that equals the text apart from capitals;
+    raise InputError for anything else.
 
     Examples
     --------
@@ -242,7 +256,7 @@ def read_choice(option: str, text: str, among: Sequence[str]) -> str:
 
 
 def read_picture_ending(path: Path) -> str:
-    """Return the ending of a picture's name, ``.svg`` or ``.png``."""
+    """Return the ending of a path, ".svg" or ".png"; raise InputError for any other."""
     ending = path.suffix.lower()
     if ending not in PICTURE_ENDINGS:
         raise InputError(f"--draw {path} names no kind of picture: let the name end in .svg or .png.")

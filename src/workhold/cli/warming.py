@@ -13,22 +13,29 @@ WORDS = "Compiling the kernels, on the first run only"
 
 
 def compile_kernels(cancel: Event) -> bool:
-    """Compile the kernels of a search where that has not been done on this machine, and return whether it was
-    done now. When ``cancel`` is set, the rest is left to the search."""
+    """Compile the kernels of a search if that has not been done on this machine;
+    return whether it was done now.
+
+    When ``cancel`` is set, the rest is left to the search.
+    """
     from workhold.kernels.base.libraries import SEARCH_ROOMS
 
     return compile_rooms(SEARCH_ROOMS, cancel)
 
 
 def compile_seating(cancel: Event) -> bool:
-    """Compile the kernels of seating, which searches do without; see :func:`compile_kernels`."""
+    """Compile the kernels of seating if that has not been done;
+    return whether it was done now, see :func:`compile_kernels`.
+    """
     from workhold.kernels.base.libraries import SEATING_ROOMS
 
     return compile_rooms(SEATING_ROOMS, cancel)
 
 
 def compile_rooms(rooms: Sequence[str], cancel: Event) -> bool:
-    """Compile the kernels of rooms where that has not been done, with a bar; return whether it was done."""
+    """Compile the kernels of some rooms, with a bar,
+    if that has not been done; return whether it was done now.
+    """
     from workhold.kernels.base.libraries import build_libraries, is_built
 
     if is_built(rooms):

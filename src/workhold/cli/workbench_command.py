@@ -22,9 +22,9 @@ from workhold.cli.commands import make_default_group, print_remark
 from workhold.cli.design_report import NEAREST_MISS, THUMBNAILS
 from workhold.cli.options import read_result_with_rank
 from workhold.cli.outputs import print_json, write_output
-from workhold.cli.program_options import ProgramWords
-from workhold.cli.search_options import QueryWords
-from workhold.cli.toolkit_options import ToolkitWords
+from workhold.cli.program_options import ProgramOptions
+from workhold.cli.search_options import QueryOptions
+from workhold.cli.toolkit_options import ToolkitOptions
 from workhold.errors import InputError
 from workhold.geometry.segment import Line, Segment
 from workhold.units import MILLIMETRE
@@ -60,7 +60,7 @@ MOST_TURNED = 45.0
 
 @frozen(kw_only=True)
 class WorkbenchOrder:
-    """What is asked.
+    """An order of FreeCAD's workbench.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class WorkbenchOrder:
     program, tools, z_zero : as of ``design``.
     supports : whether three supports and a clamp on top are put in.
     pictures : whether the first choices and the one that is put in are drawn.
-    marks : of the fixture that was chosen before, see :func:`rank_in`; empty for none.
+    marks : of the fixture that was chosen before, see :func:`find_rank_in_file`; empty for none.
     chosen : rank of the fixture of the result that is put in.
     """
 
@@ -93,12 +93,12 @@ class WorkbenchOrder:
 
     @classmethod
     def read(cls, folder: Path) -> WorkbenchOrder:
-        """Return the order in a folder.
+        """Return the order in ``order.json`` of a folder.
 
         Raises
         ------
         InputError
-            Where there is none, or one of another version.
+            Where there is no order, or one of another version.
         """
         path = folder / ORDER
         try:
@@ -137,18 +137,22 @@ def workbench(
 
 
 def watch_for_cancel(cancel: Event) -> None:
-    """End the search when the workbench says so on standard input, or is gone; what was found is kept."""
+    """Set the event when a byte comes on stdin or stdin is closed;
+    runs in a thread, so that the search ends and is kept.
+    """
     # Not through Python's own buffer, whose lock would outlive the end of the process.
     os.read(sys.stdin.fileno(), 1)
     cancel.set()
 
 
 def make_query(order: WorkbenchOrder, part: str) -> Query:
-    """Return the query of an order; the words are those of ``design``, so that both list the same."""
+    """Return the query of an order with the part read;
+    options mean what they mean in ``design``, so both list the same.
+    """
     from workhold.files.part.load import read_workpiece
     from workhold.model.query import Query
 
-    toolkit, tolerance = make_default_group(ToolkitWords, toolkit=order.toolkit).read_toolkit(MILLIMETRE)
+    toolkit, tolerance = make_default_group(ToolkitOptions, toolkit=order.toolkit).read_toolkit(MILLIMETRE)
     try:
         loaded = read_workpiece(
             part, axis=order.axis, peg_height=order.peg_height, heights=toolkit.heights, called=CALLED
@@ -161,10 +165,10 @@ def make_query(order: WorkbenchOrder, part: str) -> Query:
     avoid = list_avoided_segments(order, workpiece)
     named: dict[str, Any] = {"program": order.program, "tools": order.tools or None}
     machined = make_default_group(
-        ProgramWords, **(named | {"z_zero": f"{order.z_zero:.6f}mm"} if order.program else {})
+        ProgramOptions, **(named | {"z_zero": f"{order.z_zero:.6f}mm"} if order.program else {})
     )
     peg_height = None if order.peg_height is None else f"{order.peg_height}mm"
-    words = make_default_group(QueryWords, avoid=[",".join(map(str, avoid))] if avoid else None)
+    words = make_default_group(QueryOptions, avoid=[",".join(map(str, avoid))] if avoid else None)
     wishes = words.read_arguments(MILLIMETRE, machined.program is not None, machined.has_forces)
     wishes |= machined.read_query_arguments(MILLIMETRE, peg_height, workpiece)
     wishes["tolerance"] = tolerance
@@ -172,10 +176,11 @@ def make_query(order: WorkbenchOrder, part: str) -> Query:
 
 
 def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
-    """Return the numbers of the outline's faces that nothing may touch, from those of the document that are
-    named.
+    """Return the numbers, ascending, of the outline's faces
+    that no peg may touch, from the faces named in the order.
 
-    Refuses a face that nothing touches anyway, and an outline whose faces are no solid's.
+    Raises InputError for a named face that pegs cannot touch anyway, and an outline without face numbers of a
+    solid.
     """
     if not (order.avoid or order.only):
         return []
@@ -186,9 +191,10 @@ def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[i
         )
 
     def under(named: Mapping[str, int]) -> set[int]:
+        """Return the numbers of the outline's faces that lie under the named faces of the solid."""
         numbers = set[int]()
         for name, place in named.items():
-            segments = set(numbered.segments_under({place}))
+            segments = set(numbered.list_segments_under({place}))
             if not segments:
                 raise InputError(f"{name} is not upright where pegs reach, so nothing touches it anyway.")
             numbers.update(face.number for face in numbered.faces if not segments.isdisjoint(face.segments))
@@ -201,7 +207,10 @@ def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[i
 
 
 def make_design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Event) -> dict[str, Any]:
-    """Return what there is to say of a search, with the fixture put in that was chosen before, or else the first."""
+    """Return notes, first choices and the chosen fixture of a search as plain data; write pictures if wanted.
+
+    The chosen fixture is the one with the order's marks, else the first.
+    """
     from workhold.listing.identity import make_entries
 
     shown = make_entries(result)
@@ -216,13 +225,13 @@ def make_design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel
         if result.complete and order.pictures:
             draw_nearest_miss(result, folder)
         return data
-    rank = rank_in(read_listed_fixtures(folder), order.marks)
+    rank = find_rank_in_file(read_listed_fixtures(folder), order.marks)
     if rank is None and order.marks and result.complete:
         from workhold.search.design import answer
 
         longer = answer(evolve(result.query, best=MOST_SEARCHED), cancel=cancel)
         write_output(longer, str(folder / LONGER), "json")
-        data["lower"] = rank_in(read_listed_fixtures(folder, LONGER), order.marks)
+        data["lower"] = find_rank_in_file(read_listed_fixtures(folder, LONGER), order.marks)
     if order.pictures:
         from workhold.drawing.fixture_pictures import draw_best_thumbnails
 
@@ -233,15 +242,17 @@ def make_design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel
 
 
 def read_listed_fixtures(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
+    """Return the entries of the fixtures in a result file of the folder."""
     fixtures: list[dict[str, Any]] = json.loads((folder / name).read_text(encoding="utf-8"))["fixtures"]
     return fixtures
 
 
-def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
-    """Return the rank of the fixture of a result file that the marks are of, from 1; None where none is.
+def find_rank_in_file(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
+    """Return the rank, from 1, of the fixture with these marks in a result file's entries;
+    None where there is none.
 
-    Marks are, as JSON, the kind, directions and holes of a fixture, and the angle at which the part lies in
-    them: the same holes may hold a part in two ways, such as turned by half a turn.
+    Marks are JSON made by :func:`identify_fixture`. Several fixtures may use the same holes, such as after
+    half a turn of the part; the one whose angle is nearest counts, up to :data:`MOST_TURNED` degrees off.
     """
     if not marks:
         return None
@@ -256,14 +267,18 @@ def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
 
 
 def identify_fixture(fixture: Mapping[str, Any]) -> str:
-    """Return what a fixture of a result file is known by; where a clamp is bolted follows from the part."""
+    """Return the marks of a fixture's entry as JSON:
+    its type, directions and holes, and the angle of the part in degrees.
+    """
     pegs = [[peg.get("jaw"), peg.get("column"), peg.get("row")] for peg in fixture["pegs"]]
     directions = fixture.get("directions", fixture.get("direction"))
     return json.dumps([[fixture["type"], directions, pegs], fixture["pose"]["theta_deg"]])
 
 
 def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
-    """Return the bodies of a fixture except the part's, the pose of the part, and its picture if wanted."""
+    """Return bodies (all but the part's), pose,
+    holes and marks of the fixture of a rank; write its picture if wanted.
+    """
     from workhold.presenting.assembly import Assembly
 
     fixture = result[rank - 1]
@@ -290,16 +305,21 @@ def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> di
 
 
 def find_supports_under(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
-    """Return the best three supports under a fixture with a clamp on top; where there are none, why."""
+    """Return the best three supports under a fixture and "", or None and why there are none."""
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import support_with_smaller_sizes, try_smaller_requests
     from workhold.supports.words import explain_no_set
 
     (found,), _ = support_with_smaller_sizes([fixture], query, try_smaller_requests(query, None))
-    return (ChosenSupports.of(found), "") if found.triples else (None, explain_no_set(found, MILLIMETRE))
+    return (
+        (ChosenSupports.from_supports(found), "")
+        if found.triples
+        else (None, explain_no_set(found, MILLIMETRE))
+    )
 
 
 def draw_nearest_miss(result: Result, folder: Path) -> None:
+    """Write a picture of the nearest miss into the folder, where there is one."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.search.explaining import explain
 
@@ -310,14 +330,16 @@ def draw_nearest_miss(result: Result, folder: Path) -> None:
 
 
 def draw(svg: str, path: Path, width: int) -> None:
-    """Draw SVG text as a PNG of a width in pixels."""
+    """Write SVG text as a PNG of this width in pixels."""
     from workhold.drawing.render import convert_svg_to_png
 
     path.write_bytes(convert_svg_to_png(svg, width))
 
 
 def convert_body_to_prisms(body: FixtureBody) -> dict[str, Any]:
-    """Return a body as upright prisms: between two heights, over a border with holes in it."""
+    """Return a body as plain data: its name and slabs,
+    each with two heights in mm and its border followed by its holes.
+    """
     slabs = [
         {
             "low": one.low,
@@ -330,10 +352,11 @@ def convert_body_to_prisms(body: FixtureBody) -> dict[str, Any]:
 
 
 def convert_loop_to_numbers(segments: Iterable[Segment]) -> list[list[float]]:
-    """Return a border, segment by segment: a line's ends, or the centre, radius and angles of an arc, from
-    and to.
+    """Return a loop as plain data: [x, y, x, y] for a line,
+    [x, y, radius, from, to] for an arc; in mm and rad.
 
-    Angles are in radians and counted counter-clockwise; an arc that is a circle ends where it began.
+    An arc's angles are counter-clockwise from low to high, whichever way the loop runs it; a full circle
+    spans 2 pi.
     """
     return [
         [*one.start, *one.end]

@@ -20,7 +20,7 @@ from workhold.cli.outputs import (
     write_picture,
 )
 from workhold.cli.table import Table, print_tables
-from workhold.cli.toolkit_options import ToolkitWords
+from workhold.cli.toolkit_options import ToolkitOptions
 from workhold.cli.values import (
     read_length,
     read_length_from_zero,
@@ -32,7 +32,7 @@ from workhold.cli.values import (
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
-    from workhold.family.copies import Packing
+    from workhold.family.copies import PackedCopies
     from workhold.model.dowels import Bolts, JawPlate
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
@@ -42,7 +42,7 @@ __all__ = ["copies", "drill"]
 
 
 @frozen
-class CopiesWords:
+class CopiesOptions:
     """The options of a plate with copies of a fixture, as typed."""
 
     columns: str | None = make_option(
@@ -81,12 +81,12 @@ class CopiesTask:
     gap: float
     seconds: float
     picture: Path | None
-    words: CopiesWords
+    words: CopiesOptions
     unit: Unit
 
 
 @spread_option_groups
-def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesWords) -> None:
+def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesOptions) -> None:
     """Report how many copies of fixture N a plate holds at once, and where each stands.
 
     The command repeats the fixture by whole columns and rows, so that the parts, pegs and clamps of the
@@ -98,8 +98,8 @@ def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesWo
     report_copies(asked, *ask_copies(asked))
 
 
-def parse_copies(result_file: str, rank: int, words: CopiesWords) -> CopiesTask:
-    """Read what was typed, and the fixture."""
+def parse_copies(result_file: str, rank: int, words: CopiesOptions) -> CopiesTask:
+    """Return what was typed as a task, with the result read."""
     shown = read_unit(words.unit)
     size = read_optional_count("--columns", words.columns), read_optional_count("--rows", words.rows)
     gap = read_length_from_zero("--gap", words.gap, shown)
@@ -109,8 +109,8 @@ def parse_copies(result_file: str, rank: int, words: CopiesWords) -> CopiesTask:
     return CopiesTask(result, rank, choose_plate_size(result, size), gap, seconds, picture, words, shown)
 
 
-def ask_copies(asked: CopiesTask) -> tuple[list[Fixture], Packing]:
-    """Find the copies that fit on the plate, and how many can be proven to."""
+def ask_copies(asked: CopiesTask) -> tuple[list[Fixture], PackedCopies]:
+    """Return the copies of a fixture that fit on the plate, and the packing, which tells what is proven."""
     from workhold.family.copies import make_copies, pack_copies
 
     result, rank = asked.result, asked.rank
@@ -120,8 +120,8 @@ def ask_copies(asked: CopiesTask) -> tuple[list[Fixture], Packing]:
     return make_copies(row, result.toolkit, result.workpiece, packing), packing
 
 
-def report_copies(asked: CopiesTask, found: list[Fixture], packing: Packing) -> None:
-    """Draw the plate, and print where the copies stand."""
+def report_copies(asked: CopiesTask, found: list[Fixture], packing: PackedCopies) -> None:
+    """Print where the copies stand, and draw the plate if asked."""
     result, draw = asked.result, asked.words.draw
     if asked.picture is not None:
         from workhold.family.copies import draw_copies
@@ -139,7 +139,9 @@ def report_copies(asked: CopiesTask, found: list[Fixture], packing: Packing) -> 
 
 
 def choose_plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
-    """Return columns and rows of the plate: those asked for, or those of the result."""
+    """Return columns and rows of the plate as typed, else those of the result;
+    raise InputError where neither is known.
+    """
     from workhold.fixels.making import refuse_many_holes
 
     plate = result.toolkit.carriers[0]
@@ -152,16 +154,17 @@ def choose_plate_size(result: Result, asked: tuple[int | None, int | None]) -> t
 
 
 def print_copies(
-    found: list[Fixture], packing: Packing, result: Result, size: tuple[int, int], unit: Unit
+    found: list[Fixture], packing: PackedCopies, result: Result, size: tuple[int, int], unit: Unit
 ) -> None:
-    from workhold.model.setup import part_zero
+    """Print a table of the copies and whether more could fit."""
+    from workhold.model.setup import choose_part_zero
 
-    zero = part_zero(result.workpiece)
+    zero = choose_part_zero(result.workpiece)
     table = Table((">copy", f">X0 at x {unit.abbreviation}", f">Y0 at y {unit.abbreviation}", "holes"))
     for number, fixture in enumerate(found, 1):
         x, y = fixture.pose.apply(*zero.point)
         holes = ", ".join(peg.hole for peg in fixture.placed)
-        table.add_row(str(number), unit.number(x), unit.number(y), holes)
+        table.add_row(str(number), unit.format_number(x), unit.format_number(y), holes)
     proven = "no more fit" if packing.at_most == len(found) else f"at most {packing.at_most} fit"
     count = "1 copy" if len(found) == 1 else f"{len(found)} copies"
     sentence = (
@@ -175,7 +178,7 @@ ENDINGS = (".dxf", ".step", ".stp")
 
 
 @frozen
-class DrillWords:
+class DrillOptions:
     """The options of the plates, as typed; None for those not given."""
 
     bolts: str | None = make_option(
@@ -205,8 +208,8 @@ def drill(
         ),
     ],
     force: bool = FORCE,
-    held_in: ToolkitWords,
-    words: DrillWords,
+    held_in: ToolkitOptions,
+    words: DrillOptions,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
@@ -225,8 +228,10 @@ def drill(
     print_written(json_, f"Written to {path}.", path)
 
 
-def make_asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[JawPlate, ...]:
-    """Return the plates of the vise that was typed; refuse one whose plates have no end."""
+def make_asked_plates(held_in: ToolkitOptions, words: DrillOptions, unit: Unit) -> tuple[JawPlate, ...]:
+    """Return the plates of the toolkit that was typed;
+    raise InputError where columns or rows are not known.
+    """
     bolts = read_bolts(words.bolts, words.bolt_diameter, unit)
     diameter = read_optional_positive_length("--hole-diameter", words.hole_diameter, unit)
     edge = read_optional_positive_length("--edge", words.edge, unit)
@@ -243,6 +248,7 @@ def make_asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> t
 
 
 def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | None) -> None:
+    """Write plates as DXF or STEP by the path's ending; ``thickness`` in mm counts in STEP only."""
     from workhold.files.atomic import write_bytes
 
     if path.suffix.lower() == ".dxf":
@@ -256,7 +262,9 @@ def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | No
 
 
 def read_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
-    """Read the bolts asked for; None without bolts. Refuse one of the two options alone."""
+    """Return the bolts asked for, in mm; None where neither option is given.
+    Raise InputError for one option without the other.
+    """
     if places is None and diameter is None:
         return None
     size = read_optional_positive_length("--bolt-diameter", diameter, unit)

@@ -31,7 +31,15 @@ from workhold.kernels.base.tables import (
 from workhold.kernels.chord.coincidences import are_concentric
 from workhold.kernels.curves.table import make_curve_space, write_tail_curves
 
-__all__ = ["ANY_TURN", "CurveTable", "LatticeSteps", "number_centers", "curve_table", "joined", "loosened"]
+__all__ = [
+    "ANY_TURN",
+    "CurveTable",
+    "LatticeSteps",
+    "number_centers",
+    "make_curve_table",
+    "join_curve_tables",
+    "loosen_rows",
+]
 
 CURVE_CAPACITY = Capacity(256)
 # Rules nothing out.
@@ -46,8 +54,8 @@ class LatticeSteps:
     Parameters
     ----------
     lengths : (D,) lengths in mm, ascending.
-    starts : (D + 1,) where the steps of each length begin.
-    steps : (S, 2) column and row differences.
+    starts : (D + 1,) index of the first step of each length, then S.
+    steps : (S, 2) column and row differences, both directions of every step.
     angles : (S,) directions in radians.
     """
 
@@ -57,8 +65,8 @@ class LatticeSteps:
     angles: NDArray[np.float64]
 
     @property
-    def none(self) -> LatticeSteps:
-        """No steps."""
+    def without_steps(self) -> LatticeSteps:
+        """The same type without any lengths and steps."""
         return LatticeSteps(self.lengths[:0], self.starts[:1], self.steps[:0], self.angles[:0])
 
 
@@ -74,15 +82,18 @@ class CurveTable:
 
     @cached_property
     def spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The orientations (N,) in radians from and to which curves are of interest, the former in
-        [0, 2 pi)."""
+        """The orientations psi (N,) in radians from and to which curves
+        are of interest, the former in [0, 2 pi).
+        """
         reals = self.curves.reals
         first = (reals[:, NEAR_FROM] - reals[:, SHIFT]) % tau
         return first, first + (reals[:, NEAR_TO] - reals[:, NEAR_FROM])
 
     @cached_property
     def sectors(self) -> dict[int, NDArray[np.int64]]:
-        """Which curves exist in each sector of orientations that was asked for (``search.cells``)."""
+        """A cache, empty at first: indices of the curves that exist in
+        each sector of orientations (see ``search.cells``).
+        """
         return {}
 
     @cached_property
@@ -92,8 +103,12 @@ class CurveTable:
         return np.sort(first), np.sort(last)
 
 
-def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Feature rows (F, 10) with their ends moved out by a hair; whole circles have none."""
+def loosen_rows(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a copy of feature rows (F, 10) with their ends moved out
+    by ``LOOSE`` mm; whole circles stay as they are.
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     out = np.array(rows)
     lines, arcs = rows[:, IS_ARC] == 0.0, (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] < pi)
     out[lines, HALF_EXTENT] += LOOSE
@@ -102,7 +117,11 @@ def loosened(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def number_centers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Index of the first feature with the same centre for each of (F, 10) rows, -1 for lines."""
+    """Return, for each of (F, 10) rows, the index of the first arc
+    with the same centre, -1 for lines; shape (F,).
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     numbers = np.full(len(rows), -1, dtype=np.int64)
     arcs = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     for position, k in enumerate(arcs):
@@ -110,7 +129,7 @@ def number_centers(rows: NDArray[np.float64]) -> NDArray[np.int64]:
     return numbers
 
 
-def curve_table(
+def make_curve_table(
     rows: NDArray[np.float64],
     steps: LatticeSteps,
     tails: Sequence[int] | None = None,
@@ -120,23 +139,30 @@ def curve_table(
     near: NearSpots = EVERYWHERE,
     within: NDArray[np.float64] = ANY_TURN,
 ) -> CurveTable:
-    """Chord curves between (F, 10) loosened feature rows, or those with their tails on some features.
+    """Return the chord curves and sliding pairs between (F, 10) loosened feature rows.
+
+    See ``kernels.base.feature`` for the layout of rows.
 
     Parameters
     ----------
-    threads : how many threads share the work; the outcome does not depend on it.
-    cancel : when set, curves whose turn has not come are left out.
-    centers : as of ``number_centers``, for who asks again and again.
-    near : leaves out what no locators of interest touch.
-    within : (K, 2) ranges of psi in radians beside which curves may be left out; none for everywhere.
+    tails : indices of the features to take as tails; None for all.
+    threads : how many threads share the work; the result does not depend on it.
+    cancel : when set, tails that have not begun yet get no curves.
+    centers : result of :func:`number_centers`, for callers that ask repeatedly.
+    near : leaves out curves that locators of interest cannot touch.
+    within : (K, 2) ranges of psi in radians outside which curves may be left out; (0, 2) for no limit.
     """
     centers = number_centers(rows) if centers is None else centers
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
-        few = steps if cancel is None or not cancel.is_set() else steps.none
+        """Return integers and reals of curves, those of sliding pairs,
+        and stretches, with tails on one feature.
+        """
+        few = steps if cancel is None or not cancel.is_set() else steps.without_steps
         given = tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near, within
 
         def write(size: int) -> tuple[NDArray[Any], ...] | None:
+            """Write them to arrays with ``size`` rows each; return None where there is no room."""
             space = make_curve_space(size)
             count, pair_count, stretch_count = write_tail_curves(*given, space)
             if count < 0:
@@ -163,9 +189,11 @@ def curve_table(
 
 
 def map_in_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: int) -> list[Any]:
-    """What is made of each number, by this thread and some more.
+    """Return ``[make(number) for number in numbers]``, computed by
+    this thread and up to ``threads - 1`` more.
 
-    Where memory runs out a thread may end without a word, and an executor would wait for it for ever.
+    ``make`` must not return None. (An executor is not used: where memory runs out a thread may end without a
+    word, and an executor would wait for it for ever.)
 
     Raises
     ------
@@ -176,6 +204,7 @@ def map_in_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: 
     turns, errors = iter(range(len(numbers))), list[BaseException]()
 
     def work() -> None:
+        """Take numbers until none is left or an error occurred; store results and the error."""
         try:
             for turn in turns:
                 if errors:
@@ -203,8 +232,11 @@ def map_in_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: 
     return made
 
 
-def joined(one: CurveTable, other: CurveTable, before: int) -> CurveTable:
-    """Two tables as one, the second of features that begin at number ``before``."""
+def join_curve_tables(one: CurveTable, other: CurveTable, before: int) -> CurveTable:
+    """Return one table with the curves of both; the features of ``other`` get the numbers from ``before`` on.
+
+    ``other`` is changed in place and must not be used afterwards.
+    """
     for table in (other.curves.integers, other.sliding_pairs.integers):
         table[:, [TAIL, HEAD]] += before
         table[:, CENTER] += before * (table[:, CENTER] >= 0)

@@ -14,25 +14,25 @@ import numpy as np
 from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept
+from workhold.contact.swept import SweptSpans
 from workhold.contact.trimming import find_line_most_in_the_way, trim_to_clear_parts
 from workhold.conventions import END_SLACK, JOINT, TANGENT
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
-from workhold.fixels.pegs import Flat
-from workhold.geometry.offset import clear_parts, list_trimmed_offsets
-from workhold.geometry.segment import Segment, segment_rows
+from workhold.fixels.pegs import PegFlat
+from workhold.geometry.offset import find_clear_parts, list_trimmed_offsets
+from workhold.geometry.segment import Segment, make_segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "ContactFeature",
-    "allowed_features",
+    "find_allowed_features",
     "list_avoided_faces",
     "list_contact_features",
     "measure_end_distances",
-    "end_slacks",
+    "measure_end_slacks",
     "find_face_of_segment",
     "make_feature_rows",
     "list_features_met",
@@ -51,7 +51,8 @@ class ContactFeature:
     ----------
     face : number of the face that the peg touches.
     segment : where the peg's centre may lie; its normals are those of the contact.
-    cut_from : the piece of the locus that keep-out zones cut it from; itself where none did.
+    cut_from : the piece of the locus from which keep-out zones or tools cut the segment; the segment itself
+        where none did.
     """
 
     face: int
@@ -59,14 +60,17 @@ class ContactFeature:
     cut_from: Segment = field()
 
     @cut_from.default
-    def _not_cut(self) -> Segment:
+    def take_own_segment(self) -> Segment:
+        """Return the segment itself, the default of ``cut_from``."""
         return self.segment
 
 
 def list_contact_features(
-    workpiece: Workpiece, peg_radius: float, flat: Flat | None = None
+    workpiece: Workpiece, peg_radius: float, flat: PegFlat | None = None
 ) -> list[ContactFeature]:
-    """Contact features of a workpiece for pegs of a radius in mm, round or with a flat, by face."""
+    """Return the contact features of a workpiece for pegs of a radius
+    in mm, by face; for pegs with a flat if one is given.
+    """
     faces = workpiece.faces
     pieces = list_trimmed_offsets(
         [face.segment for face in faces], peg_radius, None if flat is None else flat.distance
@@ -75,17 +79,22 @@ def list_contact_features(
 
 
 def list_features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
-    """Contact features of a workpiece for the pegs of a carrier, by face, on the outline that it meets."""
-    own, first = workpiece.outline_of(carrier.role)
+    """Return the contact features for the pegs of a carrier, by face,
+    on the outline of the workpiece that it meets.
+
+    Their face numbers are those through all outlines.
+    """
+    own, first = workpiece.find_outline(carrier.role)
     features = list_contact_features(own, carrier.peg_radius, carrier.flat)
     return [evolve(one, face=first + one.face) for one in features] if first else features
 
 
 def list_avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[int]:
-    """The numbers of faces that nothing may touch: those to be avoided, and those without a band.
+    """Return the numbers of the faces that nothing may touch: those
+    to be avoided, and those that cannot be touched.
 
-    Where there are outlines of carriers, faces with a face of the solid over them that an avoided one has are
-    avoided with it.
+    Where carriers have their own outlines, an avoided number stands for faces of the solid above that
+    segment; all faces of any outline under these faces of the solid are avoided with it.
 
     Raises
     ------
@@ -99,26 +108,27 @@ def list_avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[
         return avoided
     every = workpiece.numbered
     ruled_out = {k for k, band in enumerate(every.bands) if band is None}
-    ruled_out.update(every.segments_under(every.faces_over(restrictions.avoid)))
+    ruled_out.update(every.list_segments_under(every.list_faces_over(restrictions.avoid)))
     return avoided | {face.number for face in every.faces if not ruled_out.isdisjoint(face.segments)}
 
 
-def allowed_features(
+def find_allowed_features(
     features: list[ContactFeature],
     workpiece: Workpiece,
     restrictions: Restrictions,
     body_radius: float,
-    swept: Sequence[tuple[Swept, float]] = (),
+    swept: Sequence[tuple[SweptSpans, float]] = (),
 ) -> list[ContactFeature]:
-    """Contact features without avoided faces and places where a peg's body would stand in the way.
+    """Return contact features without avoided faces and without
+    places where a peg's body would be in the way.
 
-    In the way it stands over a keep-out zone, and near what a program sweeps.
+    A body is in the way over a keep-out zone, and where it comes too near to what a program sweeps.
 
     Parameters
     ----------
     body_radius : of the pegs' bodies, in mm.
-    swept : what a program sweeps, and what a peg's centre keeps besides the tool's radius, in mm; that of
-        the peg itself first.
+    swept : pairs of swept spans and the distance in mm that a peg's centre keeps from them besides the tool's
+        radius; that of the peg itself first.
 
     Raises
     ------
@@ -137,7 +147,7 @@ def allowed_features(
         left = [
             evolve(feature, segment=part)
             for feature in left
-            for part in clear_parts(feature.segment, zone.segments, body_radius)
+            for part in find_clear_parts(feature.segment, zone.segments, body_radius)
         ]
     if not left:
         other, avoid = (" on another face", ", or avoid fewer faces") if avoided else ("", "")
@@ -147,7 +157,7 @@ def allowed_features(
         )
     clear = left
     for pieces, beyond in swept:
-        clear = [kept for feature in clear for kept in passed_by(feature, pieces, beyond)]
+        clear = [kept for feature in clear for kept in trim_to_clear_features(feature, pieces, beyond)]
     if not clear:
         line = find_line_most_in_the_way([feature.segment for feature in left], *swept[0])
         raise InputError(
@@ -158,7 +168,7 @@ def allowed_features(
 
 
 def find_face_of_segment(workpiece: Workpiece, number: int) -> int:
-    """The number of the face that a segment belongs to.
+    """Return the number of the face that segment ``number`` (through all outlines) belongs to.
 
     Raises
     ------
@@ -175,22 +185,24 @@ def find_face_of_segment(workpiece: Workpiece, number: int) -> int:
     )
 
 
-def passed_by(feature: ContactFeature, swept: Swept, beyond: float) -> list[ContactFeature]:
-    """The parts of a contact feature that tools pass at their radius and so many mm ``beyond``."""
+def trim_to_clear_features(feature: ContactFeature, swept: SweptSpans, beyond: float) -> list[ContactFeature]:
+    """Return the parts of a contact feature where peg centres keep
+    the tools' radius plus ``beyond`` mm from tool paths.
+    """
     return [evolve(feature, segment=part) for part in trim_to_clear_parts(feature.segment, swept, beyond)]
 
 
 def make_feature_rows(features: list[ContactFeature]) -> NDArray[np.float64]:
-    """Kernel rows (N, 10) of contact features."""
-    return segment_rows([feature.segment for feature in features])
+    """Return the kernel rows (N, 10) of contact features, see ``kernels.base.feature``."""
+    return make_segment_rows([feature.segment for feature in features])
 
 
 def measure_end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distances (..., 2) in mm along features from the feet of points to the low and to the high end.
+    """Return distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
-    Negative past an end, infinite on a whole circle, which has none.
-    ``kernels.chord.evaluation.distance_to_end`` is its compiled form for one point; verification, the
-    algebra and the proof in balls have their own on purpose.
+    Negative past an end, inf on a whole circle, which has no ends.
+    ``kernels.chord.evaluation.measure_end_distance`` is its compiled form for one point; verification, the algebra
+    and the proof in balls have their own on purpose.
 
     Parameters
     ----------
@@ -207,10 +219,11 @@ def measure_end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]
     return np.where((is_arc & (half >= np.pi))[..., None], np.inf, ends)
 
 
-def end_slacks(
+def measure_end_slacks(
     features: list[ContactFeature], margin: float = 0.0, locus: list[ContactFeature] | None = None
 ) -> NDArray[np.float64]:
-    """Distances (F, 2) in mm that a contact may lie past the places ``margin`` mm inside a feature's ends.
+    """Return how far in mm a contact may lie past the place
+    ``margin`` mm inside the low and the high end, shape (F, 2).
 
     Where two features join tangentially a contact exactly at the joint counts (for both, and is listed once),
     so rounding is forgiven. Any other end does not count: there the peg also touches a second face or stands
@@ -220,7 +233,8 @@ def end_slacks(
     Parameters
     ----------
     margin : smallest distance in mm from a contact to the end of its feature.
-    locus : all features, also those that are ruled out, if others are: a joint with one of them is a joint.
+    locus : all features, also those that are ruled out, if these are more than ``features``: a joint with one
+        of them is a joint.
     """
     everything = [feature.segment for feature in (features if locus is None else locus)]
     ends = dict(
@@ -233,17 +247,29 @@ def end_slacks(
         piece = feature.cut_from
         if feature.segment is not piece:
             half = feature.segment.half_extent
-            points = np.array([feature.segment.at(-half), feature.segment.at(half)])
-            to_ends = measure_end_distances(segment_rows([piece]), points)[[0, 1], [0, 1]]
+            points = np.array([feature.segment.compute_point(-half), feature.segment.compute_point(half)])
+            to_ends = measure_end_distances(make_segment_rows([piece]), points)[[0, 1], [0, 1]]
             slack[index] = np.minimum(slack[index] + to_ends, margin + END_SLACK)
     return slack
 
 
 def measure_joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
-    """How far in mm a contact may lie past the low and the high end of pieces of the locus, shape (F, 2)."""
-    ends = np.array([[piece.at(-piece.half_extent), piece.at(piece.half_extent)] for piece in pieces])
+    """Return how far in mm a contact may lie past the low and the
+    high end of pieces of the locus, shape (F, 2).
+
+    It is ``END_SLACK`` at an end that joins another piece tangentially, else ``-END_SLACK``.
+    """
+    ends = np.array(
+        [
+            [piece.compute_point(-piece.half_extent), piece.compute_point(piece.half_extent)]
+            for piece in pieces
+        ]
+    )
     normals = np.array(
-        [[piece.normal(-piece.half_extent), piece.normal(piece.half_extent)] for piece in pieces]
+        [
+            [piece.compute_normal(-piece.half_extent), piece.compute_normal(piece.half_extent)]
+            for piece in pieces
+        ]
     )
     points, directions = ends.reshape(-1, 2), normals.reshape(-1, 2)
     slack = np.full(len(points), -END_SLACK)
@@ -256,9 +282,11 @@ def measure_joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
 def find_meeting_ends(
     points: NDArray[np.float64], within: float = JOINT
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Which ends (2 F, 2), low and high ones of features after each other, meet which of other features.
+    """Return the indices (M,) and (M,) of pairs of ends of different
+    features that are within ``within`` mm in x and y.
 
-    They do within so many mm along x and y.
+    ``points`` (2 F, 2) are the ends: low and high end of feature k are numbers 2 k and 2 k + 1. Every pair
+    occurs in both orders.
     """
     out, together = [np.zeros((0, 2), np.int64)], max(TOGETHER // max(len(points), 1), 1)
     for start in range(0, len(points), together):

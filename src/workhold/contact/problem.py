@@ -1,4 +1,4 @@
-"""What every engine begins with: a query made ready for arithmetic, in the frame of the search.
+"""The problem that every engine starts from: a query prepared for arithmetic, in the frame of the search.
 
 In the frame a toolkit is turned so that its moving carrier slides along +x. Quarter turns alone are used, and
 fixtures found in the frame are carried back. Everything between contact features and placed fixtures works
@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 
 from workhold.contact.features import (
     ContactFeature,
-    allowed_features,
-    end_slacks,
+    find_allowed_features,
     list_features_met,
     make_feature_rows,
+    measure_end_slacks,
 )
-from workhold.contact.swept import Swept, find_swept_at_pegs, list_swept_clearances
+from workhold.contact.swept import SweptSpans, find_swept_at_pegs, list_swept_clearances
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes
+from workhold.fixels.carrier import HoleSelection
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.segment import make_segment_rows
 from workhold.kernels.base.feature import IS_ARC, RADIUS, REST_X, REST_Y, X, Y
 from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.limits import refuse_many_steps
@@ -36,7 +36,7 @@ from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Frame", "Problem", "Progress"]
+__all__ = ["SearchFrame", "Problem", "Progress"]
 
 IntArray = NDArray[np.int64]
 
@@ -47,10 +47,10 @@ ROUNDING = 1e-12
 
 
 @frozen
-class Frame:
-    """A toolkit as the search sees it: one carrier stands still, one slides along its rows or columns.
+class SearchFrame:
+    """A toolkit as the search sees it: one carrier stands still, one slides along its rows, in direction +x.
 
-    What other toolkits must bring. Both carriers need one pitch only where both hold two pegs: Type I asks
+    Requirements of other toolkits. Both carriers need one pitch only where both hold two pegs: Type I asks
     for heights that differ by whole row pitches (``kernels.base.tables.Lattice``). Chords are made of the
     steps of one lattice alone: a carrier of another pitch needs lattice steps and curves of its own
     (``search.toolkit_search``, ``CurveTable.joined``), and ``record.take_pegs`` its pitch. A single moving
@@ -60,7 +60,7 @@ class Frame:
     Parameters
     ----------
     toolkit : as it was asked for.
-    quarters : quarter turns, counter-clockwise, from the frame back to the toolkit.
+    quarters : number of quarter turns, counter-clockwise, from the frame back to the toolkit.
     standing, moving : its carriers in the frame, places in mm about the toolkit's origin.
     """
 
@@ -70,14 +70,14 @@ class Frame:
     moving: Carrier
 
     @classmethod
-    def of(cls, toolkit: Toolkit, farthest: float) -> Frame:
-        """The frame of a toolkit; two pegs on the part are at most ``farthest`` mm apart.
+    def from_toolkit(cls, toolkit: Toolkit, farthest: float) -> SearchFrame:
+        """Return the frame of a toolkit; two pegs on the part are at most ``farthest`` mm apart.
 
         Raises
         ------
         InputError
-            When the lattices are not alike, or the moving carrier slides neither along its rows nor along its
-            columns.
+            When the toolkit has straps, the lattices are not alike, or the moving carrier slides neither
+            along its rows nor along its columns.
         """
         if toolkit.strap_set is not None:
             raise InputError(
@@ -98,27 +98,33 @@ class Frame:
             )
         quarters = round(turns) % 4
         return cls(
-            toolkit, quarters, turned(standing, quarters, farthest), turned(moving, quarters, farthest)
+            toolkit,
+            quarters,
+            turn_carrier(standing, quarters, farthest),
+            turn_carrier(moving, quarters, farthest),
         )
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
-        """Both carriers, the one that stands still first."""
+        """Both carriers in the frame, the one that stands still first."""
         return self.standing, self.moving
 
     @property
     def lattice(self) -> Lattice:
-        """The lattice of holes, common to both."""
+        """The lattice of holes in the frame, common to both carriers."""
         return Lattice(*self.standing.pitch, self.moving.offset[1] - self.standing.offset[1])
 
     @property
     def gap(self) -> float:
-        """The gap rule in mm, -inf when there is none."""
+        """The smallest distance in mm along x from a standing to a moving
+        peg, -inf when there is no such rule.
+        """
         return -inf if self.toolkit.gap is None else self.toolkit.gap
 
     @property
-    def swapped(self) -> int:
-        """Pegs on each carrier of the arrangement that a half turn of everything keeps; 0 for none.
+    def swapped_peg_count(self) -> int:
+        """The number of pegs on each carrier of the arrangement that a
+        half turn of the toolkit keeps; 0 for none.
 
         The half turn swaps the carriers.
         """
@@ -127,21 +133,27 @@ class Frame:
 
     @property
     def travel_at_rest(self) -> float:
-        """Travel in mm at which the moving carrier's first column would be in the last one of the other."""
-        (x, _), (first, _) = self.standing.place(self.standing.column_count - 1, 0), self.moving.offset
+        """The travel in mm at which the moving carrier's first column
+        would be in the last column of the standing one.
+        """
+        (x, _), (first, _) = (
+            self.standing.compute_hole_center(self.standing.column_count - 1, 0),
+            self.moving.offset,
+        )
         return float(x - first)
 
-    def step_back(self, column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
-        """Differences of columns and rows in the toolkit from those in the frame."""
+    def map_step_to_toolkit(self, column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
+        """Return differences of columns and rows in the toolkit from those in the frame."""
         cosine, sine = QUARTERS[self.quarters]
         return cosine * column - sine * row, sine * column + cosine * row
 
-    def holes(
+    def map_holes_to_toolkit(
         self, standing: NDArray[np.bool_], column: IntArray, row: IntArray
     ) -> tuple[IntArray, IntArray]:
-        """Columns and rows (N, 4) of the toolkit from those of the frame; ``standing`` says of which carrier.
+        """Return columns and rows (N, 4) in the toolkit from those in the frame.
 
-        Where the carriers have no end across the travel, the lowest is 0.
+        ``standing`` (N, 4) is True for holes of the carrier that stands still. Where the carriers are endless
+        across the travel, the lowest number in that direction is 0.
         """
         if self.quarters == 0:
             return column, row
@@ -153,29 +165,33 @@ class Frame:
         return out[0], out[1]
 
 
-def flipped(k: Any, count: int | None) -> Any:
-    """Numbers counted from the other end; from the same one, downward, where there is no other."""
+def flip_hole_numbers(k: Any, count: int | None) -> Any:
+    """Return hole numbers counted from the other end: ``count - 1 - k``,
+    or ``-k`` where ``count`` is None (endless).
+    """
     return -k if count is None else count - 1 - k
 
 
 def map_hole_to_toolkit(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[Any, Any]:
-    """Column and row in the toolkit of a hole of a carrier in the frame."""
+    """Return the column and row in the toolkit of a hole of a carrier, from its column and row in the
+    frame.
+    """
     if quarters == 2:
-        return flipped(column, carrier.columns), flipped(row, carrier.rows)
+        return flip_hole_numbers(column, carrier.columns), flip_hole_numbers(row, carrier.rows)
     if quarters == 1:
-        return flipped(row, carrier.rows), column
-    return (row, flipped(column, carrier.columns)) if quarters else (column, row)
+        return flip_hole_numbers(row, carrier.rows), column
+    return (row, flip_hole_numbers(column, carrier.columns)) if quarters else (column, row)
 
 
-def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
-    """A carrier as it is in the frame.
+def turn_carrier(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
+    """Return a carrier as it is in the frame, ``quarters`` quarter turns clockwise from the toolkit.
 
-    Without an end along the travel it has as many columns as two pegs on the part can be apart.
+    A carrier that is endless along the travel gets as many columns as two pegs on the part can be apart.
 
     Raises
     ------
     InputError
-        When holes are blocked where it has no end.
+        When holes are blocked on a carrier that is endless.
     """
     swaps = quarters % 2 == 1
     columns, rows = (carrier.rows, carrier.columns) if swaps else (carrier.columns, carrier.rows)
@@ -188,14 +204,14 @@ def turned(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
         columns = int(farthest / pitch[0]) + 1
     travel = carrier.travel and Travel(0.0, carrier.travel.least, carrier.travel.most)
     out = evolve(carrier, pitch=pitch, columns=columns, rows=rows, travel=travel)
-    x, y = evolve(carrier, travel=None).place(*map_hole_to_toolkit(out, quarters, 0, 0))
+    x, y = evolve(carrier, travel=None).compute_hole_center(*map_hole_to_toolkit(out, quarters, 0, 0))
     cosine, sine = QUARTERS[quarters]
     offset = (cosine * x + sine * y, cosine * y - sine * x)
     return evolve(out, offset=offset, blocked=tuple(map_blocked_holes_to_frame(carrier, quarters)))
 
 
-def map_blocked_holes_to_frame(carrier: Carrier, quarters: int) -> Iterator[Holes]:
-    """The blocked holes of a carrier as they are in the frame."""
+def map_blocked_holes_to_frame(carrier: Carrier, quarters: int) -> Iterator[HoleSelection]:
+    """Yield the blocked holes of a carrier with columns and rows as in the frame."""
     if quarters == 0:
         yield from carrier.blocked
         return
@@ -213,11 +229,12 @@ ROUNDINGS = 16.0 * 1.2e-16
 
 @define(frozen=True, eq=False)
 class Problem:
-    """A query made ready; lengths in mm, everything about the centre of the part's bounding box.
+    """A query prepared for arithmetic; lengths in mm, coordinates
+    about the centre of the part's bounding box.
 
     Parameters
     ----------
-    query : what is asked.
+    query : the question.
     loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out,
         ordered by face.
     rows : (F, 12) contact features, with the slack of their ends beside the contact margin
@@ -227,7 +244,7 @@ class Problem:
         are equal where their pegs are alike; else features of the standing carrier come first.
     outlines : (S, 10) the faces that pegs of the standing carrier keep from, and those of the moving one; one
         array where both meet one outline.
-    diameter : largest distance between two peg centres that touch the part.
+    diameter : largest distance in mm between two peg centres that touch the part.
     pairing : whether the clamp is one of two, so that it need not hold the part with the locators alone.
     """
 
@@ -246,8 +263,8 @@ class Problem:
             refuse_many_steps(carrier.pitch, carrier.columns, carrier.rows, self.diameter, len(self.rows))
 
     @classmethod
-    def of(cls, query: Query, pairing: bool = False) -> Problem:
-        """Makes a query ready.
+    def from_query(cls, query: Query, pairing: bool = False) -> Problem:
+        """Return the problem of a query.
 
         Raises
         ------
@@ -258,8 +275,8 @@ class Problem:
         workpiece, restrictions = query.workpiece, query.restrictions
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
         diameter = measure_outline_diameter(workpiece) + 2 * radius
-        carriers = Frame.of(query.toolkit, diameter).carriers
-        met = [workpiece.outline_of(each.role) for each in carriers]
+        carriers = SearchFrame.from_toolkit(query.toolkit, diameter).carriers
+        met = [workpiece.find_outline(each.role) for each in carriers]
         one, other = (
             (each.peg_radius, each.body_radius, each.flat, each.heights, first)
             for each, (_, first) in zip(carriers, met, strict=True)
@@ -268,17 +285,20 @@ class Problem:
         allowed = loci
         if restrictions or workpiece.untouchable or workpiece.outlines or query.program is not None:
             allowed = [
-                allowed_features(
+                find_allowed_features(
                     locus, workpiece, restrictions, carrier.body_radius, list_swept_clearances(query, carrier)
                 )
                 for locus, carrier in zip(loci, carriers, strict=False)
             ]
         features = [feature for part in allowed for feature in part]
         slacks = np.concatenate(
-            [end_slacks(part, query.contact_margin, locus) for part, locus in zip(allowed, loci, strict=True)]
+            [
+                measure_end_slacks(part, query.contact_margin, locus)
+                for part, locus in zip(allowed, loci, strict=True)
+            ]
         )
         center = workpiece.center
-        rows = {first: segment_rows([face.segment for face in own.faces]) for own, first in met}
+        rows = {first: make_segment_rows([face.segment for face in own.faces]) for own, first in met}
         rows = {first: move_rows_to_origin(values, center) for first, values in rows.items()}
         return cls(
             query,
@@ -294,49 +314,55 @@ class Problem:
 
     @property
     def workpiece(self) -> Workpiece:
-        """What to hold."""
+        """The part to hold."""
         return self.query.workpiece
 
     @property
     def toolkit(self) -> Toolkit:
-        """What to hold it in."""
+        """The toolkit to hold it in, as it was asked for."""
         return self.query.toolkit
 
     @property
     def contact_margin(self) -> float:
-        """Smallest distance between a contact and the end of its feature."""
+        """The smallest distance in mm between a contact and the end of its feature."""
         return self.query.contact_margin
 
     @property
     def restrictions(self) -> Restrictions:
-        """What is ruled out."""
+        """The faces and zones that are ruled out."""
         return self.query.restrictions
 
-    def swept(self, carrier: Carrier) -> tuple[Swept, float] | None:
-        """What the program sweeps beside a carrier, in the part's coordinates, and the clearance in mm."""
+    def find_swept_spans(self, carrier: Carrier) -> tuple[SweptSpans, float] | None:
+        """Return the spans that the program sweeps beside a carrier, and
+        the clearance in mm; None without a program.
+
+        Spans are in the part's own coordinates, not about its centre.
+        """
         return find_swept_at_pegs(self.query, carrier)
 
     @property
     def wrench_length(self) -> float:
-        """L of the wrenches: half the diameter of the peg-centre locus."""
+        """L of the wrenches in mm: half the diameter of the peg-centre locus."""
         return self.diameter / 2
 
     @property
     def backward_error(self) -> float:
-        """Distance in mm of the features' rows from the drawing, by the rounding of a dozen operations."""
+        """A bound in mm of the distance of the features' rows from the
+        drawing, by rounding of a dozen operations.
+        """
         center = self.workpiece.center
         return ROUNDINGS * (
             abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max())
         )
 
     @cached_property
-    def frame(self) -> Frame:
-        """The toolkit as the search sees it."""
-        return Frame.of(self.toolkit, self.diameter)
+    def frame(self) -> SearchFrame:
+        """The toolkit in the frame of the search."""
+        return SearchFrame.from_toolkit(self.toolkit, self.diameter)
 
     @cached_property
     def limits(self) -> Limits:
-        """What bounds a fixture, as kernels take it."""
+        """The rules that bound a fixture, as kernels take them."""
         frame = self.frame
         return Limits(
             frame.gap,
@@ -351,14 +377,14 @@ class Problem:
 
     @property
     def setting(self) -> Setting:
-        """What a proof must know of the problem, as kernels take it."""
+        """The lattice, limits, peg radii and errors that a proof needs, as kernels take them."""
         frame = self.frame
         standing, moving = (carrier.least_standoff for carrier in frame.carriers)
         return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)
 
 
 def list_peg_features(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
-    """All contact features of a workpiece for the pegs of a carrier.
+    """Return all contact features of a workpiece for the pegs of a carrier, by face.
 
     Raises
     ------
@@ -375,7 +401,11 @@ def list_peg_features(workpiece: Workpiece, carrier: Carrier) -> list[ContactFea
 
 
 def move_rows_to_origin(rows: NDArray[np.float64], center: tuple[float, float]) -> NDArray[np.float64]:
-    """Rows (N, 10) of segments moved so that a point becomes the origin; read-only."""
+    """Return a read-only copy of rows (N, 10) of segments, moved so
+    that the point ``center`` becomes the origin.
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     out, is_arc = np.array(rows), rows[:, IS_ARC] != 0.0
     for column, rest, coordinate in ((X, REST_X, center[0]), (Y, REST_Y, center[1])):
         out[:, column] -= coordinate

@@ -25,7 +25,7 @@ from workhold.conventions import STRAIGHT
 from workhold.fixels.carrier import Carrier
 from workhold.geometry.segment import find_row_ends
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.kernels.base.distance import DEPTH, LEAF, SweptTree, nearest_swept
+from workhold.kernels.base.distance import DEPTH, LEAF, SweptTree, write_nearest_swept
 from workhold.kernels.base.feature import (
     AXIS_X,
     AXIS_Y,
@@ -44,9 +44,9 @@ from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.query import Query
 
 __all__ = [
-    "Swept",
+    "SweptSpans",
     "list_swept_clearances",
-    "path_of",
+    "find_span_path",
     "bound_spans",
     "find_swept_below",
     "find_swept_between",
@@ -63,16 +63,16 @@ MORTON_BITS = 16
 
 
 @define(frozen=True, eq=False)
-class Swept:
+class SweptSpans:
     """The spans of what is swept, in the order of their tree; in mm, in the part's coordinates.
 
     Parameters
     ----------
     tree : of the spans, with rows that only fill leaves.
-    line, tool : (N,) of the program, -1 of rows that fill.
-    boxes : (N, 4) around each span.
-    filled : (B, 4) boxes whose whole inside is swept, x0, y0, x1, y1.
-    filled_line : (B,) of the program, of each filled box.
+    line, tool : (N,) numbers in the program, -1 for rows that only fill leaves.
+    boxes : (N, 4) box x0, y0, x1, y1 around each span.
+    filled : (B, 4) boxes x0, y0, x1, y1 whose whole inside is swept.
+    filled_line : (B,) line of the program of each filled box.
     """
 
     tree: SweptTree
@@ -86,8 +86,8 @@ class Swept:
         return int((self.line >= 0).sum())
 
     @classmethod
-    def of(cls, pieces: Iterator[SweptPiece] | tuple[SweptPiece, ...]) -> Swept:
-        """The spans of pieces."""
+    def from_pieces(cls, pieces: Iterator[SweptPiece] | tuple[SweptPiece, ...]) -> SweptSpans:
+        """Return the spans of swept pieces."""
         spans, numbers, filled = list[tuple[float, ...]](), list[tuple[int, int]](), list[tuple[float, ...]]()
         filled_lines = []
         for piece in pieces:
@@ -101,26 +101,34 @@ class Swept:
                 filled_lines.append(piece.line)
         rows = np.array(spans).reshape(-1, SPAN)
         named = np.array(numbers, np.int64).reshape(-1, 2)
-        return cls.of_spans(rows, named, np.array(filled).reshape(-1, 4), np.array(filled_lines, np.int64))
+        return cls.from_span_rows(
+            rows, named, np.array(filled).reshape(-1, 4), np.array(filled_lines, np.int64)
+        )
 
     @classmethod
-    def below(cls, program: Program, height: float) -> Swept:
-        """The spans of what a program sweeps at heights up to one in mm."""
+    def from_program(cls, program: Program, height: float) -> SweptSpans:
+        """Return the spans of what a program sweeps at heights up to ``height`` in mm."""
         return cls.within(program, -inf, height)
 
     @classmethod
-    def within(cls, program: Program, low: float, high: float) -> Swept:
+    def within(cls, program: Program, low: float, high: float) -> SweptSpans:
         """The spans of what a program sweeps between two heights in mm."""
-        if program.boxed().any():
-            return cls.of(program.iter_swept(low, high))
-        one = program.arrays_of(*program.pairs(), low, high)
+        if program.find_boxed_moves().any():
+            return cls.from_pieces(program.iterate_swept_pieces(low, high))
+        one = program.make_arrays(*program.pair_moves_with_cylinders(), low, high)
         rows = np.column_stack([one.start, one.end, one.bulge, one.cylinder[:, 2]])
         named = np.column_stack([one.line, one.tool])
-        return cls.of_spans(rows, named, np.zeros((0, 4)), np.zeros(0, np.int64))
+        return cls.from_span_rows(rows, named, np.zeros((0, 4)), np.zeros(0, np.int64))
 
     @classmethod
-    def of_spans(cls, rows: Array, named: IntArray, inside: Array, filled_lines: IntArray) -> Swept:
-        """Spans from rows (N, 6), with line and tool (N, 2) of each, and filled boxes (B, 4)."""
+    def from_span_rows(
+        cls, rows: Array, named: IntArray, inside: Array, filled_lines: IntArray
+    ) -> SweptSpans:
+        """Return spans from rows (N, 6): both ends (x, y each), bulge, cylinder radius.
+
+        ``named`` (N, 2) has line and tool of each row, ``inside`` (B, 4) the filled boxes, ``filled_lines``
+        (B,) their lines.
+        """
         kept = drop_repeated_paths(rows)
         rows, named = rows[kept], named[kept]
         order, boxes = order_tree_leaves(rows, (segments := make_span_rows(rows)))
@@ -137,24 +145,28 @@ class Swept:
         tree = SweptTree(out, radius, make_tree_nodes(around, radius))
         return cls(tree, line, tool, around, inside, filled_lines)
 
-    def nearest(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
-        """Least reach (M,) of straight pieces between ends (M, 2), and the number (M,) of the span it is to.
+    def find_nearest_spans(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
+        """Return the least reach (M,) in mm from straight pieces to the
+        spans, and the number (M,) of the span it is to.
 
-        It is infinite, and the number -1, where nothing is swept. Inside a filled box it is that to its
-        border.
+        Pieces go from ``starts`` to ``ends`` (M, 2). The reach is inf, and the number -1, where nothing is
+        swept. Inside a filled box it is the reach to the border of the box.
         """
         least, which = np.full(len(starts), inf), np.full(len(starts), -1)
         starts, ends = (np.ascontiguousarray(points, np.float64) for points in (starts, ends))
-        nearest_swept(starts, ends, self.tree, np.zeros(DEPTH, np.int64), least, which)
+        write_nearest_swept(starts, ends, self.tree, np.zeros(DEPTH, np.int64), least, which)
         return least, which
 
-    def above(self, theta: float, height: float) -> tuple[float, int]:
-        """Least reach to the half plane below a level line, once all is turned, and the span it is to.
+    def find_reach_below_line(self, theta: float, height: float) -> tuple[float, int]:
+        """Return the least reach in mm to the half plane below a level
+        line, after turning the part, and the span it is to.
+
+        It is (inf, -1) where nothing is swept.
 
         Parameters
         ----------
         theta : by which the part is turned about its origin, in radians.
-        height : of the line in mm, from where the part's origin then lies.
+        height : of the line in mm, above the part's origin.
         """
         if not len(self.line):
             return inf, -1
@@ -171,41 +183,47 @@ class Swept:
         number = int(reach.argmin())
         return float(reach[number]), number if reach[number] < inf else -1
 
-    def starts(self) -> Array:
-        """A point (N, 2) of each span: where an arc or a line begins."""
+    def compute_start_points(self) -> Array:
+        """Return the first point (N, 2) of each span's path in mm."""
         rows = self.tree.rows
         is_clockwise = (rows[:, IS_ARC] != 0.0) & (rows[:, SIGN] < 0.0)
         return np.asarray(find_row_ends(rows)[np.arange(len(rows)), is_clockwise.astype(np.int64)])
 
-    def reach_of_box(self, corners: Array) -> tuple[float, int]:
-        """Least reach to a box with corners (4, 2) counterclockwise, inside and out, and the line of the program.
+    def find_reach_to_box(self, corners: Array) -> tuple[float, int]:
+        """Return the least reach in mm to a box (filled, not its border
+        alone), and the program line it is to.
 
-        Where a path begins inside, or a filled box has a corner in it, they overlap, and it is minus infinity. It is
-        infinite, and the line -1, where nothing is swept.
+        ``corners`` (4, 2) are counter-clockwise. The reach is -inf where the two overlap because a path
+        begins inside the box or a filled box holds one of its corners; it is inf, and the line -1, where
+        nothing is swept.
         """
         ahead = np.roll(corners, -1, axis=0)
-        sides, off = ahead - corners, self.starts()[:, None] - corners
+        sides, off = ahead - corners, self.compute_start_points()[:, None] - corners
         inside = (sides[:, 0] * off[..., 1] - sides[:, 1] * off[..., 0] >= 0.0).all(axis=1) & (self.line >= 0)
         if inside.any():
             return -inf, int(self.line[inside].min())
         for (x0, y0, x1, y1), line in zip(self.filled, self.filled_line, strict=True):
             if ((corners >= (x0, y0)) & (corners <= (x1, y1))).all(axis=1).any():
                 return -inf, int(line)
-        reach, which = self.nearest(corners, ahead)
+        reach, which = self.find_nearest_spans(corners, ahead)
         side = int(reach.argmin())
         return float(reach[side]), int(self.line[which[side]]) if which[side] >= 0 else -1
 
 
 @lru_cache(maxsize=16)
-def find_swept_below(program: Program, height: float) -> Swept:
-    """What a program sweeps at heights up to one in mm, above which nothing of a fixture reaches."""
-    return Swept.below(program, height)
+def find_swept_below(program: Program, height: float) -> SweptSpans:
+    """Return what a program sweeps at heights up to ``height`` in mm,
+    above which no element of a fixture reaches.
+    """
+    return SweptSpans.from_program(program, height)
 
 
 def drop_repeated_paths(spans: Array) -> IntArray:
-    """The numbers of the spans (N, 6) to keep, in order: of those of one path the one of the largest radius.
+    """Return the indices, ascending, of the spans (N, 6) to keep: for
+    each path the one with the largest radius.
 
-    What a smaller cylinder sweeps on a path, the largest sweeps as well.
+    Paths run in either direction are the same. What a smaller cylinder sweeps on a path, the largest sweeps
+    as well.
     """
     backward = (spans[:, 0] > spans[:, 2]) | ((spans[:, 0] == spans[:, 2]) & (spans[:, 1] > spans[:, 3]))
     ends = np.where(backward[:, None], spans[:, [2, 3, 0, 1]], spans[:, :4])
@@ -218,10 +236,11 @@ def drop_repeated_paths(spans: Array) -> IntArray:
 
 
 def make_span_rows(spans: Array) -> Array:
-    """Rows (N, 10) as kernels take them of spans (N, 6); a span of no length is a line of none.
+    """Return kernel rows (N, 10) of spans (N, 6); a span of no length becomes a line of no length.
 
-    Formulas as in ``geometry.segment.make_segment_from_bulge``. The centres of shallow arcs are worked out with
-    eleven bits more, and what is left of them stands beside them.
+    Formulas as in ``geometry.segment.make_segment_from_bulge``. The centres of shallow arcs are computed with
+    eleven more bits, and their rounding errors stand in the columns REST_X and REST_Y. See
+    ``kernels.base.feature`` for the layout of rows.
     """
     out = np.zeros((len(spans), SEGMENT_LENGTH))
     start, end, bulge = spans[:, :2], spans[:, 2:4], spans[:, 4]
@@ -253,8 +272,10 @@ def make_span_rows(spans: Array) -> Array:
     return out
 
 
-def path_of(row: Array) -> tuple[PathVertex, ...]:
-    """The vertices of a span's path, from its row (10,) as kernels take it; one where it has no length."""
+def find_span_path(row: Array) -> tuple[PathVertex, ...]:
+    """Return the vertices (x, y, bulge) of a span's path, from its
+    kernel row (10,): two, or one where it has no length.
+    """
     middle, axis, half = row[[X, Y]], row[[AXIS_X, AXIS_Y]], float(row[HALF_EXTENT])
     if row[IS_ARC]:
         ends = [
@@ -269,7 +290,10 @@ def path_of(row: Array) -> tuple[PathVertex, ...]:
 
 
 def bound_spans(rows: Array) -> Array:
-    """Boxes (N, 4) around rows (N, 10), x0, y0, x1, y1, a hair too wide."""
+    """Return boxes (N, 4) around kernel rows (N, 10): x0, y0, x1, y1 in mm, slightly too wide.
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     is_arc, half = rows[:, IS_ARC] != 0.0, rows[:, HALF_EXTENT]
     out = np.empty((len(rows), 4))
     for k, (center, axis, other) in enumerate(((X, AXIS_X, AXIS_Y), (Y, AXIS_Y, AXIS_X))):
@@ -284,7 +308,12 @@ def bound_spans(rows: Array) -> Array:
 
 
 def order_tree_leaves(spans: Array, rows: Array) -> tuple[IntArray, Array]:
-    """Numbers of spans in the order of the leaves, -1 for places left over, and the boxes (N, 4) of all."""
+    """Return the indices of spans in the order of the tree's leaves,
+    -1 for places left over, and the boxes (N, 4) of all.
+
+    ``spans`` (N, 6) are given with their kernel rows (N, 10). Indices fill L leaves of ``LEAF`` places, L a
+    power of 2. See ``kernels.base.feature`` for the layout of rows.
+    """
     boxes = bound_spans(rows)
     leaves = 1
     while leaves * LEAF < len(spans):
@@ -302,7 +331,11 @@ def order_tree_leaves(spans: Array, rows: Array) -> tuple[IntArray, Array]:
 
 
 def make_tree_nodes(boxes: Array, radius: Array) -> Array:
-    """The nodes (2 L, 5) of a tree with leaves of ``LEAF`` boxes (N, 4) and radii (N,) each."""
+    """Return the nodes (2 L, 5) of a tree with L leaves: x0, y0, x1,
+    y1 and the largest radius of each; row 0 is unused.
+
+    ``boxes`` (N, 4) and ``radius`` (N,) are in the order of the leaves, each of which has ``LEAF`` of them.
+    """
     level = np.column_stack(
         [
             boxes[:, :2].reshape(-1, LEAF, 2).min(axis=1),
@@ -324,10 +357,12 @@ def make_tree_nodes(boxes: Array, radius: Array) -> Array:
     return np.ascontiguousarray(np.concatenate([np.full((1, 5), -inf), *levels[::-1]]))
 
 
-def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[Swept, float]]:
-    """What a query's program sweeps at the heights of a carrier's pegs, and what their centres keep besides.
+def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[SweptSpans, float]]:
+    """Return pairs of swept spans and the distance in mm that peg
+    centres of a carrier keep besides the tools' radius.
 
-    Where pegs have a shoulder below the part, what is swept there follows, with what that keeps.
+    The first pair is at the heights of the pegs. Where pegs have a shoulder below the part, what is swept
+    there follows, with the distance for the shoulder. Return an empty list without a program.
     """
     swept = find_swept_at_pegs(query, carrier)
     if swept is None or query.program is None:
@@ -339,10 +374,10 @@ def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[Swept, f
     return keeps
 
 
-def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[Swept, float] | None:
-    """What a query's program sweeps at the heights of a carrier's pegs, and the clearance in mm.
+def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[SweptSpans, float] | None:
+    """Return what a query's program sweeps at the heights of a carrier's pegs, and the clearance in mm.
 
-    None without a program.
+    Return None without a program.
     """
     if query.passed is None:
         return None
@@ -350,18 +385,18 @@ def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[Swept, float] | 
     return find_swept_beside_carrier(program, height, carrier), program.clearance
 
 
-def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carrier) -> Swept:
-    """What a program sweeps at the heights of what stands on a carrier.
+def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carrier) -> SweptSpans:
+    """Return what a program sweeps at the heights of a carrier's elements.
 
     Parameters
     ----------
-    peg_height : up to which a carrier without heights of its own reaches, in mm.
+    peg_height : height in mm up to which a carrier without heights of its own reaches.
     """
     low, high = carrier.heights or (0.0, peg_height)
     return find_swept_between(program, low, high) if low > 0.0 else find_swept_below(program, high)
 
 
 @lru_cache(maxsize=16)
-def find_swept_between(program: Program, low: float, high: float) -> Swept:
-    """What a program sweeps between two heights in mm."""
-    return Swept.within(program, low, high)
+def find_swept_between(program: Program, low: float, high: float) -> SweptSpans:
+    """Return what a program sweeps between two heights in mm."""
+    return SweptSpans.within(program, low, high)

@@ -24,8 +24,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept
-from workhold.geometry.segment import Arc, Segment, bounding_box
+from workhold.contact.swept import SweptSpans
+from workhold.geometry.segment import Arc, Segment, compute_bounding_box
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 
 __all__ = ["find_covered_parts", "find_line_most_in_the_way", "trim_to_clear_parts"]
@@ -37,18 +37,20 @@ IntArray = NDArray[np.int64]
 LEAST_PART = 1e-6
 
 
-def trim_to_clear_parts(segment: Segment, swept: Swept, beyond: float) -> list[Segment]:
-    """The parts of a segment on which a peg's centre is clear of what is swept.
+def trim_to_clear_parts(segment: Segment, swept: SweptSpans, beyond: float) -> list[Segment]:
+    """Return the parts of a segment on which a peg's centre is clear of what is swept, in ascending order.
 
     Parameters
     ----------
     beyond : clearance and radius of the peg together, in mm.
     """
-    return left_of(segment, find_covered_parts(segment, swept, beyond)[0])
+    return subtract_covered_ranges(segment, find_covered_parts(segment, swept, beyond)[0])
 
 
-def left_of(segment: Segment, covered: Array) -> list[Segment]:
-    """The parts of a segment outside covered ones, ranges (K, 2) of its parameter."""
+def subtract_covered_ranges(segment: Segment, covered: Array) -> list[Segment]:
+    """Return the parts of a segment outside covered ranges (K, 2) of
+    its parameter; parts under ``LEAST_PART`` are dropped.
+    """
     half = segment.half_extent
     if not len(covered):
         return [segment]
@@ -56,11 +58,14 @@ def left_of(segment: Segment, covered: Array) -> list[Segment]:
     low, high = covered[np.argsort(covered[:, 0])].T
     ends = np.concatenate([[-half], np.maximum.accumulate(high)])
     begins = np.concatenate([low, [half]])
-    return [segment.part(a, b) for a, b in zip(ends.tolist(), begins.tolist(), strict=True) if b - a > least]
+    return [
+        segment.cut_part(a, b) for a, b in zip(ends.tolist(), begins.tolist(), strict=True) if b - a > least
+    ]
 
 
-def find_line_most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond: float) -> int | None:
-    """The line of the program that covers the longest parts of segments; None where none does.
+def find_line_most_in_the_way(segments: Sequence[Segment], swept: SweptSpans, beyond: float) -> int | None:
+    """Return the line of the program that covers the longest parts of
+    all segments together; None where none covers any.
 
     Parameters
     ----------
@@ -71,33 +76,37 @@ def find_line_most_in_the_way(segments: Sequence[Segment], swept: Swept, beyond:
         covered, lines = find_covered_parts(segment, swept, beyond)
         scale = segment.radius if isinstance(segment, Arc) else 1.0
         for line in np.unique(lines).tolist():
-            free = sum(2 * part.half_extent for part in left_of(segment, covered[lines == line]))
+            free = sum(
+                2 * part.half_extent for part in subtract_covered_ranges(segment, covered[lines == line])
+            )
             lengths[line] = lengths.get(line, 0.0) + (2 * segment.half_extent - free) * scale
     return max(lengths, key=lambda line: (lengths[line], -line)) if lengths else None
 
 
-def find_covered_parts(segment: Segment, swept: Swept, beyond: float) -> tuple[Array, IntArray]:
-    """Ranges (K, 2) of a segment's parameter nearer to the paths of swept pieces than radius and some more.
+def find_covered_parts(segment: Segment, swept: SweptSpans, beyond: float) -> tuple[Array, IntArray]:
+    """Return the ranges of a segment's parameter within the radius
+    plus ``beyond`` of a swept path, or in a filled box.
 
     Parameters
     ----------
-    beyond : what is kept besides a piece's radius, in mm.
+    beyond : distance in mm that is kept besides a piece's radius.
 
     Returns
     -------
-    ranges, which may overlap, and the lines (K,) of the program
+    (ranges (K, 2), which may overlap; lines (K,) of the program)
     """
-    x0, y0, x1, y1 = bounding_box(segment)
+    x0, y0, x1, y1 = compute_bounding_box(segment)
     keep, boxes = swept.tree.radius + beyond, swept.boxes
     gap = np.maximum.reduce([boxes[:, 0] - x1, x0 - boxes[:, 2], boxes[:, 1] - y1, y0 - boxes[:, 3]])
     near = np.flatnonzero((gap < keep) & (swept.line >= 0))
-    own = np.array(segment.row())
+    own = np.array(segment.to_row())
     rows, keep = swept.tree.rows[near], keep[near]
     cuts = np.concatenate(
-        [on_circles(own, rows, keep), find_crossings_with_parallels(own, rows, keep)], axis=1
+        [intersect_with_offset_circles(own, rows, keep), find_crossings_with_parallels(own, rows, keep)],
+        axis=1,
     )
     ranges, piece = list_covered_parts_between_cuts(
-        own, cuts, lambda x, y: distances(rows, x, y) < keep[:, None]
+        own, cuts, lambda x, y: measure_distances(rows, x, y) < keep[:, None]
     )
     lines = swept.line[near][piece]
     if len(swept.filled):
@@ -109,24 +118,34 @@ def find_covered_parts(segment: Segment, swept: Swept, beyond: float) -> tuple[A
 def list_covered_parts_between_cuts(
     own: Array, cuts: Array, is_covered: Callable[[Array, Array], NDArray[np.bool_]]
 ) -> tuple[Array, IntArray]:
-    """Ranges (K, 2) between neighbouring cuts (P, C) of a segment's row whose middles are covered, and of
-    which of P pieces (K,) each is.
+    """Return the ranges between neighbouring cuts of a segment whose
+    middles are covered, and which piece covers each.
 
     Parameters
     ----------
-    is_covered : of points x, y (P, C + 1) whether they are.
+    own : kernel row of the segment.
+    cuts : (P, C) parameters at which each of P pieces cuts the segment, in any order; NaN and those beyond
+        its ends are ignored.
+    is_covered : called with x and y (P, C + 1) of points; returns for each whether the piece of its row
+        covers it.
+
+    Returns
+    -------
+    (ranges (K, 2) of the parameter, indices (K,) of the pieces)
     """
     half, count = own[HALF_EXTENT], len(cuts)
     inner = np.where(np.abs(cuts) < half, cuts, half)
     edges = np.sort(np.hstack([np.full((count, 1), -half), inner, np.full((count, 1), half)]), axis=1)
     middles = (edges[:, 1:] + edges[:, :-1]) / 2
-    covered = is_covered(*points_on(own, middles)) & (edges[:, 1:] > edges[:, :-1])
+    covered = is_covered(*compute_points(own, middles)) & (edges[:, 1:] > edges[:, :-1])
     piece, number = np.nonzero(covered)
     return np.stack([edges[piece, number], edges[piece, number + 1]], axis=1), piece
 
 
-def points_on(own: Array, parameter: Array) -> tuple[Array, Array]:
-    """x and y of points of a segment's row."""
+def compute_points(own: Array, parameter: Array) -> tuple[Array, Array]:
+    """Return x and y in mm of the points of a segment, given by its kernel row, at parameters of any
+    shape.
+    """
     if own[IS_ARC] == 0.0:
         return own[X] + parameter * own[AXIS_X], own[Y] + parameter * own[AXIS_Y]
     cosine, sine = np.cos(parameter), np.sin(parameter)
@@ -136,8 +155,11 @@ def points_on(own: Array, parameter: Array) -> tuple[Array, Array]:
     )
 
 
-def ends_of(rows: Array) -> tuple[Array, Array]:
-    """Both ends (P, 2) of rows."""
+def compute_ends(rows: Array) -> tuple[Array, Array]:
+    """Return the low ends and the high ends, (P, 2) each, of kernel rows (P, 10).
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     is_arc, half = rows[:, IS_ARC] != 0.0, rows[:, HALF_EXTENT]
     axis, center = rows[:, [AXIS_X, AXIS_Y]], rows[:, [X, Y]]
     across = np.stack([-axis[:, 1], axis[:, 0]], axis=1)
@@ -149,21 +171,25 @@ def ends_of(rows: Array) -> tuple[Array, Array]:
     return out[0], out[1]
 
 
-def on_circles(own: Array, rows: Array, keep: Array) -> Array:
-    """Parameters (P, 8) at which a segment meets circles of rows, NaN for those that it does not meet.
+def intersect_with_offset_circles(own: Array, rows: Array, keep: Array) -> Array:
+    """Return parameters (P, 8) at which a segment meets circles of
+    kernel rows, NaN for those that it does not meet.
 
-    They are the circles of radii ``keep`` (P,) about both ends, and of arcs those about the centre.
+    They are the circles of radii ``keep`` (P,) about both ends, and for arcs the two about the centre that
+    are ``keep`` away from the arc.
     """
-    one, other = ends_of(rows)
+    one, other = compute_ends(rows)
     around, is_arc = rows[:, [X, Y]], rows[:, IS_ARC] != 0.0
     outer = np.where(is_arc, rows[:, RADIUS] + keep, np.nan)
     inner = np.where(is_arc, np.abs(rows[:, RADIUS] - keep), np.nan)
     circles = ((one, keep), (other, keep), (around, outer), (around, inner))
-    return np.hstack([on_circle(own, center, radius) for center, radius in circles])
+    return np.hstack([intersect_with_circles(own, center, radius) for center, radius in circles])
 
 
-def on_circle(own: Array, center: Array, radius: Array) -> Array:
-    """Parameters (P, 2) at which a segment meets circles; NaN where it does not."""
+def intersect_with_circles(own: Array, center: Array, radius: Array) -> Array:
+    """Return parameters (P, 2) at which a segment's line or circle
+    meets circles (P,), NaN where it does not.
+    """
     dx, dy = center[:, 0] - own[X], center[:, 1] - own[Y]
     along, across = dx * own[AXIS_X] + dy * own[AXIS_Y], own[AXIS_X] * dy - own[AXIS_Y] * dx
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -173,21 +199,32 @@ def on_circle(own: Array, center: Array, radius: Array) -> Array:
         away = np.hypot(dx, dy)
         size = ((own[RADIUS] - radius) * (own[RADIUS] + radius) / away + away) / (2 * own[RADIUS])
         turn, middle = np.arccos(size), np.arctan2(across, along)
-    return in_one_turn(np.stack([middle - turn, middle + turn], axis=1))
+    return wrap_angles(np.stack([middle - turn, middle + turn], axis=1))
 
 
 def find_crossings_with_parallels(own: Array, rows: Array, keep: Array) -> Array:
-    """Parameters (P, 4) at which a segment meets the parallels, ``keep`` (P,) away, of straight rows."""
+    """Return parameters (P, 4) at which a segment meets both
+    parallels, ``keep`` (P,) mm away, of straight kernel rows.
+
+    NaN where it does not meet them, and for arcs.
+    """
     normal = np.stack([-rows[:, AXIS_Y], rows[:, AXIS_X]], axis=1)
     level = (normal * rows[:, [X, Y]]).sum(axis=1)
     straight = rows[:, IS_ARC] == 0.0
     return np.hstack(
-        [on_line(own, normal, np.where(straight, level + side * keep, np.nan)) for side in (-1.0, 1.0)]
+        [
+            intersect_with_lines(own, normal, np.where(straight, level + side * keep, np.nan))
+            for side in (-1.0, 1.0)
+        ]
     )
 
 
-def on_line(own: Array, normal: Array, level: Array) -> Array:
-    """Parameters (P, 2) at which a segment meets lines normal · x = level; NaN where it does not."""
+def intersect_with_lines(own: Array, normal: Array, level: Array) -> Array:
+    """Return parameters (P, 2) at which a segment's line or circle
+    meets lines normal · x = level, NaN where it does not.
+
+    ``normal`` is (P, 2) of unit vectors, ``level`` (P,) in mm.
+    """
     level = level - normal @ own[[X, Y]]
     along = normal @ own[[AXIS_X, AXIS_Y]]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -197,16 +234,20 @@ def on_line(own: Array, normal: Array, level: Array) -> Array:
         turn = np.arccos(level / own[RADIUS])
     across = normal[:, 1] * own[AXIS_X] - normal[:, 0] * own[AXIS_Y]
     middle = np.arctan2(across, along)
-    return in_one_turn(np.stack([middle - turn, middle + turn], axis=1))
+    return wrap_angles(np.stack([middle - turn, middle + turn], axis=1))
 
 
-def in_one_turn(angles: Array) -> Array:
-    """Angles in radians brought to within half a turn of 0."""
+def wrap_angles(angles: Array) -> Array:
+    """Return angles in radians brought into [-pi, pi)."""
     return np.asarray((angles + np.pi) % (2 * np.pi) - np.pi)
 
 
-def distances(rows: Array, x: Array, y: Array) -> Array:
-    """Distances (P, C) in mm from points (P, C) to the row of each line of them."""
+def measure_distances(rows: Array, x: Array, y: Array) -> Array:
+    """Return the distances (P, C) in mm from points x, y (P, C) to
+    the segments of kernel rows (P, 10), row by row.
+
+    See ``kernels.base.feature`` for the layout of rows.
+    """
     dx, dy = x - rows[:, X, None], y - rows[:, Y, None]
     ax, ay, half = (rows[:, k, None] for k in (AXIS_X, AXIS_Y, HALF_EXTENT))
     along, across = dx * ax + dy * ay, ax * dy - ay * dx
@@ -214,16 +255,21 @@ def distances(rows: Array, x: Array, y: Array) -> Array:
     if not rows[:, IS_ARC].any():
         return np.asarray(straight)
     to_rim = np.abs(np.hypot(dx, dy) - rows[:, RADIUS, None])
-    ends = [np.hypot(x - end[:, 0, None], y - end[:, 1, None]) for end in ends_of(rows)]
+    ends = [np.hypot(x - end[:, 0, None], y - end[:, 1, None]) for end in compute_ends(rows)]
     bent = np.where(np.abs(np.arctan2(across, along)) <= half, to_rim, np.minimum(*ends))
     return np.where(rows[:, IS_ARC, None] != 0.0, bent, straight)
 
 
 def find_parts_inside_boxes(own: Array, boxes: Array) -> tuple[Array, IntArray]:
-    """Ranges (K, 2) of a segment's parameter inside filled boxes (B, 4), and of which (K,) each is."""
+    """Return ranges (K, 2) of a segment's parameter inside filled
+    boxes (B, 4), and the index (K,) of the box of each.
+    """
     normals = np.tile(np.array([[1.0, 0.0], [0.0, 1.0]]), (2, 1))
     cuts = np.hstack(
-        [on_line(own, np.tile(normals[k], (len(boxes), 1)), boxes[:, k]) for k in range(len(normals))]
+        [
+            intersect_with_lines(own, np.tile(normals[k], (len(boxes), 1)), boxes[:, k])
+            for k in range(len(normals))
+        ]
     )
     x0, y0, x1, y1 = (boxes[:, k, None] for k in range(4))
     return list_covered_parts_between_cuts(own, cuts, lambda x, y: (x0 < x) & (x < x1) & (y0 < y) & (y < y1))

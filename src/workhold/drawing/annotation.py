@@ -28,13 +28,13 @@ __all__ = [
     "PAST_END",
     "Label",
     "LabelPlacer",
-    "Place",
+    "PlacedLabel",
     "make_label_around",
     "draw_dimension",
     "compute_dimension_box",
     "draw_dimension_line",
     "join_labels",
-    "scale_bar",
+    "draw_scale_bar",
 ]
 
 TIGHT = 34.0
@@ -52,10 +52,11 @@ def draw_dimension_line(
     outside: float = OUTSIDE_ARROW,
     head: float = 11.0,
 ) -> Point:
-    """Draw a dimension line between two page points; return its unit direction.
+    """Draw a dimension line between two page points; return its unit
+    direction on the page, from start to end.
 
-    In page units, a line shorter than ``tight`` has its arrows outside, these reach ``outside`` past the
-    ends, and heads are ``head`` long.
+    All sizes are in page units. A line shorter than ``tight`` has its arrows outside, which reach ``outside``
+    past the ends. Heads are ``head`` long.
     """
     length = dist(start, end)
     ux, uy = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 0 else (1.0, 0.0)
@@ -82,10 +83,11 @@ def draw_dimension(
     bold: bool = False,
     past: Literal["upper", "lower"] | None = None,
 ) -> Box:
-    """Draw a dimension line between two page points, its text above it, readable from below or the right.
+    """Draw a dimension line between two page points, its text above it or to
+    its left; return the box of the text.
 
-    ``past`` is the end of an upright line past which a text longer than the line is written. Returns the box
-    of the text.
+    The text reads from below, or from the right beside an upright line. ``past`` is the end of an upright
+    line beyond which a text longer than the line is written; None keeps it beside the line.
     """
     ux, uy = draw_dimension_line(scene, start, end)
     width = measure_text(text, size, bold)
@@ -93,17 +95,17 @@ def draw_dimension(
     if abs(ux) >= abs(uy):
         middle = (x + 0.75 * size * uy, y - 0.85 * size * abs(ux))
         scene.add_text(middle, text, size, "middle", bold, halo=3)
-        return Box.about(middle, width, size)
+        return Box.from_center(middle, width, size)
     if past is not None and width > dist(start, end):
         away = width / 2 + PAST_END
         y = min(start[1], end[1]) - away if past == "upper" else max(start[1], end[1]) + away
     middle = (min(start[0], end[0]) - 0.75 * size, y)
     scene.add_text(middle, text, size, "middle", bold, halo=3, turned=90)
-    return Box.about(middle, size, width)
+    return Box.from_center(middle, size, width)
 
 
 def compute_dimension_box(start: Point, end: Point) -> Box:
-    """Return the page box of a level or upright dimension line with its arrows, without its text.
+    """Return the page box of a horizontal or vertical dimension line with its arrows, without its text.
 
     >>> compute_dimension_box((10.0, 0.0), (20.0, 0.0)).x0
     -19.0
@@ -112,11 +114,12 @@ def compute_dimension_box(start: Point, end: Point) -> Box:
     past = OUTSIDE_ARROW if hypot(end[0] - start[0], end[1] - start[1]) < TIGHT else 0.0
     upright = abs(end[1] - start[1]) > abs(end[0] - start[0])
     out_x, out_y = (0.0, past) if upright else (past, 0.0)
-    return Box(low[0] - out_x, low[1] - out_y, high[0] + out_x, high[1] + out_y).grown(HEAD)
+    return Box(low[0] - out_x, low[1] - out_y, high[0] + out_x, high[1] + out_y).grow(HEAD)
 
 
 def round_length(length: float) -> float:
-    """Return the largest of 1, 2 or 5 times a power of ten that is not above ``length``.
+    """Return the largest of 1, 2 or 5 times a power of ten that is at most
+    ``length``, which must be positive.
 
     >>> round_length(37.0), round_length(0.9)
     (20.0, 0.5)
@@ -125,7 +128,7 @@ def round_length(length: float) -> float:
     return float(next(k * power for k in (5, 2, 1) if k * power <= length * (1 + 1e-9)))
 
 
-def scale_bar(
+def draw_scale_bar(
     scene: Scene,
     at: Point,
     scale: float,
@@ -134,7 +137,8 @@ def scale_bar(
     size: float = 12.0,
     more: str = "",
 ) -> float:
-    """Draw a bar of a round length with its lower left corner at a page point; return its total width.
+    """Draw a bar of a round length, its lower left corner at a page point; return
+    its width with the text, in page units.
 
     Parameters
     ----------
@@ -194,25 +198,29 @@ class Label:
 
     @property
     def reach(self) -> Array:
-        """(4,) box around all candidates and leaders, and a little more."""
+        """(4,) box x0, y0, x1, y1 around all candidates and anchors, grown by ``GAP``."""
         boxes = np.vstack([self.boxes, np.hstack([self.anchors, self.anchors])])
         return np.concatenate([boxes[:, :2].min(axis=0) - GAP, boxes[:, 2:].max(axis=0) + GAP])
 
     def keep_cheapest(self, costs: Array) -> Label:
-        """Return the label with new costs and only its cheapest candidates."""
+        """Return the label with these costs (C,), reduced to its ``MOST_CANDIDATES``
+        cheapest candidates, cheapest first.
+        """
         order = np.argsort(costs, kind="stable")[:MOST_CANDIDATES]
         return Label(self.width, self.height, self.centers[order], self.anchors[order], costs[order])
 
 
 @frozen
-class Place:
-    """Where a label came to stand: its box, and the point its leader runs to."""
+class PlacedLabel:
+    """A placed label: its box on the page, and the point its leader runs to."""
 
     box: Box
     anchor: Point
 
     def compute_leader(self, radius: float = 0.0) -> list[Point]:
-        """Return the ends of the straight leader, from a sign of a radius about the anchor to the rim of the box."""
+        """Return the two ends of the leader: on a circle of ``radius`` page units
+        about the anchor, and on the box's rim.
+        """
         (x, y), (cx, cy) = self.anchor, self.box.center
         dx, dy = x - cx, y - cy
         share = min(self.box.width / 2 / max(abs(dx), 1e-9), self.box.height / 2 / max(abs(dy), 1e-9), 1.0)
@@ -230,11 +238,16 @@ def make_label_around(
     extra: float = 0.0,
     turn_cost: float = 6.0,
 ) -> Label:
-    """Return a label with candidates around an anchor.
+    """Return a label with one candidate for each distance and turn around an anchor.
 
-    The preferred direction, and turns away from it, are in radians on the page (y down). Width and height of
-    the label, and distances from the anchor to its rim, are in page units. Each page unit costs 0.3, each
-    radian ``turn_cost``, and every candidate ``extra``.
+    Parameters
+    ----------
+    anchor : page point.
+    direction : preferred direction from the anchor, in radians on the page (y down).
+    size : width and height of the label, page units.
+    distances : from the anchor to the label's rim, page units; each unit costs 0.3.
+    turns : away from the direction, in radians; each radian costs ``turn_cost``.
+    extra : what every candidate costs besides.
     """
     width, height = size
     distance, turn = (grid.ravel() for grid in np.meshgrid(distances, turns, indexing="ij"))
@@ -247,7 +260,7 @@ def make_label_around(
 
 
 def join_labels(labels: Sequence[Label]) -> Label:
-    """Return one label of the size of the first with the candidates of all."""
+    """Return one label of the first label's size with the candidates of all."""
     return Label(
         labels[0].width,
         labels[0].height,
@@ -258,7 +271,7 @@ def join_labels(labels: Sequence[Label]) -> Label:
 
 
 class LabelPlacer:
-    """Knows what is drawn and finds the cheapest candidates.
+    """Knows what is drawn and places labels where they cost least.
 
     Parameters
     ----------
@@ -272,28 +285,30 @@ class LabelPlacer:
         self.wall_starts, self.wall_ends = np.zeros((0, 2)), np.zeros((0, 2))
 
     def avoid_ink(self, points: ArrayLike, price: float) -> None:
-        """Set the price of covering each of some points, (N, 2) page units."""
+        """Add points (N, 2) in page units; a label pays ``price`` for each of them that it covers."""
         array = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         self.points = np.vstack([self.points, array])
         self.prices = np.concatenate([self.prices, np.full(len(array), price)])
 
     def avoid_box(self, box: Box) -> None:
-        """Set a high price for covering a box."""
+        """Add a page box that labels pay much for covering or crossing with their leaders."""
         self.boxes = np.vstack([self.boxes, [box.x0, box.y0, box.x1, box.y1]])
 
     def avoid_line(self, start: Point, end: Point, price: float, step: float = 3.0) -> None:
-        """Set the price of covering a line, for every ``step`` page units."""
+        """Add a line whose points, ``step`` page units apart, each cost ``price`` when a label covers
+        them.
+        """
         count = max(2, int(np.hypot(end[0] - start[0], end[1] - start[1]) / step))
         shares = np.linspace(0.0, 1.0, count)[:, None]
         self.avoid_ink((1 - shares) * np.array(start) + shares * np.array(end), price)
 
     def avoid_walls(self, points: Array) -> None:
-        """Set a price for leaders across an open polyline, (N, 2) page units."""
+        """Add an open polyline (N, 2), page units, that costs a leader ``WALL`` for each crossing."""
         self.wall_starts = np.vstack([self.wall_starts, points[:-1]])
         self.wall_ends = np.vstack([self.wall_ends, points[1:]])
 
     def compute_fixed_costs(self, label: Label) -> Array:
-        """Return (C,) what the candidates cost before other labels are there."""
+        """Return the costs (C,) of a label's candidates before any other label is placed."""
         boxes = label.boxes
         low, high = boxes[:, :2], boxes[:, 2:]
         bounds = self.bounds
@@ -312,8 +327,12 @@ class LabelPlacer:
         costs += WALL * find_crossings(starts, label.centers, first[near], last[near]).sum(axis=1)
         return costs
 
-    def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[Place]:
-        """Place labels together: one after another, then each anew among the others until nothing moves."""
+    def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[PlacedLabel]:
+        """Return a place for each label, in their order, chosen together.
+
+        Each label takes its cheapest candidate one after another. Then each is chosen anew among the others
+        until no label moves, or ``sweeps`` times.
+        """
         kept = [label.keep_cheapest(self.compute_fixed_costs(label)) for label in labels]
         reaches = np.array([label.reach for label in kept]).reshape(-1, 4)
         boxes, anchors = np.zeros((len(kept), 4)), np.zeros((len(kept), 2))
@@ -328,13 +347,15 @@ class LabelPlacer:
             if (chosen == before).all():
                 break
         return [
-            Place(Box(*map(float, box)), (float(anchor[0]), float(anchor[1])))
+            PlacedLabel(Box(*map(float, box)), (float(anchor[0]), float(anchor[1])))
             for box, anchor in zip(boxes, anchors, strict=True)
         ]
 
 
 def compute_mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
-    """Return (C,) costs of a label's candidates beside N placed labels, by their (N, 4) boxes and (N, 2) anchors."""
+    """Return the costs (C,) of a label's candidates beside N placed labels with
+    boxes (N, 4) and leader anchors (N, 2).
+    """
     middles = (boxes[:, :2] + boxes[:, 2:]) / 2
     costs: Array = COLLISION * compute_overlaps(label.boxes, boxes).sum(axis=1)
     costs += CROSSING * find_crossings(label.anchors, label.centers, anchors, middles).sum(axis=1)
@@ -344,12 +365,16 @@ def compute_mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
 
 
 def find_boxes_met(box: Array, others: Array) -> NDArray[np.bool_]:
-    """Return (N,) which of (N, 4) boxes a (4,) box meets."""
+    """Return (N,) whether each of the boxes (N, 4) touches or overlaps a box (4,)."""
     return np.asarray((others[:, :2] <= box[2:]).all(axis=1) & (others[:, 2:] >= box[:2]).all(axis=1))
 
 
 def compute_overlaps(boxes: Array, others: Array) -> Array:
-    """Return (C, N) 0 for (C, 4) boxes well clear of (N, 4) others, else 1 plus the share of the box covered."""
+    """Return (C, N) 0 where boxes (C, 4) are at least ``GAP`` clear of others
+    (N, 4), else 1 plus the share covered.
+
+    The share is of the first box's area, both boxes taken ``GAP`` apart.
+    """
     low = np.maximum(boxes[:, None, :2], others[None, :, :2])
     high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
     sides = np.maximum(high - low + GAP, 0.0)
@@ -359,9 +384,10 @@ def compute_overlaps(boxes: Array, others: Array) -> Array:
 
 
 def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: Array) -> NDArray[np.bool_]:
-    """Return (C, N) whether straight pieces cross others."""
+    """Return (C, N) whether straight segments from starts to ends (C, 2) properly cross others (N, 2)."""
 
     def side(p: Array, q: Array, r: Array) -> Array:
+        """Return twice the signed area of the triangles p, q, r."""
         cross: Array = (q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0]
         return cross
 
@@ -370,7 +396,9 @@ def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: 
 
 
 def find_entries_into_boxes(starts: Array, ends: Array, boxes: Array) -> NDArray[np.bool_]:
-    """Return (C, N) whether straight pieces enter boxes (clipping after Liang and Barsky, 1984)."""
+    """Return (C, N) whether straight segments (C) enter boxes (N, 4), clipped after Liang and Barsky,
+    1984.
+    """
     step = ends - starts
     step = np.where(np.abs(step) < 1e-9, 1e-9, step)[:, None]
     one = (boxes[None, :, :2] - starts[:, None]) / step

@@ -24,16 +24,16 @@ from workhold.drawing.carriers import (
     draw_wall,
     limit_holes_drawn,
 )
-from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, format_number
 from workhold.drawing.straps_drawn import draw_straps
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
+from workhold.geometry.segment import Arc, Line, Point, Segment, compute_bounding_box
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
 from workhold.model.setup import find_hole_centers
-from workhold.model.shown import Shown, shown
+from workhold.model.shown import ShownSetUp, find_shown
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 
@@ -43,7 +43,7 @@ __all__ = [
     "PART_FILL",
     "PEG_FILL",
     "TOUCHED",
-    "Bench",
+    "BenchDrawing",
     "make_bench",
     "find_contact",
     "draw_bench",
@@ -65,23 +65,23 @@ LONGEST_SWEEP = 2 * pi / 3
 
 
 def make_segment_path(segment: Segment, view: View, moved: bool = True) -> str:
-    """Return SVG path data of one segment, beginning with a move to its start unless ``moved`` is False."""
-    start = "M{} {}".format(*map(number, view(segment.start))) if moved else ""
+    """Return SVG path data of a segment; without the leading move to its start if ``moved`` is False."""
+    start = "M{} {}".format(*map(format_number, view(segment.start))) if moved else ""
     if isinstance(segment, Line):
-        return start + "L{} {}".format(*map(number, view(segment.end)))
+        return start + "L{} {}".format(*map(format_number, view(segment.end)))
     pieces = ceil(2 * segment.half_sweep / LONGEST_SWEEP - 1e-9)
-    radius = number(segment.radius * view.scale)
+    radius = format_number(segment.radius * view.scale)
     # y is turned over, so counter-clockwise is SVG's negative direction.
     sweep = "0" if segment.sign > 0 else "1"
     for k in range(1, pieces + 1):
         parameter = segment.sign * segment.half_sweep * (2 * k / pieces - 1)
-        x, y = map(number, view(segment.at(parameter)))
+        x, y = map(format_number, view(segment.compute_point(parameter)))
         start += f"A{radius} {radius} 0 0 {sweep} {x} {y}"
     return start
 
 
 def make_outline_path(loops: Sequence[Sequence[Segment]], view: View) -> str:
-    """Return SVG path data of closed loops; fill it by the even-odd rule."""
+    """Return SVG path data of closed loops, to be filled by the even-odd rule."""
     return " ".join(
         "".join(make_segment_path(segment, view, k == 0) for k, segment in enumerate(loop)) + "Z"
         for loop in loops
@@ -89,17 +89,22 @@ def make_outline_path(loops: Sequence[Sequence[Segment]], view: View) -> str:
 
 
 def sample_segments(segments: Iterable[Segment], view: View, step: float) -> NDArray[np.float64]:
-    """Return (N, 2) page points along segments, about ``step`` page units apart, both ends included."""
+    """Return (N, 2) page points along segments, about ``step`` page units apart, both ends included.
+
+    A concave arc is sampled from its end to its start; see :func:`sample_loop` for a loop in order.
+    """
     points: list[Point] = []
     for segment in segments:
         count = max(1, min(400, ceil(segment.length * view.scale / step)))
         half = segment.half_extent
-        points += [view(segment.at(half * (2 * k / count - 1))) for k in range(count + 1)]
+        points += [view(segment.compute_point(half * (2 * k / count - 1))) for k in range(count + 1)]
     return np.array(points, dtype=np.float64).reshape(-1, 2)
 
 
 def sample_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np.float64]:
-    """Return (N, 2) page points around a closed loop in order, about ``step`` apart; the last is the first."""
+    """Return (N, 2) page points around a closed loop in its order, about
+    ``step`` apart; the last is the first again.
+    """
     runs = []
     for segment in loop:
         points = sample_segments([segment], view, step)
@@ -109,27 +114,30 @@ def sample_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np.
 
 
 def find_face(workpiece: Workpiece, number: int) -> Segment:
-    """Return the whole face that a segment number belongs to."""
+    """Return the whole face to which a segment number belongs."""
     return next(face.segment for face in workpiece.numbered.faces if number in face.segments)
 
 
 def find_contact(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
-    """Return the point where a contact of a kind touches a face, and the outward unit normal there.
+    """Return the point where a contact touches a face, and the face's outward unit normal there.
 
-    Its centre and the face are in one frame, in mm.
+    ``center`` is the contact's (a peg's centre, a wall contact's end), in the frame of the face, in mm.
     """
     return CONTACTS[kind](center, face)
 
 
 def find_wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
-    """Return the contact of a part with a wall below it, where its end is."""
+    """Return the end of the contact with a wall below the part, and the normal (0, -1)."""
     return center, (0.0, -1.0)
 
 
 def find_pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+    """Return the point of a face nearest to a pin's centre, cut off at the face's
+    ends, and the outward unit normal there.
+    """
     half = face.half_extent
-    parameter = max(-half, min(half, face.parameter(center)))
-    return face.at(parameter), face.normal(parameter)
+    parameter = max(-half, min(half, face.find_parameter(center)))
+    return face.compute_point(parameter), face.compute_normal(parameter)
 
 
 CONTACTS: Mapping[ContactKind, Callable[[Point, Segment], tuple[Point, Point]]] = {
@@ -150,18 +158,18 @@ THINNEST_PEG = 3.5
 
 
 @frozen
-class Bench:
-    """What there is to draw, in mm in the vise frame.
+class BenchDrawing:
+    """A fixture to draw, in mm in the vise frame.
 
     Parameters
     ----------
     loops : the placed outline and holes of the part.
-    faces : the placed faces the pegs touch.
+    faces : the placed face that each peg touches.
     contacts : contact point and outward normal of each peg.
-    shown : the carriers as far as they show.
-    own : the placed outlines that carriers with heights of their own meet.
+    shown : the visible parts of the carriers.
+    own : the placed outlines that carriers at heights of their own touch.
     gripped : the placed faces that flat jaws touch, by their numbers.
-    is_exact : whether pegs are drawn at their radius however small it is; they are drawn larger if not.
+    is_exact : whether pegs are drawn at their radius however small it is; otherwise small ones are drawn larger.
     """
 
     fixture: Fixture
@@ -169,14 +177,14 @@ class Bench:
     loops: list[list[Segment]]
     faces: list[Segment]
     contacts: list[tuple[Point, Point]]
-    shown: Shown
+    shown: ShownSetUp
     own: list[list[Segment]] = field(factory=list)
     is_exact: bool = False
     gripped: Mapping[int, Segment] = field(factory=dict)
 
     @property
     def extent(self) -> Box:
-        """The extent of all that shows, in mm."""
+        """The box of all that is shown, in mm."""
         return self.shown.extent
 
     def sample_outlines(self, view: View, step: float) -> list[NDArray[np.float64]]:
@@ -185,36 +193,42 @@ class Bench:
 
     @property
     def touching(self) -> list[int]:
-        """The pegs that touch one face each: all but corners on a wall."""
+        """The indices of the pegs that touch one face each: all but corners on a wall."""
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
     def find_touched_piece(self, index: int) -> Segment:
-        """Return the face that a contact is on; of one flush on a wall the piece between the ends of the wall."""
+        """Return the face that contact ``index`` is on; for a contact with a wall, the
+        piece between the wall contact's ends.
+        """
         face, walls = self.faces[index], self.on_walls
         if index not in walls or isinstance(face, Arc):
             return face
         half = face.half_extent
-        places = sorted(face.parameter(self.contacts[k][0]) for k in walls)
+        places = sorted(face.find_parameter(self.contacts[k][0]) for k in walls)
         low, high = (max(-half, min(half, place)) for place in (places[0], places[-1]))
-        return face.part(low, high) if low < high else face
+        return face.cut_part(low, high) if low < high else face
 
     @property
     def on_walls(self) -> list[int]:
+        """The indices of the contacts that are ends of the contact with a wall."""
         pegs = enumerate(self.fixture.pegs)
         return [k for k, peg in pegs if self.toolkit.find_carrier(peg.carrier).contact is WALL_END]
 
     @property
     def placed(self) -> list[int]:
-        """The pegs and clamps themselves: all but the ends of the contact with a wall."""
+        """The indices of the pegs and clamps: all contacts but the ends of the contact with a wall."""
         return [index for index, peg in enumerate(self.fixture.pegs) if peg in self.fixture.placed]
 
     def get_page_radius(self, view: View, index: int) -> float:
+        """Return the drawn radius of peg ``index`` in page units, at least
+        ``THINNEST_PEG`` unless drawn exactly.
+        """
         radius = self.toolkit.find_carrier(self.fixture.pegs[index].carrier).peg_radius * view.scale
         return radius if self.is_exact and radius > 0 else max(radius, THINNEST_PEG)
 
 
-def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
-    """Compute what there is to draw of a fixture, in the vise frame."""
+def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> BenchDrawing:
+    """Return the drawing of a fixture, with everything placed in the vise frame."""
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     faces = [pose.carry(find_face(workpiece, peg.face)) for peg in fixture.pegs]
@@ -230,16 +244,16 @@ def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Benc
         for loop in one.loop_segments
     ]
     held = {number: pose.carry(find_face(workpiece, number)) for number in gripped}
-    return Bench(
-        fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece), own, gripped=held
+    return BenchDrawing(
+        fixture, toolkit, loops, faces, contacts, find_shown(fixture, toolkit, workpiece), own, gripped=held
     )
 
 
-def compute_force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
-    """Return the tail (the contact) and tip of a contact force on the page.
+def compute_force_arrow(bench: BenchDrawing, index: int, view: View, longest: float) -> tuple[Point, Point]:
+    """Return tail (the contact) and tip of a contact force's arrow, as page points.
 
-    The largest force is ``longest`` page units long. A force that would have to pull points away from the
-    part.
+    The largest force is ``longest`` page units long, and none is shorter than 0.36 of that. A negative
+    (pulling) force points out of the part.
     """
     contact, (nx, ny) = bench.contacts[index]
     forces = [abs(peg.force) for peg in bench.fixture.pegs]
@@ -250,9 +264,14 @@ def compute_force_arrow(bench: Bench, index: int, view: View, longest: float) ->
 
 
 def draw_bench(
-    scene: Scene, bench: Bench, view: View, weight: float = 1.0, longest: float = 62.0, axes: bool = True
+    scene: Scene,
+    bench: BenchDrawing,
+    view: View,
+    weight: float = 1.0,
+    longest: float = 62.0,
+    axes: bool = True,
 ) -> None:
-    """Draw plates, holes, part, touched faces, forces and pegs.
+    """Draw plates, holes, walls, part, touched faces, clamps, forces and pegs, in this order.
 
     Parameters
     ----------
@@ -295,8 +314,8 @@ def draw_bench(
             contacts.add_circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
 
 
-def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draw the part, its touched faces underlaid; the holes of the jaws show faintly through it."""
+def draw_part(scene: Scene, bench: BenchDrawing, view: View, weight: float) -> None:
+    """Draw the part and its touched faces; the holes of the plates show faintly through it."""
     part = scene.group("part", view)
     d = make_outline_path(bench.loops, view)
     part.add_path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
@@ -317,7 +336,7 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
 
 
 def draw_grip(scene: Scene, hold: JawHold, view: View, weight: float) -> None:
-    """Draw what flat jaws touch: stretches along them, and points."""
+    """Draw what flat jaws touch: stretches along the jaws, and single points."""
     for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
         for x0, x1, _, _ in patch.rectangles:
             if x1 > x0:
@@ -326,7 +345,8 @@ def draw_grip(scene: Scene, hold: JawHold, view: View, weight: float) -> None:
                 scene.add_circle(view((x0, y)), 6.0 * weight, TOUCHED)
 
 
-def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
+def draw_pegs(scene: Scene, bench: BenchDrawing, view: View, weight: float) -> None:
+    """Draw the pegs with crosses at their centres; pegs without a diameter get a ring around their hole."""
     pegs = scene.group("pegs", view)
     holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
     for index in bench.placed:
@@ -366,10 +386,10 @@ def draw_inset(
     toolkit: Toolkit,
     zero: Point | None = None,
 ) -> None:
-    """Draw the unturned part with its touched faces and contacts into a page box.
+    """Draw the part as it was drawn (unturned), with its touched faces and contacts, into a page box.
 
-    Part zero, in the part's coordinates in mm, is marked where it lies within the part's extent; holes are
-    numbered too then.
+    ``zero`` is part zero in the part's frame in mm: it is marked if it lies within the part's extent, and
+    holes are numbered. Draws nothing if the box is lower than ``LOWEST``.
     """
     if box.height < LOWEST:
         return
@@ -389,7 +409,7 @@ def draw_inset(
         group.add_circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
     if zero is not None:
         number_holes(group, view, workpiece)
-        if bounds.grown(AGREEMENT).contains(Box(*zero, *zero)):
+        if bounds.grow(AGREEMENT).contains(Box(*zero, *zero)):
             draw_zero(group, view(zero))
     corner = (box.x0 + 4, box.y1 - 4)
     group.add_arrow(corner, (corner[0] + 30, corner[1]), GREY, 1.2, 8)
@@ -399,26 +419,30 @@ def draw_inset(
 
 
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
+    """Write numbers, from 1, into the holes of a part that are large enough."""
     for count, (loop, center) in enumerate(
         zip(workpiece.hole_segments, find_hole_centers(workpiece), strict=True), 1
     ):
-        extent = reduce(Box.union, (Box(*bounding_box(segment)) for segment in loop))
+        extent = reduce(Box.unite, (Box(*compute_bounding_box(segment)) for segment in loop))
         if min(extent.width, extent.height) * view.scale >= NUMBER + 2:
             scene.add_text(view(center), str(count), NUMBER, "middle", fill=GREY)
 
 
 def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
-    """Draw the sign of a zero point, a disc with two black quarters."""
+    """Draw the sign of a zero point at a page point: a disc with two black quarters."""
     x, y = at
-    r = number(radius)
+    r = format_number(radius)
     scene.add_circle(at, radius, "#ffffff", BLACK, 1.0)
     for way in (1, -1):
-        start, end = f"{number(x + way * radius)} {number(y)}", f"{number(x)} {number(y - way * radius)}"
-        scene.add_path(f"M{number(x)} {number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
+        start, end = (
+            f"{format_number(x + way * radius)} {format_number(y)}",
+            f"{format_number(x)} {format_number(y - way * radius)}",
+        )
+        scene.add_path(f"M{format_number(x)} {format_number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
 
 
 def find_contacts(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> list[Point]:
-    """Return the contact points in the workpiece's own frame, mm."""
+    """Return the contact point of each peg in the part's frame, in mm."""
     back = fixture.pose.inverse
     return [
         find_contact(

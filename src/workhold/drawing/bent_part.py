@@ -20,11 +20,11 @@ from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit, Scene, measure
 
 __all__ = [
     "LARGEST_SHOWN",
-    "colours_of",
+    "compute_node_colours",
     "draw_bent_page",
     "draw_bent_part",
-    "exaggeration_of",
-    "picture_of_bending",
+    "choose_exaggeration",
+    "draw_bending",
 ]
 
 Array = NDArray[np.float64]
@@ -47,10 +47,12 @@ STEPS = 5
 PICTURE = (180.0, 130.0)
 
 
-def exaggeration_of(bending: Bending) -> float:
-    """How many times as far as it is the part is drawn bent: 1, 2 or 5 times a power of ten.
+def choose_exaggeration(bending: Bending) -> float:
+    """Return the factor by which movements are exaggerated in the drawing: 1, 2
+    or 5 times a power of ten, at least 1.
 
-    The largest movement is then at most a twentieth of the part's size.
+    The largest movement is then at most ``LARGEST_SHOWN`` (a twentieth) of the part's size, unless the factor
+    is 1.
     """
     size = float(np.ptp(bending.surface.nodes, axis=0).max())
     most = bending.clamp_distortion.value
@@ -61,23 +63,23 @@ def exaggeration_of(bending: Bending) -> float:
     return max(1.0, next(step * power for step in (5.0, 2.0, 1.0) if step * power <= times))
 
 
-def colours_of(bending: Bending) -> Array:
-    """Red, green and blue (N, 3) of the nodes, from 0 to 1 as on a screen."""
+def compute_node_colours(bending: Bending) -> Array:
+    """Return the colours (N, 3) of the nodes as red, green and blue from 0 to 1; pressed nodes are grey."""
     most = max(bending.clamp_distortion.value, 1e-12)
     share = np.clip(np.linalg.norm(bending.moved, axis=1) / most, 0.0, 1.0)
-    colours = colours_at(share)
+    colours = interpolate_colours(share)
     colours[bending.pressed] = PRESSED
     return colours
 
 
-def colours_at(share: Array) -> Array:
-    """The colours (N, 3) of shares (N,) of the largest movement."""
+def interpolate_colours(share: Array) -> Array:
+    """Return the colours (N, 3), 0 to 1, for shares (N,) of the largest movement."""
     places = np.linspace(0.0, 1.0, len(STOPS))
     return np.stack([np.interp(share, places, STOPS[:, k]) for k in range(3)], axis=1)
 
 
-def as_hex(colour: Array) -> str:
-    """A colour as SVG writes it."""
+def to_hex(colour: Array) -> str:
+    """Return a colour (3,), 0 to 1, as "#rrggbb"."""
     return "#" + "".join(f"{round(255 * min(max(float(one), 0.0), 1.0)):02x}" for one in colour)
 
 
@@ -138,8 +140,8 @@ def choose_view(bending: Bending, times: float, node: int) -> tuple[BentView, bo
 
 
 def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit) -> None:
-    """Draw the part, bent and coloured, with its scale, into a box of a page."""
-    surface, times = bending.surface, exaggeration_of(bending)
+    """Draw the part, bent (exaggerated) and coloured, with its colour scale, into a page box."""
+    surface, times = bending.surface, choose_exaggeration(bending)
     mark = int(np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin())
     view, is_shown = choose_view(bending, times, mark)
     scale_height = 34.0
@@ -152,12 +154,12 @@ def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit
     y = (room.y0 + room.y1) / 2 - factor * (flat[:, 1] - middle[1])
     shown = surface.triangles
     depth = flat[shown[:, :3], 2].mean(axis=1)
-    colours = colours_of(bending)[shown].mean(axis=1)
+    colours = compute_node_colours(bending)[shown].mean(axis=1)
     lamp = np.array([0.35, -0.25, -0.9 if view.is_from_below else 0.9])
     light = 1.0 - SHADED * (1.0 - np.clip(surface.normals @ lamp, 0.0, 1.0))
     group = scene.group("bent")
     for number in np.flatnonzero(view.is_seen)[np.argsort(depth[view.is_seen])].tolist():
-        fill = as_hex(colours[number] * light[number])
+        fill = to_hex(colours[number] * light[number])
         points = [(float(x[node]), float(y[node])) for node in shown[number, :3]]
         group.add_polygon(points, fill, fill, 0.4)
     draw_mark(scene, (float(x[mark]), float(y[mark])), is_shown)
@@ -179,7 +181,7 @@ def draw_axes(scene: Scene, at: tuple[float, float], view: BentView) -> None:
 
 
 def draw_mark(scene: Scene, at: tuple[float, float], is_shown: bool) -> None:
-    """A ring around the largest movement, dashed where that is hidden."""
+    """Draw a ring around the page point of the largest movement."""
     dashes = {} if is_shown else {"stroke_dasharray": "3 2"}
     scene.add_circle(at, 6.0, stroke="#ffffff", width=3.5)
     scene.add_circle(at, 6.0, stroke="#d50000", width=1.8, **dashes)
@@ -188,10 +190,10 @@ def draw_mark(scene: Scene, at: tuple[float, float], is_shown: bool) -> None:
 def draw_scale(
     scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, times: float, words: str
 ) -> None:
-    """The colours with what they mean, and how many times as far as it is the part is drawn bent."""
+    """Draw the colour scale with its movements, and the factor ``times`` of exaggeration."""
     width, pieces = min(200.0, 0.45 * box.width), 50
     for k in range(pieces):
-        fill = as_hex(colours_at(np.array([(k + 0.5) / pieces]))[0])
+        fill = to_hex(interpolate_colours(np.array([(k + 0.5) / pieces]))[0])
         scene.add_rectangle(
             Box(box.x0 + k * width / pieces, box.y0, box.x0 + (k + 1) * width / pieces + 0.3, box.y0 + 8),
             fill,
@@ -211,7 +213,7 @@ def draw_scale(
 def draw_bent_page(
     scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, words: Sequence[str]
 ) -> None:
-    """Fill a page of a setup sheet: what bends in a picture, and sentences above it."""
+    """Fill a page box of a setup sheet: sentences ``words``, and below them the bent part."""
     column = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
     column.write_paragraph("How clamping bends the part", 16, bold=True)
     column.y += 6.0
@@ -223,8 +225,8 @@ def draw_bent_page(
     draw_bent_part(scene, Box(box.x0, column.y + 16.0, box.x1, box.y1 - 10.0), bending, lengths)
 
 
-def picture_of_bending(bending: Bending, title: str, lengths: LengthUnit, words: Sequence[str]) -> str:
-    """A picture by itself, as SVG text, with sentences below it."""
+def draw_bending(bending: Bending, title: str, lengths: LengthUnit, words: Sequence[str]) -> str:
+    """Return a picture of the bent part with sentences below it, as SVG text."""
     width, height = (UNITS_PER_MM * side for side in PICTURE)
     scene = Scene.make_page((width, height), title)
     margin = 20.0

@@ -14,7 +14,7 @@ from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.geometry.segment import Point
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.model.clamps import ShownClamp
-from workhold.model.shown import Shown, ShownCarrier, ShownJaws, Side
+from workhold.model.shown import ShownCarrier, ShownJaws, ShownSetUp, Side
 
 __all__ = [
     "SLIDING",
@@ -40,15 +40,15 @@ STILL, SLIDING = ("#dbe4ee", "#7c8da1"), ("#f1e7d6", "#a8946f")
 CLOSEST_HOLES = 5.0
 
 
-def limit_holes_drawn(view: View, shown: Shown) -> float:
-    """Return the number of holes above which only those near the pegs are drawn; 0 for a lattice too fine for
-    the page.
+def limit_holes_drawn(view: View, shown: ShownSetUp) -> float:
+    """Return the number of holes above which only those near the pegs are drawn: inf,
+    or 0 if holes are too close on the page.
     """
     return 0 if shown.pitch * view.scale < CLOSEST_HOLES else inf
 
 
 def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0) -> None:
-    """Draw a plate; broken sides are zigzags with teeth of ``tooth`` page units."""
+    """Draw a plate; sides where it is cut off are zigzags with teeth of ``tooth`` page units."""
     box = view.map_box(shown.plate)
     corners = [(box.x0, box.y1), (box.x1, box.y1), (box.x1, box.y0), (box.x0, box.y0)]
     sides: list[Side] = ["bottom", "right", "top", "left"]
@@ -65,7 +65,9 @@ def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0
 
 
 def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0, has_ends: bool = False) -> None:
-    """Draw a wall, a bar in mm: hatched below the line that the part lies on, and any ends of it."""
+    """Draw a wall, a bar in mm: hatched, with a bold line at its top where the
+    part lies, and bold ends if it has ends.
+    """
     box = view.map_box(bar)
     scene.add_rectangle(box, FENCE[0])
     high, step = box.height, max(box.height * 0.8, 6.0 * weight)
@@ -95,7 +97,7 @@ def draw_flat_jaws(scene: Scene, jaws: ShownJaws, view: View, weight: float = 1.
 
 
 def draw_jaw(scene: Scene, box: Box, face: str, weight: float = 1.0) -> None:
-    """Draw a jaw in page units, its face at the top, the bottom, the left or the right of it drawn bold."""
+    """Draw a jaw, a page box; ``face`` is the side ("top", "bottom", "left", "right") drawn bold."""
     scene.add_rectangle(box, "#dfe3e8", GREY, 1.0 * weight)
     ends = {
         "top": [(box.x0, box.y0), (box.x1, box.y0)],
@@ -107,7 +109,9 @@ def draw_jaw(scene: Scene, box: Box, face: str, weight: float = 1.0) -> None:
 
 
 def make_zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
-    """Return a break line between two page points along an axis."""
+    """Return the points of a zigzag break line between two page points with the same x or y, both
+    included.
+    """
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = abs(dx) + abs(dy)
     count = max(2, round(length / (2 * tooth)))
@@ -120,18 +124,19 @@ def make_zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
 
 
 def draw_holes(scene: Scene, shown: ShownCarrier, view: View, most: float) -> None:
-    """Draw the holes that show; of more than ``most`` those near the pegs."""
+    """Draw the visible holes of a carrier; if there are more than ``most``, only those near the pegs."""
     radius = max(view.scale * shown.hole_radius, 0.4)
-    for hole in shown.holes(most):
+    for hole in shown.list_holes(most):
         scene.add_circle(view(hole.center), radius, "#ffffff", GREY, min(0.9, 0.3 * radius + 0.1))
 
 
 def choose_labelled(
     names: Sequence[tuple[int, float]], pegs: set[int], spacing: float
 ) -> list[tuple[int, float, bool]]:
-    """Return the columns or rows to label so that labels stand at least ``spacing`` page units apart.
+    """Return (index, page coordinate, has a peg) of the columns or rows to label, sorted by index.
 
-    Those of the pegs come first (their flag is True), then as many of the rest as there is room for, evenly.
+    Those with pegs are chosen first, at least 0.8 ``spacing`` page units apart. Then every 1st, 2nd, 5th,
+    10th ... of the others is added where it is ``spacing`` from all chosen.
 
     Parameters
     ----------
@@ -165,7 +170,10 @@ THINNEST = 7.0
 def draw_block_arrow(
     scene: Scene, middle: Point, direction: Point, size: float = 1.0, weight: float = 1.0
 ) -> None:
-    """Draw an outlined arrow about a page point in a direction of the plan, whose y runs up."""
+    """Draw an outlined arrow centred at a page point; ``direction`` is a vector of the plan, whose y runs up.
+
+    ``size`` is a factor on its length and width, ``weight`` on its line.
+    """
     turn = atan2(direction[1], -direction[0])
     corners = [rotate_vectors(size * x, size * y, turn) for x, y in ARROW]
     scene.add_polygon(
@@ -173,16 +181,18 @@ def draw_block_arrow(
     )
 
 
-def clamp_arrow(clamp: ShownClamp, view: View, weight: float = 1.0) -> tuple[Point, float]:
-    """Return the middle of the arrow behind a clamp on the page, and its size beside that of a plate that slides."""
+def compute_clamp_arrow(clamp: ShownClamp, view: View, weight: float = 1.0) -> tuple[Point, float]:
+    """Return the page point at the middle of the arrow behind a clamp, and
+    its size as a factor on ``LENGTH``.
+    """
     start = max(clamp.carrier.peg_radius * view.scale, THINNEST * weight / 2) + OFF * weight
     length = min(LENGTH * weight, max(SHARE * clamp.pitch * view.scale - start, 0.3 * LENGTH * weight))
-    return view(clamp.behind((start + length / 2) / view.scale)), length / LENGTH
+    return view(clamp.compute_point_behind((start + length / 2) / view.scale)), length / LENGTH
 
 
 def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
-    """Mark where a clamp is drawn, so that labels keep off."""
-    (x, y), size = clamp_arrow(clamp, view)
+    """Mark a clamp's drawing and its arrow for the label placer to avoid."""
+    (x, y), size = compute_clamp_arrow(clamp, view)
     along, across = size * LENGTH / 2, size * WIDTH / 2
     half_x, half_y = (across, along) if clamp.is_upright else (along, across)
     placer.avoid_box(Box(x - half_x, y - half_y, x + half_x, y + half_y))
@@ -190,7 +200,9 @@ def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
 
 
 def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View, weight: float) -> None:
-    """Draw a clamp: its body with the bolt, or the line of holes of its tip where the hole is not known."""
+    """Draw a clamp: its body with the bolt, or if it is in no known hole, the
+    dashed line of holes on which its tip lies.
+    """
     group = scene.group("clamp")
     tip = view((clamp.tip.x, clamp.tip.y))
     if clamp.hole is None:
@@ -208,12 +220,13 @@ def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View,
 
 
 def draw_push(scene: Scene, clamp: ShownClamp, view: View, weight: float) -> None:
-    """Draw the arrow of a clamp's push behind it; over the part, as it may stand in a hole of the part."""
-    middle, size = clamp_arrow(clamp, view, weight)
+    """Draw the arrow that shows a clamp's push, behind the clamp and above everything drawn so far."""
+    middle, size = compute_clamp_arrow(clamp, view, weight)
     draw_block_arrow(scene.group("clamp-push"), middle, clamp.clamping, size, weight)
 
 
 def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> None:
+    """Draw a hexagon bolt of a radius in page units."""
     scene.add_circle(at, radius, BOLT, BLACK, 1.1 * weight, **{"class": "bolt"})
     corners = [
         (at[0] + 0.55 * radius * cos(k * pi / 3), at[1] + 0.55 * radius * sin(k * pi / 3)) for k in range(6)
@@ -222,7 +235,7 @@ def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> No
 
 
 def draw_sign(scene: Scene, at: Point) -> None:
-    """Draw the sign of a clamp for a legend about a page point."""
+    """Draw the legend's clamp sign centred at a page point."""
     fill, edge = SLIDING
     ends = [(at[0] + 9, at[1]), (at[0] - 9, at[1])]
     scene.add_line(ends, edge, 14, stroke_linecap="round")

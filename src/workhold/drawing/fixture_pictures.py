@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, draw_bench, draw_inset, make_bench
+from workhold.drawing.annotation import draw_scale_bar
+from workhold.drawing.bench import BenchDrawing, draw_bench, draw_inset, make_bench
 from workhold.drawing.carriers import limit_holes_drawn
 from workhold.drawing.hold_blocks import draw_hold_panel
 from workhold.drawing.panel import (
@@ -33,7 +33,7 @@ from workhold.drawing.scene import (
 )
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.identity import Entries
+from workhold.listing.identity import ShownEntries
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
 from workhold.model.result import Result
@@ -58,7 +58,9 @@ HIGHEST_INSET = 320.0
 
 
 def place_drawing_on_page(page: tuple[float, float], extent: Box) -> tuple[Box, View]:
-    """Return the box beside the panel of a page, and the largest view of an extent (mm) with its lettering in it."""
+    """Return the page box of the drawing beside the panel, and the largest view of an
+    extent (mm) that leaves room for words.
+    """
     box = Box(EDGE, EDGE, page[0] - EDGE - PANEL - GUTTER, page[1] - EDGE)
     inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
     return box, View.fit_box(extent, inner)
@@ -73,7 +75,7 @@ def draw_fixture(
     unit: Unit = MILLIMETRE,
     path: PlannedPath | None = None,
 ) -> str:
-    """Draw a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
+    """Return the drawing of a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
     attribute ``data-model-to-page``, written as an SVG matrix.
@@ -97,7 +99,7 @@ def draw_fixture(
         page, drawing, view = PORTRAIT, upright, upright_view
     scene = Scene.make_page(page, f"{workpiece.name}: {title or 'Fixture'}")
     draw_plan(scene, bench, view, workpiece, drawing, lengths, path=path)
-    scale_bar(scene, (drawing.x0, drawing.y1), view.scale, lengths)
+    draw_scale_bar(scene, (drawing.x0, drawing.y1), view.scale, lengths)
     panel = Box(drawing.x1 + GUTTER, drawing.y0, page[0] - EDGE, drawing.y1)
     draw_panel(scene, panel, bench, view, workpiece, title, lengths, path)
     return scene.to_svg()
@@ -106,14 +108,16 @@ def draw_fixture(
 def draw_panel(
     scene: Scene,
     panel: Box,
-    bench: Bench,
+    bench: BenchDrawing,
     view: View,
     workpiece: Workpiece,
     title: str | None,
     lengths: LengthUnit,
     path: PlannedPath | None,
 ) -> None:
-    """Write the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
+    """Write the panel of words, with the part as drawn at its foot; ``view``
+    is that of the drawing beside it.
+    """
     group, fixture = scene.group("panel"), bench.fixture
     group.add_line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
     column = TextColumn(group, panel.x0, panel.y0, panel.width)
@@ -146,7 +150,7 @@ ALONE, RIM = (320.0, 240.0), 6.0
 
 
 def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
-    """Draw one fixture as a small picture without any words, to stand beside a text.
+    """Return one fixture as a small picture without words, to stand beside a text.
 
     Returns
     -------
@@ -155,7 +159,7 @@ def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
     """
     bench = make_bench(fixture, workpiece, toolkit)
     scene = Scene.make_page(ALONE, workpiece.name)
-    view = View.fit_box(bench.extent, Box(0.0, 0.0, *ALONE).grown(-RIM))
+    view = View.fit_box(bench.extent, Box(0.0, 0.0, *ALONE).grow(-RIM))
     draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
     return scene.to_svg()
 
@@ -168,10 +172,14 @@ def draw_thumbnails(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw up to twelve fixtures on an A4 sheet to one scale, with type, closure margin and opening.
+    """Return up to twelve fixtures on an A4 sheet to one scale, as SVG text.
 
-    Each has a title, such as its rank. Returns SVG text. Refuses no fixture, more than twelve, or another
-    number of titles.
+    Each has its title (such as its rank), type, a figure and its openings.
+
+    Raises
+    ------
+    InputError
+        For no fixture, more than twelve, or another number of titles.
     """
     count = len(fixtures)
     if not 1 <= count <= MOST_THUMBNAILS:
@@ -187,12 +195,14 @@ def draw_thumbnails(
     cells = arrange_cells([bench.extent for bench in benches])
     for bench, title, (cell, view) in zip(benches, titles, cells, strict=True):
         draw_cell(scene, bench, title, cell, view, lengths)
-    scale_bar(scene, (EDGE, LANDSCAPE[1] - EDGE + 8), cells[0][1].scale, lengths)
+    draw_scale_bar(scene, (EDGE, LANDSCAPE[1] - EDGE + 8), cells[0][1].scale, lengths)
     return scene.to_svg()
 
 
 def draw_heading(scene: Scene, name: str, words: str) -> None:
-    """Write what a page of small pictures is of at its upper left, and words at the right."""
+    """Write the name of what a page of small pictures shows at its upper left, and words at its upper
+    right.
+    """
     width = LANDSCAPE[0]
     name = shorten_text(name, 24, width - 2 * EDGE - measure_text(words, 14) - 20, bold=True)
     scene.add_text((EDGE, EDGE + 10), name, 24, bold=True)
@@ -200,7 +210,9 @@ def draw_heading(scene: Scene, name: str, words: str) -> None:
 
 
 def arrange_cells(extents: Sequence[Box]) -> list[tuple[Box, View]]:
-    """Return a cell for each of some extents (mm), and the view of it there above a caption, all to one scale."""
+    """Return a page cell for each extent (mm), and a view of the extent in it
+    above its caption, all to one scale.
+    """
     cells = make_grid(len(extents))
     rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
     scale = min(View.fit_box(extent, room).scale for extent, room in zip(extents, rooms, strict=True))
@@ -208,9 +220,10 @@ def arrange_cells(extents: Sequence[Box]) -> list[tuple[Box, View]]:
     return list(zip(cells, views, strict=True))
 
 
-def draw_best_thumbnails(result: Result, shown: Entries, unit: Unit = MILLIMETRE) -> str:
-    """Return the thumbnails of the first twelve entries of a result as SVG text, with ranks and numbers of
-    near duplicates.
+def draw_best_thumbnails(result: Result, shown: ShownEntries, unit: Unit = MILLIMETRE) -> str:
+    """Return the thumbnails of the first twelve shown entries of a result as SVG text.
+
+    Their titles are the ranks and the numbers of near duplicates.
 
     Raises
     ------
@@ -227,7 +240,10 @@ def draw_best_thumbnails(result: Result, shown: Entries, unit: Unit = MILLIMETRE
 
 
 def make_grid(count: int) -> list[Box]:
-    """Return the equal cells for a number of thumbnails, row by row: at most four across and three down."""
+    """Return page cells of equal size for ``count`` thumbnails (at most 12), row by row.
+
+    There are at most four across and three down.
+    """
     across = next(columns for columns, most in ((1, 1), (2, 4), (3, 6), (4, 12)) if count <= most)
     down = -(-count // across)
     width = (LANDSCAPE[0] - 2 * EDGE - (across - 1) * GAP) / across
@@ -240,7 +256,9 @@ def make_grid(count: int) -> list[Box]:
 
 
 def caption_hold(fixture: Fixture, lengths: LengthUnit) -> str:
-    """What the small picture of a part held by friction says of it: the force it asks for, or its grip."""
+    """Return the caption of a part held by friction: the clamping force
+    needed, "unfit", "a seat", or the grip.
+    """
     hold = fixture.hold
     assert hold is not None
     if hold.clamp_needed is not None:
@@ -250,7 +268,10 @@ def caption_hold(fixture: Fixture, lengths: LengthUnit) -> str:
     return f"grip {lengths.format_short(hold.grip, 4)}"
 
 
-def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
+def draw_cell(
+    scene: Scene, bench: BenchDrawing, title: str, cell: Box, view: View, lengths: LengthUnit
+) -> None:
+    """Draw one thumbnail with its caption into a page cell."""
     group = scene.group("thumbnail")
     group.add_rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)

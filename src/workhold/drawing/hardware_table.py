@@ -7,7 +7,14 @@ from collections import Counter
 from attrs import frozen
 
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, find_usual_dowel, write_heading
+from workhold.drawing.sheet_writing import (
+    BODY,
+    NOTE,
+    SetupSheet,
+    SheetHeights,
+    find_usual_dowel,
+    write_heading,
+)
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel_lengths import find_shortest_dowel
@@ -20,7 +27,10 @@ OF_TIP = "diameter of the tip"
 SHORTER = 2.0
 
 
-def list_sheet_hardware(sheet: Sheet) -> list[HardwareItem]:
+def list_sheet_hardware(sheet: SetupSheet) -> list[HardwareItem]:
+    """Return the hardware of a sheet's set-up; lengths of pegs are None where
+    only assumed heights would give them.
+    """
     chosen, heights, details = sheet.details.supports, sheet.heights, sheet.details
     length = details.peg_length if heights is None else heights.peg_length
     # Where the pegs' height was assumed, so would be the length, of which nothing then is known.
@@ -34,8 +44,8 @@ def list_sheet_hardware(sheet: Sheet) -> list[HardwareItem]:
     return list_hardware(sheet.fixture, sheet.toolkit, length, pads, top_tip)
 
 
-def write_hardware(column: TextColumn, sheet: Sheet) -> None:
-    """Write what to take from the drawer as a table, and how the lengths come about."""
+def write_hardware(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the table of hardware to take from the drawer, and notes on how peg lengths add up."""
     lengths, heights, details, items = sheet.lengths, sheet.heights, sheet.details, list_sheet_hardware(sheet)
     write_heading(column, "To take from the drawer")
     rows = [
@@ -80,19 +90,23 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
         )
 
 
-def describe_length(item: HardwareItem, sheet: Sheet) -> str:
-    """Return how long a thing is; for pegs of unknown length, the dowel that would do."""
+def describe_length(item: HardwareItem, sheet: SetupSheet) -> str:
+    """Return the length of an item in the sheet's unit; for pegs of unknown
+    length the usual dowel's name, else "–".
+    """
     if item.length is not None:
-        return sheet.lengths.number(item.length)
+        return sheet.lengths.format_number(item.length)
     heights = sheet.heights
     usual = find_usual_dowel(sheet, heights) if item.of_pegs and heights is not None else None
     return "–" if usual is None else usual.name
 
 
-def find_highest_press(sheet: Sheet, heights: SheetHeights) -> float | None:
-    """Return the height in mm above which no peg presses, where pegs are as high as the part and need not be.
+def find_highest_press(sheet: SetupSheet, heights: SheetHeights) -> float | None:
+    """Return the height in mm above which no peg presses, where pegs as high as
+    the part could be shorter; else None.
 
-    Shorter pegs press on all that they did, and stand in the way of less.
+    Returns None also where it would shorten them by less than ``SHORTER``. Shorter pegs press on all that
+    they did, and stand in the way of less.
     """
     solid, carriers = sheet.workpiece.solid, {one.name: one for one in sheet.toolkit.carriers}
     if solid is None or heights.peg_top < solid.height or any(one.heights for one in carriers.values()):
@@ -113,8 +127,8 @@ class HardwareItem:
     ----------
     count : how many.
     name : what they are.
-    diameter : in mm; None of what is not round.
-    length : of pegs, height of supports, in mm; None where nobody knows or where there is none.
+    diameter : in mm; None if not round.
+    length : of pegs, or height of supports, in mm; None where it is unknown or there is none.
     note : what else to know, in a few words.
     of_pegs : whether they stand in holes of a plate, as dowels do.
     """
@@ -134,7 +148,7 @@ def list_hardware(
     supports: tuple[float, float | None] | None = None,
     top_tip: float | None = None,
 ) -> list[HardwareItem]:
-    """Return what a set-up takes, in the order in which it is put together.
+    """Return the hardware items of a set-up, in the order in which it is put together.
 
     Parameters
     ----------
@@ -175,4 +189,5 @@ def list_hardware(
 
 
 def format_count(noun: str, count: int) -> str:
+    """Return the noun, with a plural s unless the count is 1."""
     return noun if count == 1 else f"{noun}s"

@@ -7,17 +7,17 @@ from math import inf
 from workhold.drawing.jaw_side import draw_jaw_side
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import GREY, LengthUnit, format_degrees
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, write_fact_or_field, write_heading
-from workhold.drawing.strap_blocks import draw_strap_panel, strap_writers
+from workhold.drawing.sheet_writing import BODY, NOTE, SetupSheet, Writer, write_fact_or_field, write_heading
+from workhold.drawing.strap_blocks import draw_strap_panel, list_strap_writers
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.hold_words import (
     describe_coefficients,
     describe_touched_faces,
     describe_work_stop,
-    force_words,
-    hold_reasons,
-    set_force,
+    format_set_force,
+    list_hold_reasons,
+    round_force_up,
     write_setup_sentences,
     write_warnings,
 )
@@ -25,9 +25,9 @@ from workhold.model.jaw_hold import JawHold
 from workhold.model.query import Query
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
-from workhold.statics.jaw_program import asked_words
+from workhold.statics.jaw_program import describe_asked_force
 
-__all__ = ["draw_hold_panel", "hold_writers"]
+__all__ = ["draw_hold_panel", "list_hold_blocks"]
 
 # Loads beyond this are left to the command line; the hardest are shown.
 MOST_LOADS = 6
@@ -36,7 +36,9 @@ MOST_LOADS = 6
 def draw_hold_panel(
     column: TextColumn, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, lengths: LengthUnit
 ) -> None:
-    """Write what to set and what follows, for a picture, with a view from the end of the jaws."""
+    """Write the settings and figures of a part held by friction into a column,
+    with a view from the end of the jaws.
+    """
     if isinstance(fixture.hold, StrappedHold):
         draw_strap_panel(column, fixture, lengths)
         return
@@ -63,7 +65,7 @@ def draw_hold_panel(
 
 
 def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
-    """Write the figures that are known, those of forces first."""
+    """Write the known figures of a hold by flat jaws, those of forces first."""
     hold, unit = fixture.hold, lengths.unit
     assert isinstance(hold, JawHold)
     if hold.clamp_needed is not None:
@@ -86,31 +88,33 @@ def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> 
 
 
 def format_pressure(pressure: float, lengths: LengthUnit) -> str:
-    """Return a pressure in MPa, small ones with a decimal."""
+    """Return a pressure given in MPa as words in the unit, with a decimal below 20 MPa."""
     unit = lengths.unit
     return f"{pressure:.1f} MPa" if unit.pressure == "MPa" and pressure < 20 else unit.format_stress(pressure)
 
 
 def find_query(fixture: Fixture) -> Query | None:
-    """Return the query that a fixture is listed for."""
+    """Return the query of the result that lists a fixture; None if it is in no result."""
     return None if fixture.listed is None else fixture.listed.result.query
 
 
-def hold_writers(sheet: Sheet) -> tuple[list[Writer], list[Writer]]:
-    """The blocks that a sheet of flat jaws, or of straps, needs beside the plan, and the others."""
+def list_hold_blocks(sheet: SetupSheet) -> tuple[list[Writer], list[Writer]]:
+    """Return the blocks that a sheet of flat jaws or straps needs beside the plan, and its other blocks."""
     if isinstance(sheet.fixture.hold, StrappedHold):
-        return strap_writers()
+        return list_strap_writers()
     needed: list[Writer] = [write_setting, write_side, write_force]
     return needed, [write_hold_steps, write_hold_loads, write_hold_quality]
 
 
-def find_sheet_query(sheet: Sheet) -> Query:
+def find_sheet_query(sheet: SetupSheet) -> Query:
+    """Return the query of the result that lists the sheet's fixture, which must be in one."""
     query = find_query(sheet.fixture)
     assert query is not None
     return query
 
 
-def write_setting(column: TextColumn, sheet: Sheet) -> None:
+def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of what to set: parallels, opening, faces, work stop and place along the jaws."""
     hold, jaws, lengths = sheet.fixture.hold, sheet.toolkit.flat_jaws, sheet.lengths
     assert isinstance(hold, JawHold) and jaws is not None
     write_heading(column, "Set up")
@@ -135,7 +139,8 @@ def write_setting(column: TextColumn, sheet: Sheet) -> None:
     column.write_paragraph(f"From the left end of jaws {lengths.format_short(jaws.width)} wide.", NOTE)
 
 
-def write_side(column: TextColumn, sheet: Sheet) -> None:
+def write_side(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block with the view from the end of the vise; nothing where the part's height is unknown."""
     query, jaws = find_sheet_query(sheet), sheet.toolkit.flat_jaws
     if query.part_height is None or jaws is None:
         return
@@ -149,7 +154,8 @@ def write_side(column: TextColumn, sheet: Sheet) -> None:
         )
 
 
-def write_force(column: TextColumn, sheet: Sheet) -> None:
+def write_force(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the jaw force: needed, torque on the screw, reserve and pressure."""
     hold, unit, jaws = sheet.fixture.hold, sheet.lengths.unit, sheet.toolkit.flat_jaws
     assert isinstance(hold, JawHold) and jaws is not None
     write_heading(column, "Jaw force")
@@ -159,8 +165,8 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
             column.write_paragraph("No jaw force holds all that acts in this set-up.", BODY, bold=True)
         write_fact_or_field(column, "close with", None)
         return
-    column.write_line(f"{force_words(needed, unit)} or more", 22, bold=True, gap=0.4)
-    torque = jaws.compute_torque(set_force(needed))
+    column.write_line(f"{format_set_force(needed, unit)} or more", 22, bold=True, gap=0.4)
+    torque = jaws.compute_torque(round_force_up(needed))
     if torque is not None:
         column.write_fact("on the screw, about", unit.format_moment(torque * 1000.0), bold=True)
         column.write_paragraph(
@@ -175,11 +181,12 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
         column.write_fact("largest pressure, at least", format_pressure(hold.max_pressure, sheet.lengths))
     query = find_sheet_query(sheet)
     if hold.program_need is not None and query.program is not None:
-        column.write_paragraph(asked_words(hold.program_need, query.program, unit), NOTE)
+        column.write_paragraph(describe_asked_force(hold.program_need, query.program, unit), NOTE)
     column.write_paragraph(describe_coefficients(query), NOTE)
 
 
-def write_hold_steps(column: TextColumn, sheet: Sheet) -> None:
+def write_hold_steps(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the numbered steps of setting up."""
     write_heading(column, "Setting up")
     steps = list(write_setup_sentences(sheet.fixture, find_sheet_query(sheet), sheet.lengths.unit))
     steps.insert(0, "Clean jaws, parallels and part; break the edges that lie on them")
@@ -189,7 +196,8 @@ def write_hold_steps(column: TextColumn, sheet: Sheet) -> None:
         column.write_item(f"{number}.", f"{step}.", BODY)
 
 
-def write_hold_loads(column: TextColumn, sheet: Sheet) -> None:
+def write_hold_loads(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the loads with the jaw force that each needs, the hardest first, at most ``MOST_LOADS``."""
     query, hold, unit = find_sheet_query(sheet), sheet.fixture.hold, sheet.lengths.unit
     assert isinstance(hold, JawHold)
     if not query.loads:
@@ -209,11 +217,12 @@ def write_hold_loads(column: TextColumn, sheet: Sheet) -> None:
         column.write_paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)
 
 
-def write_hold_quality(column: TextColumn, sheet: Sheet) -> None:
+def write_hold_quality(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block that says why this fixture was chosen, and its figures."""
     write_heading(column, "Why this one")
     if sheet.details.why_first:
         column.write_paragraph(sheet.details.why_first, NOTE)
     else:
-        words = "; ".join(hold_reasons(sheet.fixture, sheet.lengths.unit))
+        words = "; ".join(list_hold_reasons(sheet.fixture, sheet.lengths.unit))
         column.write_paragraph(f"{words[:1].upper()}{words[1:]}.", NOTE)
     write_figures(column, sheet.fixture, sheet.lengths)

@@ -26,9 +26,10 @@ JAW_SHARE, PARALLEL_SHARE, WIDEST_PARALLEL = 0.28, 0.2, 8.0
 def draw_jaw_side(
     column: TextColumn, fixture: Fixture, jaws: JawPair, height: float | None, lengths: LengthUnit
 ) -> None:
-    """Draw the view from the left end of the jaws into a column, the fixed jaw at the left.
+    """Draw the view from the left end of the jaws into a text column, the fixed
+    jaw at the left; move the column on.
 
-    ``height`` is that of the part in mm; nothing is drawn where nobody knows it.
+    ``height`` is the part's in mm; nothing is drawn where it is None, or the part is not held by flat jaws.
     """
     hold = fixture.hold
     if not isinstance(hold, JawHold) or height is None:
@@ -74,7 +75,11 @@ def draw_bodies(
     bed: float,
     low: float,
 ) -> None:
-    """Draw the bed, both jaws and the parallels."""
+    """Draw the bed, both jaws and the parallels; all lengths in mm.
+
+    ``top`` is the height of the jaws, ``thick`` their drawn thickness, ``bed`` that of the bed, ``low`` the
+    bed's height.
+    """
     scene.add_rectangle(view.map_box(Box(-thick, low - bed, opening + thick, low)), "#dfe3e8", GREY, 1.0)
     draw_jaw(scene, view.map_box(Box(-thick, low, 0.0, top)), "right")
     draw_jaw(scene, view.map_box(Box(opening, low, opening + thick, top)), "left")
@@ -85,7 +90,7 @@ def draw_bodies(
 
 
 def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) -> None:
-    """Draw the part and the heights at which the jaws touch it."""
+    """Draw the part from the side, and the heights at which the jaws touch it."""
     hold = fixture.hold
     assert isinstance(hold, JawHold)
     scene.add_rectangle(view.map_box(Box(0.0, 0.0, hold.opening, height)), PART_FILL, BLACK, 1.6)
@@ -97,7 +102,7 @@ def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) ->
 def draw_heights(
     scene: Scene, view: View, fixture: Fixture, top: float, height: float, lengths: LengthUnit
 ) -> None:
-    """Dimension the grip, what stands above the jaws, and the parallels, at the right."""
+    """Draw dimensions at the right: what stands above the jaws, the grip, and the parallels."""
     hold = fixture.hold
     assert isinstance(hold, JawHold)
     edge = view((hold.opening * 1.28, 0.0))[0]

@@ -25,7 +25,7 @@ from workhold.fixels.carrier import Carrier, Measure
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, Arrangement, ContactKind
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.clamps import order_words
+from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.setup import list_length_settings, name_contacts
 from workhold.model.workpiece import Workpiece
@@ -45,7 +45,7 @@ __all__ = [
     "describe_fixture",
     "describe_holes",
     "describe_move",
-    "offset_words",
+    "describe_row_offset",
     "name_pegs",
     "format_count",
 ]
@@ -60,12 +60,12 @@ NUMBERS = ("no", "one", "two", "three", "four", "five")
 
 
 class TextColumn:
-    """Writes line after line down a page.
+    """A column of text on a page, written line by line from the top.
 
     Parameters
     ----------
     scene : what to write on.
-    x, y : upper left corner, page units.
+    x, y : upper left corner, page units; ``y`` moves down with every line.
     width : page units.
     """
 
@@ -75,7 +75,7 @@ class TextColumn:
     def write_line(
         self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55
     ) -> None:
-        """Write one line, shortened to fit, and leave ``gap`` ems below it."""
+        """Write one line, shortened to fit, and leave ``gap`` times ``size`` below it."""
         self.y += 0.75 * size
         content = shorten_text(content, size, self.width, bold)
         self.scene.add_text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
@@ -84,7 +84,7 @@ class TextColumn:
     def write_paragraph(
         self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0
     ) -> None:
-        """Write as many lines as it takes, ``indent`` page units further in."""
+        """Write a text wrapped to the width, ``indent`` page units further in."""
         for line in wrap_text(content, size, self.width - indent, bold):
             self.y += 0.75 * size
             self.scene.add_text((self.x + indent, self.y), line, size, bold=bold, fill=fill, middle=False)
@@ -97,7 +97,7 @@ class TextColumn:
         self.y += 2
 
     def write_fact(self, name: str, value: str, size: float = 14.0, bold: bool = False) -> None:
-        """Write a name at the left and its value at the right of one line, in type that fits."""
+        """Write a name at the left and its value at the right of one line; a long value gets smaller type."""
         self.y += 0.75 * size
         self.scene.add_text((self.x, self.y), name, FACT_NAME, fill=GREY, middle=False)
         room = self.width - measure_text(name, FACT_NAME) - FACT_GAP
@@ -106,12 +106,15 @@ class TextColumn:
         self.y += 0.62 * size
 
     def draw_rule(self, width: float = 1.0) -> None:
+        """Draw a horizontal line across the column, ``width`` page units thick."""
         self.y += 4
         self.scene.add_line([(self.x, self.y), (self.x + self.width, self.y)], BLACK, width)
         self.y += 9
 
     def write_row(self, cells: Sequence[str], ends: Sequence[float], size: float, bold: bool = False) -> None:
-        """Write a row of a table: the first cell at the left, the others ending at shares of the width."""
+        """Write a table row: the first cell at the left, the others right-aligned at
+        ``ends``, shares of the column's width.
+        """
         self.y += 0.75 * size
         self.scene.add_text((self.x, self.y), cells[0], size, bold=True, middle=False)
         for cell, end in zip(cells[1:], ends, strict=True):
@@ -121,7 +124,9 @@ class TextColumn:
         self.y += 0.7 * size
 
     def write_table(self, header: Sequence[str], rows: Sequence[Sequence[str]], size: float) -> None:
-        """Write a table in type that fits the width, its first column flush left, the others flush right."""
+        """Write a table, its first column left-aligned, the others right-aligned; type
+        shrinks until it fits, to ``SMALLEST``.
+        """
         while True:
             widths = [
                 max(
@@ -144,13 +149,13 @@ class TextColumn:
 
 
 def format_closure_margin(fixture: Fixture) -> str:
-    """Return the closure margin in words for a picture, or a dash when it is not known."""
+    """Return the closure margin of a fixture as a number for a picture, "–" where it is not known."""
     margin = fixture.quality.get("closure_margin")
     return "–" if margin is None else format_value(margin)
 
 
 def format_value(value: float) -> str:
-    """Return a figure without a unit: with four decimals, or as a power of ten where these are too few.
+    """Return a figure without a unit: with four decimals, or below 0.001 as a power of ten.
 
     >>> format_value(0.25), format_value(0.00012)
     ('0.2500', '1.20e−04')
@@ -159,7 +164,7 @@ def format_value(value: float) -> str:
 
 
 def describe_arrangement(arrangement: Arrangement, toolkit: Toolkit) -> str:
-    """Return a toolkit's arrangement of pegs in words.
+    """Return a toolkit's arrangement of pegs and clamps in words.
 
     >>> from workhold import Plate, Vise
     >>> vise, plate = Vise(pitch=10, columns=2, peg_radius=3), Plate(pitch=20, peg_radius=5)
@@ -178,7 +183,7 @@ def describe_arrangement(arrangement: Arrangement, toolkit: Toolkit) -> str:
         return "Flat jaws: one side flush on the fixed jaw, held by friction"
     if clamps:
         pushing = f"the {noun} pushes" if clamps == 1 else f"{format_count(clamps, noun, NUMBERS)} push"
-        return f"{toolkit.setup_words.located_by}, {pushing} {arrangement.towards}"
+        return f"{toolkit.setup_words.located_by}, {pushing} {arrangement.direction_words}"
     stands = zip(arrangement.pegs, toolkit.carriers, strict=True)
     (count, first), *others = [(count, carrier) for count, carrier in stands if carrier.has_lattice]
     pegs = format_count(count, first.peg, NUMBERS)
@@ -191,11 +196,12 @@ def describe_arrangement(arrangement: Arrangement, toolkit: Toolkit) -> str:
 
 
 def describe_fixture(fixture: Fixture, toolkit: Toolkit) -> str:
+    """Return the arrangement of a fixture's pegs and clamps in words."""
     return describe_arrangement(toolkit.find_arrangement(fixture.type, fixture.direction), toolkit)
 
 
 def describe_move(move: tuple[int, int]) -> str:
-    """Return the columns and rows, not both 0, by which all of a set-up stands further on, in words.
+    """Return a shift (columns, rows), not both 0, in words.
 
     >>> describe_move((3, -1)), describe_move((0, 2))
     ('3 columns further right and 1 row further down', '2 rows further up')
@@ -207,7 +213,8 @@ def describe_move(move: tuple[int, int]) -> str:
 
 
 def format_count(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
-    """Return a count and its noun, the count in words if there are some for it.
+    """Return a count and its noun with a plural s unless the count is 1;
+    ``numbers`` are words for the counts from 0 on.
 
     >>> format_count(1, "face"), format_count(2, "face")
     ('1 face', '2 faces')
@@ -216,8 +223,10 @@ def format_count(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
     return f"{word} {noun}" if count == 1 else f"{word} {noun}s"
 
 
-def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
-    """Return the offset of the sliding carrier's rows from the first one's, in words; None where they are level."""
+def describe_row_offset(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
+    """Return the offset of the moving carrier's rows from the first plate's rows,
+    in words; None where they are level.
+    """
     offset = toolkit.moving.offset[1] - toolkit.plates[0].offset[1]
     return f"{lengths.format_length(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
 
@@ -225,7 +234,7 @@ def offset_words(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
 def draw_title(
     column: TextColumn, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, title: str | None
 ) -> None:
-    """Write the part's name, the fixture's and its type."""
+    """Write the part's name, the fixture's title and its arrangement."""
     fitting = [size for size in (26, 22, 18) if measure_text(workpiece.name, size, bold=True) <= column.width]
     column.write_line(workpiece.name, fitting[0] if fitting else 18, bold=True, gap=0.5)
     column.write_line(title or "Fixture", 18, gap=0.5)
@@ -234,6 +243,9 @@ def draw_title(
 
 
 def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
+    """Write what to set (lengths, tightening), the part's turn and origin, and the data of plates and
+    pegs.
+    """
     first, settings, several = (
         toolkit.plates[0],
         list_length_settings(fixture, toolkit),
@@ -245,17 +257,18 @@ def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, length
         column.write_line(setting.caption, 13, fill=GREY, gap=0.8)
         column.write_line(lengths.format_length(setting.length), 22 if several else 32, bold=True, gap=0.4)
         if setting.tip is not None:
-            pushing = f", pushes {setting.carrier.towards}" if several else ""
+            pushing = f", pushes {setting.carrier.direction_words}" if several else ""
             column.write_fact(setting.label, f"{setting.place}{pushing}")
     if several:
-        column.write_paragraph(order_words(fixture), 13)
+        column.write_paragraph(describe_tightening_order(fixture), 13)
         column.y += 3
         column.write_fact("Clamp freedom", f"{fixture.quality['clamp_freedom']:.1f}°")
-    elif moving.towards:
-        column.write_fact(f"{moving.noun.capitalize()} pushes", moving.towards)
+    elif moving.direction_words:
+        column.write_fact(f"{moving.noun.capitalize()} pushes", moving.direction_words)
     column.write_fact("Part turned by θ", format_degrees(fixture.pose.written_deg, 3))
     column.write_fact(
-        "Part origin x, y", f"{lengths.number(fixture.pose.x)}, {lengths.format_length(fixture.pose.y)}"
+        "Part origin x, y",
+        f"{lengths.format_number(fixture.pose.x)}, {lengths.format_length(fixture.pose.y)}",
     )
     column.write_fact("Closure margin", format_closure_margin(fixture))
     column.draw_rule()
@@ -269,13 +282,13 @@ def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, length
     column.write_fact(f"{first.peg.capitalize()}s", describe_diameter(first, lengths))
     if toolkit.datum.edge is not None:
         column.write_fact(f"Row 1 from {toolkit.datum.y}", lengths.format_length(toolkit.datum.edge))
-    if offset := offset_words(toolkit, lengths):
+    if offset := describe_row_offset(toolkit, lengths):
         column.write_fact(f"{moving.letter} rows over {first.letter} rows", offset)
     column.draw_rule()
 
 
 def describe_holes(carrier: Carrier) -> str:
-    """Return how many holes a plate has.
+    """Return the number of a plate's holes in words.
 
     >>> from workhold import Plate
     >>> [describe_holes(Plate(pitch=20, peg_radius=5, columns=c, rows=6).carriers[0]) for c in (8, None)]
@@ -288,18 +301,19 @@ def describe_holes(carrier: Carrier) -> str:
 
 
 def describe_diameter(carrier: Carrier, lengths: LengthUnit) -> str:
+    """Return the peg diameter of a carrier in words."""
     return (
         f"Ø {lengths.format_short(2 * carrier.peg_radius)}" if carrier.peg_radius else "points, no diameter"
     )
 
 
 def draw_peg_table(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Write the pegs: hole, face, place and force."""
+    """Write the table of the pegs: hole, face, place and force."""
     first, rows = toolkit.plates[0], []
     for peg, name in zip(fixture.pegs, name_contacts(fixture, toolkit), strict=True):
         carrier, force = toolkit.find_carrier(peg.carrier), f"{peg.force:z.3f}".replace("-", "−")
         named = name.removeprefix(f"{carrier.noun} ") if carrier.measure == "tip" else name
-        rows.append([named, peg.touched, lengths.number(peg.x), lengths.number(peg.y), force])
+        rows.append([named, peg.touched, lengths.format_number(peg.x), lengths.format_number(peg.y), force])
     where = "Peg in" if first.letter else "In hole"
     column.write_table([where, "face", f"x {lengths.sign}", f"y {lengths.sign}", "force"], rows, TABLE)
     column.y += 2
@@ -323,35 +337,39 @@ WORDS = 11.5
 
 
 def draw_peg_sign(scene: Scene, at: Point) -> None:
+    """Draw a peg for the legend."""
     scene.add_circle(at, 7, PEG_FILL, BLACK, 1.2)
 
 
 def draw_hole_sign(scene: Scene, at: Point) -> None:
+    """Draw an empty hole for the legend."""
     scene.add_circle(at, 7, "#ffffff", GREY, 0.9)
 
 
 def draw_push_sign(scene: Scene, at: Point) -> None:
-    """Draw the arrow behind a clamp."""
+    """Draw the arrow behind a clamp for the legend."""
     draw_block_arrow(scene, at, (-1.0, 0.0), 0.55)
 
 
 def draw_line_sign(scene: Scene, at: Point) -> None:
-    """Draw the line that the tip of a clamp is on."""
+    """Draw the dashed line of holes of a clamp's tip for the legend."""
     scene.add_line([(at[0] - 15, at[1]), (at[0] + 16, at[1])], BLACK, 1.0, stroke_dasharray="7 4")
 
 
 def draw_wall_sign(scene: Scene, at: Point) -> None:
+    """Draw a piece of wall for the legend."""
     draw_wall(scene, Box(at[0] - 15, -at[1] - 6, at[0] + 16, -at[1] + 3), View(1.0, 0.0, 0.0))
 
 
 def draw_force_sign(scene: Scene, at: Point) -> None:
-    """Draw the arrow of a force from its contact."""
+    """Draw a contact with the arrow of its force for the legend."""
     x, y = at
     scene.add_circle((x - 14, y), 2.8, ARROW)
     scene.add_arrow((x - 14, y), (x + 16, y), ARROW, 2.4, 12)
 
 
 def draw_face_sign(scene: Scene, at: Point) -> None:
+    """Draw a touched face for the legend."""
     ends = [(at[0] - 15, at[1]), (at[0] + 16, at[1])]
     scene.add_line(ends, TOUCHED, 8)
     scene.add_line(ends, BLACK, 2.2)
@@ -375,7 +393,7 @@ OF_CONTACTS: Mapping[ContactKind, tuple[tuple[Sign, str], ...]] = {
 def draw_legend(
     column: TextColumn, toolkit: Toolkit, fill: str = GREY, more: Sequence[tuple[Sign, str]] = ()
 ) -> None:
-    """Explain the signs, ``more`` of them last; ``fill`` is the colour of the words."""
+    """Write the legend of the signs, ``more`` (sign, words) last; ``fill`` is the colour of the words."""
     first = toolkit.plates[0]
     named = f"{first.noun}, column, row" if first.letter else "column, row"
     signs: list[tuple[Sign, str]] = [

@@ -13,11 +13,11 @@ from workhold.contact.features import list_contact_features
 from workhold.drawing.annotation import (
     Label,
     LabelPlacer,
-    Place,
+    PlacedLabel,
     draw_dimension,
+    draw_scale_bar,
     join_labels,
     make_label_around,
-    scale_bar,
 )
 from workhold.drawing.bench import (
     ARROW,
@@ -40,8 +40,8 @@ from workhold.drawing.scene import (
     measure_text,
     shorten_text,
 )
-from workhold.geometry.loop import Face, loop_segments
-from workhold.geometry.segment import Arc, Segment, bounding_box
+from workhold.geometry.loop import Face, make_loop_segments
+from workhold.geometry.segment import Arc, Segment, compute_bounding_box
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
@@ -56,7 +56,7 @@ LEADER = "#6b4a00"
 
 
 def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit: Unit = MILLIMETRE) -> str:
-    """Draw the part with numbered faces, overall size and scale, on A4; on A3 or A2 above 80 faces.
+    """Return the part with numbered faces, overall size and scale on A4, as SVG; on A3 or A2 above 80 faces.
 
     Parameters
     ----------
@@ -86,29 +86,32 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
         group = scene.group("contact-features", view)
         for segment in features:
             group.add_path(make_segment_path(segment, view), ARROW, 1.4, stroke_dasharray="7 4")
-    draw_numbers(scene, workpiece, view, view.map_box(bounds).grown(numbers - 6), features)
+    draw_numbers(scene, workpiece, view, view.map_box(bounds).grow(numbers - 6), features)
     draw_overall(scene, bounds, view, numbers, lengths)
-    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
+    draw_scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
     return scene.to_svg()
 
 
 def choose_page_size(faces: int, page: tuple[float, float]) -> tuple[float, float]:
-    """Return an A4 page, or A3 or A2 for parts with so many faces that their numbers need the room."""
+    """Return the size of a page in page units: ``page`` (A4), or A3 or A2 of
+    that shape where many faces need room.
+    """
     larger = 1.0 if faces <= VERY_MANY_FACES else 2**0.5 if faces <= 2 * VERY_MANY_FACES else 2.0
     return round(larger * page[0]), round(larger * page[1])
 
 
 def draw_header(scene: Scene, page: tuple[float, float], name: str, words: str) -> None:
-    """Write the name of what is drawn on a page, and a line of words below it, each shortened to fit."""
+    """Write a name on a page, and a line of words below it, each shortened to fit."""
     group, width = scene.group("header"), page[0] - 2 * EDGE
     group.add_text((EDGE, EDGE + 12), shorten_text(name, 26, width, bold=True), 26, bold=True)
     group.add_text((EDGE, EDGE + 40), shorten_text(words, 14, width), 14, fill=GREY)
 
 
 def describe_part(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
+    """Return the line below the name: numbers of faces and holes, size, and what else to know."""
     faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
     words = [format_count(faces, "face"), format_count(holes, "hole") if holes else "no holes"]
-    words.append(f"{lengths.number(bounds.width)} × {lengths.format_length(bounds.height)}")
+    words.append(f"{lengths.format_number(bounds.width)} × {lengths.format_length(bounds.height)}")
     if peg_radius is not None:
         size = lengths.format_short(2 * peg_radius)
         words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
@@ -118,14 +121,15 @@ def describe_part(workpiece: Workpiece, bounds: Box, peg_radius: float | None, l
 
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
+    """Draw the filled part, with ticks across its outline where segments meet."""
     part = scene.group("part", view)
     d = make_outline_path(workpiece.loop_segments, view)
     part.add_path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
     ticks = scene.group("joints")
     for loop in workpiece.loop_segments:
         for k, segment in enumerate(loop):
-            ax, ay = segment.normal(compute_first_parameter(segment))
-            bx, by = loop[k - 1].normal(-compute_first_parameter(loop[k - 1]))
+            ax, ay = segment.compute_normal(compute_first_parameter(segment))
+            bx, by = loop[k - 1].compute_normal(-compute_first_parameter(loop[k - 1]))
             nx, ny = ax + bx, ay + by
             length = hypot(nx, ny)
             if length < 1e-6:
@@ -136,14 +140,18 @@ def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
 
 
 def compute_first_parameter(segment: Segment) -> float:
-    """Return the parameter at which a segment is entered; it is left at minus that."""
+    """Return the parameter of a segment at its start; the parameter at its end is the negative of it."""
     return -segment.sign * segment.half_sweep if isinstance(segment, Arc) else -segment.half_extent
 
 
 def draw_numbers(
     scene: Scene, workpiece: Workpiece, view: View, bounds: Box, features: Sequence[Segment]
 ) -> None:
-    """Write the numbers of all faces on the side away from the material, each with a leader."""
+    """Write the number of every face on the side away from the material,
+    with a leader; keep off ``features``.
+
+    ``bounds`` is the page box that numbers must stay in.
+    """
     count = len(workpiece.faces)
     size = 15.0 if count <= MANY_FACES else 12.0
     shares = (0.0, 0.3, -0.3, 0.6, -0.6) if count <= VERY_MANY_FACES else (0.0,)
@@ -154,30 +162,33 @@ def draw_numbers(
     placer.avoid_ink(sample_segments(features, view, 3.0), 0.6)
     outer = workpiece.outer_count
     places = placer.place(
-        [number_label(face, view, size, shares, face.number < outer) for face in workpiece.faces]
+        [make_number_label(face, view, size, shares, face.number < outer) for face in workpiece.faces]
     )
     group = scene.group("face-numbers")
     for place in places:
         draw_leader(group, place)
     for face, place in zip(workpiece.faces, places, strict=True):
-        write_number(group, place, face.number, size)
+        draw_number_beside(group, place, face.number, size)
 
 
-def draw_leader(scene: Scene, place: Place) -> None:
+def draw_leader(scene: Scene, place: PlacedLabel) -> None:
+    """Draw the leader of a placed face number, with a dot at the face."""
     scene.add_line(place.compute_leader(), LEADER, 0.9)
     scene.add_circle(place.anchor, 1.7, LEADER)
 
 
-def write_number(scene: Scene, place: Place, number: int, size: float) -> None:
+def draw_number_beside(scene: Scene, place: PlacedLabel, number: int, size: float) -> None:
+    """Write a number into the box of its placed label, with a rounded frame."""
     scene.add_rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
     scene.add_text(place.box.center, str(number), size, "middle", bold=True)
 
 
-def number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
-    """Return the candidates for the number of a face: along its normal, then turned and further off.
+def make_number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
+    """Return the label of a face's number: best along its normal, at greater cost
+    turned, further off or inside the material.
 
-    They begin at shares of the face's half extent. Inside the material is a last resort, meant for holes too
-    small to hold a number.
+    Candidates start at ``shares`` of the face's half extent from its middle. ``outer`` says that the face is
+    on the outer loop; in a hole, places inside the material cost less.
     """
     height = size + 6
     width = max(height, measure_text(str(face.number), size, bold=True) + 10)
@@ -186,8 +197,8 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
     labels = []
     for share in shares:
         parameter = share * face.segment.half_extent
-        nx, ny = face.segment.normal(parameter)
-        anchor = view(face.segment.at(parameter))
+        nx, ny = face.segment.compute_normal(parameter)
+        anchor = view(face.segment.compute_point(parameter))
         extra, inward = 12.0 * abs(share), 90.0 if outer else 25.0
         labels.append(make_label_around(anchor, atan2(-ny, nx), (width, height), distances, turns, extra))
         labels.append(
@@ -199,6 +210,7 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
 
 
 def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
+    """Draw the dimensions of the part's overall width and height, below and at the left."""
     group = scene.group("overall")
     box = view.map_box(bounds)
     y = box.y1 + numbers + 22
@@ -219,7 +231,7 @@ MOST_NUMBERS = 60
 def draw_parts(
     name: str, parts: Sequence[Sequence[NDArray[np.float64]]], chosen: int, *, unit: Unit = MILLIMETRE
 ) -> str:
-    """Draw the parts of a file where they lie, each with its number, on A4.
+    """Return the parts of a file where they lie, each with its number, on A4, as SVG text.
 
     Parameters
     ----------
@@ -231,12 +243,12 @@ def draw_parts(
     str
         SVG text.
     """
-    loops = [[loop_segments(vertices) for vertices in part] for part in parts]
+    loops = [[make_loop_segments(vertices) for vertices in part] for part in parts]
     segments = (segment for part in loops for loop in part for segment in loop)
-    bounds = reduce(Box.union, (Box(*bounding_box(segment)) for segment in segments))
+    bounds = reduce(Box.unite, (Box(*compute_bounding_box(segment)) for segment in segments))
     lengths = LengthUnit.from_typical_length(unit, max(bounds.width, bounds.height))
     page = LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT
-    drawing = Box(EDGE, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER).grown(-30)
+    drawing = Box(EDGE, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER).grow(-30)
     view = View.fit_box(bounds, drawing)
     scene = Scene.make_page(page, f"{name}: parts")
     words = f"{format_count(len(parts), 'part')}, numbered by decreasing area"
@@ -246,7 +258,7 @@ def draw_parts(
         scene.group(f"part-{number}", view).add_path(
             make_outline_path(part, view), BLACK, 1.4, fill, fill_rule="evenodd"
         )
-    placer = LabelPlacer(drawing.grown(28))
+    placer = LabelPlacer(drawing.grow(28))
     for part in loops:
         for loop in part:
             placer.avoid_ink(sample_loop(loop, view, 4.0), 2.0)
@@ -254,11 +266,11 @@ def draw_parts(
     for number, part in enumerate(loops[:MOST_NUMBERS], start=1):
         size = (max(22.0, measure_text(str(number), 15.0, bold=True) + 12), 22.0)
         # A place within the material beside the outline's first segment, or else about there.
-        anchor, turns = view(part[0][0].at(0.0)), [k * pi / 6 for k in range(12)]
+        anchor, turns = view(part[0][0].compute_point(0.0)), [k * pi / 6 for k in range(12)]
         labels.append(make_label_around(anchor, 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
     group = scene.group("part-numbers")
     for number, place in enumerate(placer.place(labels), start=1):
         draw_leader(group, place)
-        write_number(group, place, number, 15.0)
-    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
+        draw_number_beside(group, place, number, 15.0)
+    draw_scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
     return scene.to_svg()

@@ -13,21 +13,21 @@ import numpy as np
 from attrs import astuple, frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, make_label_around
-from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, measure_text, number
+from workhold.drawing.annotation import Label, LabelPlacer, PlacedLabel, make_label_around
+from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, format_number, measure_text
 from workhold.model.fixture import Fixture
-from workhold.model.moves import Moves, along
+from workhold.model.moves import Moves, compute_path_points
 from workhold.model.pose import Pose
 from workhold.model.program import Program
 from workhold.model.program_figures import bound_tip, measure_tools
 from workhold.model.result import Result
-from workhold.statics.program_clearance import Passing, find_nearest_passing
+from workhold.statics.program_clearance import ToolClearance, find_nearest_passing
 
 __all__ = [
     "COLOURS",
     "SHADES",
     "PagePaths",
-    "PathLook",
+    "PathStyle",
     "PlannedPath",
     "draw_paths",
     "find_heights_cut",
@@ -53,12 +53,12 @@ MOST_GROWN = 1.4
 
 @frozen(eq=False)
 class PagePaths:
-    """The moves of a program on a page, those outside a box left out.
+    """The moves of a program on a page.
 
     Parameters
     ----------
     start, end : (M, 2) page points, y down.
-    bulge : (M,) as of the moves, which a page with y down turns over.
+    bulge : (M,) of the moves in the model frame, where y runs up.
     shown : (M,) whether a move is drawn.
     scale : page units per mm.
     """
@@ -73,7 +73,7 @@ class PagePaths:
     def from_moves(
         cls, moves: Moves, view: View, pose: Pose | None = None, box: Box | None = None
     ) -> PagePaths:
-        """Return the moves as a view shows them.
+        """Return the moves as a view shows them, cut off at a page box.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class PagePaths:
         shown = np.ones(len(moves), dtype=bool)
         if box is not None:
             first, last = clip_to_box(ends[0], ends[1], box)
-            middle = along(ends[0], ends[1], -moves.bulge, np.full(len(moves), 0.5))
+            middle = compute_path_points(ends[0], ends[1], -moves.bulge, np.full(len(moves), 0.5))
             is_arc = moves.bulge != 0.0
             arc_inside = np.all([are_in_box(points, box) for points in (*ends, middle)], axis=0)
             shown = np.where(is_arc, arc_inside, first <= last)
@@ -100,9 +100,13 @@ class PagePaths:
         return cls(ends[0], ends[1], moves.bulge, shown, view.scale)
 
     def make_path_data(self, rows: NDArray[np.int64]) -> str:
-        """Return SVG path data of some moves; a move that goes on where the last one ended begins no new line."""
+        """Return SVG path data of the moves numbered ``rows``, "" for none; a move that
+        continues the last one starts no new line.
+        """
         rows = rows[self.shown[rows]]
-        middle = along(self.start[rows], self.end[rows], -self.bulge[rows], np.full(len(rows), 0.5))
+        middle = compute_path_points(
+            self.start[rows], self.end[rows], -self.bulge[rows], np.full(len(rows), 0.5)
+        )
         found: list[str] = []
         last: list[float] | None = None
         written: list[float] = []
@@ -125,7 +129,7 @@ class PagePaths:
             if written != one:
                 found.append(f"L{format_page_point(one)}")
             chord = hypot(other[0] - one[0], other[1] - one[1])
-            radius = number(chord * (1 + bent * bent) / (4 * abs(bent)))
+            radius = format_number(chord * (1 + bent * bent) / (4 * abs(bent)))
             # Half a turn is drawn in two pieces, of which the direction is clear.
             for place in [other] if 4 * np.arctan(abs(bent)) <= 0.9 * pi else [half, other]:
                 found.append(f"A{radius} {radius} 0 0 {0 if bent > 0 else 1} {format_page_point(place)}")
@@ -136,21 +140,21 @@ class PagePaths:
 
 
 def format_page_point(point: Sequence[float]) -> str:
-    """Return the numbers of a page point in path data."""
-    return f"{number(point[0])} {number(point[1])}"
+    """Return a page point as "x y" for path data."""
+    return f"{format_number(point[0])} {format_number(point[1])}"
 
 
 def are_in_box(points: Floats, box: Box) -> NDArray[np.bool_]:
-    """Return whether page points (N, 2) are inside a box."""
+    """Return (N,) whether page points (N, 2) are inside a box or on its rim."""
     x, y = points.T
     inside: NDArray[np.bool_] = (box.x0 <= x) & (x <= box.x1) & (box.y0 <= y) & (y <= box.y1)
     return inside
 
 
 def clip_to_box(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
-    """Return the shares (N,) of straight lines from which and until which they are inside a box.
+    """Return the shares (N,) and (N,) of straight lines (N, 2) at which they enter and leave a box.
 
-    The first is larger where a line is nowhere inside (Y.-D. Liang, B. A. Barsky 1984).
+    The first share is larger than the second where a line is nowhere inside (Y.-D. Liang, B. A. Barsky 1984).
     """
     first, last = np.zeros(len(start)), np.ones(len(start))
     for axis, (low, high) in enumerate(((box.x0, box.x1), (box.y0, box.y1))):
@@ -165,8 +169,8 @@ def clip_to_box(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
 
 
 @frozen
-class PathLook:
-    """How some moves look.
+class PathStyle:
+    """The look of some moves.
 
     Parameters
     ----------
@@ -181,25 +185,28 @@ class PathLook:
     level: int = -1
 
 
-def group_moves_by_look(program: Program) -> Iterator[tuple[PathLook, NDArray[np.int64]]]:
-    """Yield the numbers of moves that look alike, in drawing order: bands, rapids, then cuts from above."""
+def group_moves_by_look(program: Program) -> Iterator[tuple[PathStyle, NDArray[np.int64]]]:
+    """Yield (style, move numbers) in drawing order: bands by tool, rapid moves, then
+    cuts and dots from the highest level.
+    """
     moves, figures = program.moves, measure_tools(program)
     for place, one in enumerate(figures):
-        yield PathLook("band", place, one.tool), np.flatnonzero((moves.tool == one.tool) & moves.cutting)
+        yield PathStyle("band", place, one.tool), np.flatnonzero((moves.tool == one.tool) & moves.cutting)
     flat = (moves.start[:, :2] != moves.end[:, :2]).any(axis=1)
-    yield PathLook("rapid"), np.flatnonzero(~moves.cutting & flat)
+    yield PathStyle("rapid"), np.flatnonzero(~moves.cutting & flat)
     low, high = find_heights_cut(program)
     middle = (moves.start[:, 2] + moves.end[:, 2]) / 2
     shade = np.clip(((middle - low) / max(high - low, 1e-9) * SHADES).astype(int), 0, SHADES - 1)
     for level in range(SHADES - 1, -1, -1):
         for place, one in enumerate(figures):
             own = (moves.tool == one.tool) & moves.cutting & (shade == level)
-            yield PathLook("cut", place, one.tool, level), np.flatnonzero(own & flat)
-            yield PathLook("dot", place, one.tool, level), np.flatnonzero(own & ~flat)
+            yield PathStyle("cut", place, one.tool, level), np.flatnonzero(own & flat)
+            yield PathStyle("dot", place, one.tool, level), np.flatnonzero(own & ~flat)
 
 
 def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float = 1.0) -> None:
-    """Draw bands as wide as the flutes, rapid moves dashed, and the axes at cutting moves, high ones first.
+    """Draw bands as wide as the flutes, rapid moves dashed, and the tool axes
+    of cutting moves, high ones first.
 
     Upright cutting moves are dots.
     """
@@ -219,20 +226,23 @@ def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float =
 def add(
     group: Scene, paths: PagePaths, rows: NDArray[np.int64], colour: str, wide: float, name: str, **more: str
 ) -> None:
+    """Draw some moves as one SVG path of the class ``name``; nothing where none is shown."""
     d = paths.make_path_data(rows)
     if d:
         group.add_path(d, colour, wide, stroke_linecap="round", **{"class": name}, **more)
 
 
 def find_heights_cut(program: Program) -> tuple[float, float]:
-    """Return the least and the greatest height of the tip at cutting moves, in mm."""
+    """Return the least and the greatest height in mm of the tool tip at
+    cutting moves and of the program's Z0.
+    """
     cut = program.moves.cutting
     heights = np.concatenate([program.moves.start[cut, 2], program.moves.end[cut, 2], [program.z_zero]])
     return float(heights.min()), float(heights.max())
 
 
 def shade_colour(colour: str, level: int) -> str:
-    """Return a colour at a level, from 0, the lowest and darkest.
+    """Return a tool's colour "#rrggbb" shaded for a level from 0, the lowest and darkest, to ``SHADES`` - 1.
 
     >>> shade_colour("#808080", 0), shade_colour("#808080", SHADES - 1)
     ('#464646', '#cccccc')
@@ -260,11 +270,13 @@ class PlannedPath:
 
     program: Program
     fixture: Fixture
-    passing: Passing | None
+    passing: ToolClearance | None
     peg_height: float | None = None
 
     def enlarge_extent(self, extent: Box) -> Box:
-        """Return an extent (mm) of the plan with what is cut as well, where that makes it not much larger."""
+        """Return an extent (mm) in the vise frame enlarged to all that is cut, or
+        unchanged where that makes it much larger.
+        """
         program = self.program
         moves, cut = program.moves, program.moves.cutting
         if not cut.any():
@@ -274,20 +286,24 @@ class PlannedPath:
         xs, ys = self.fixture.pose.apply(
             np.array([low[0], high[0], high[0], low[0]]), np.array([low[1], low[1], high[1], high[1]])
         )
-        box = Box(float(xs.min()), float(ys.min()), float(xs.max()), float(ys.max())).grown(around_path)
-        union = extent.union(box)
+        box = Box(float(xs.min()), float(ys.min()), float(xs.max()), float(ys.max())).grow(around_path)
+        union = extent.unite(box)
         small = union.width <= MOST_GROWN * extent.width and union.height <= MOST_GROWN * extent.height
         return union if small else extent
 
-    def place(self) -> tuple[float, float]:
-        """Return the point of the nearest move that is nearest to what it passes, in mm in the vise frame."""
+    def find_nearest_place(self) -> tuple[float, float]:
+        """Return the point of the nearest move that is nearest to the contact
+        it passes, in mm in the vise frame.
+
+        ``passing`` must not be None.
+        """
         assert self.passing is not None
         path, peg = self.passing.path, self.fixture.pegs[self.passing.contact]
         points = np.array([vertex[:2] for vertex in path])
         if len(path) > 1:
             share = np.linspace(0.0, 1.0, 401)
             one, other = (np.tile(points[k], (len(share), 1)) for k in (0, 1))
-            points = along(one, other, np.full(len(share), path[0][2]), share)
+            points = compute_path_points(one, other, np.full(len(share), path[0][2]), share)
         x, y = self.fixture.pose.apply(points[:, 0], points[:, 1])
         # A wall is below all of the part.
         off = y if peg not in self.fixture.placed else np.hypot(x - peg.x, y - peg.y)
@@ -295,7 +311,7 @@ class PlannedPath:
         return float(x[nearest]), float(y[nearest])
 
     def draw(self, scene: Scene, view: View, box: Box) -> None:
-        """Draw the paths as far as they are inside a box of the page, and the nearest move over them."""
+        """Draw the paths inside a page box, and the nearest move above them."""
         pose = self.fixture.pose
         group = scene.group("paths", view)
         draw_paths(group, self.program, PagePaths.from_moves(self.program.moves, view, pose, box), 0.8)
@@ -304,36 +320,41 @@ class PlannedPath:
         path = self.passing.path
         ends = np.array([[*path[0][:2], 0.0], [*path[-1][:2], 0.0]])
         row = (self.passing.line, self.passing.tool, True, ends[0], ends[1], path[0][2], 0.0, 0.0)
-        paths = PagePaths.from_moves(Moves.of_rows([row]), view, pose, box)
+        paths = PagePaths.from_moves(Moves.from_rows([row]), view, pose, box)
         only = np.zeros(1, np.int64)
         wide = 2 * self.passing.radius * view.scale
         add(group, paths, only, NEAREST, wide, "nearest-band", stroke_opacity="0.16")
         add(group, paths, only, NEAREST, 2.6, "nearest")
-        if are_in_box(np.array([view(self.place())]), box)[0]:
-            group.add_circle(view(self.place()), 3.6, "#ffffff", NEAREST, 1.8, **{"class": "nearest-place"})
+        if are_in_box(np.array([view(self.find_nearest_place())]), box)[0]:
+            group.add_circle(
+                view(self.find_nearest_place()), 3.6, "#ffffff", NEAREST, 1.8, **{"class": "nearest-place"}
+            )
 
     def describe_nearest_move(self, lengths: LengthUnit) -> str:
-        """Return what the label of the nearest move says, such as "line 54, T2: 12.867 mm"."""
+        """Return the label of the nearest move, such as "line 54, T2: 12.867 mm"."""
         assert self.passing is not None
         near = self.passing
         return f"line {near.line}, T{near.tool}: {lengths.format_length(near.distance)}"
 
     def keep_labels_off(self, placer: LabelPlacer, view: View) -> None:
-        """Mark where the nearest move is, so that labels keep off."""
+        """Mark the nearest place for the label placer to avoid."""
         if self.passing is not None:
-            x, y = view(self.place())
-            placer.avoid_box(Box(x, y, x, y).grown(6))
+            x, y = view(self.find_nearest_place())
+            placer.avoid_box(Box(x, y, x, y).grow(6))
 
     def make_labels(self, view: View, lengths: LengthUnit) -> list[Label]:
+        """Return the label of the nearest move in a list; [] where no tool comes down to what holds the
+        part.
+        """
         if self.passing is None:
             return []
         size = (measure_text(self.describe_nearest_move(lengths), NAME, bold=True) + 8, HIGH)
         turns = [2 * pi * k / 24 for k in range(24)]
         gaps = (8, 16, 28, 44, 64, 90)
-        return [make_label_around(view(self.place()), -pi / 4, size, gaps, turns, turn_cost=1.0)]
+        return [make_label_around(view(self.find_nearest_place()), -pi / 4, size, gaps, turns, turn_cost=1.0)]
 
-    def draw_name(self, scene: Scene, place: Place, lengths: LengthUnit) -> None:
-        """Write the label of the nearest move where it was placed, with a leader."""
+    def draw_name(self, scene: Scene, place: PlacedLabel, lengths: LengthUnit) -> None:
+        """Write the label of the nearest move at its place, with a leader."""
         scene.add_line(place.compute_leader(), NEAREST, 1.2)
         scene.add_rectangle(place.box, "#ffffff", NEAREST, 1.2, 3)
         scene.add_text(
@@ -342,7 +363,7 @@ class PlannedPath:
 
 
 def make_planned_path(result: Result, index: int) -> PlannedPath | None:
-    """Return the program of a result over its fixture of an index, counted from 0; None without a program."""
+    """Return the program of a result over its fixture at ``index`` (from 0); None without a program."""
     query = result.query
     if query.program is None:
         return None

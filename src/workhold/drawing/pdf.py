@@ -48,7 +48,7 @@ STYLE = {
 
 
 def convert_svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
-    """Turn pages of SVG into a PDF.
+    """Return a PDF, as bytes, with a page for each SVG text.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def convert_svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
 
 
 def draw_children(pdf: FPDF, group: ET.Element) -> None:
-    """Draw the elements of a group one after another; neighbouring shapes share one drawing context."""
+    """Draw the elements of a group in order; neighbouring shapes share one drawing context."""
     shapes: list[PaintedPath] = []
     for element in group:
         tag = element.tag.rpartition("}")[2]
@@ -99,6 +99,7 @@ def draw_children(pdf: FPDF, group: ET.Element) -> None:
 
 
 def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
+    """Draw painted paths in one drawing context."""
     if not shapes:
         return
     context: DrawingContext
@@ -108,13 +109,14 @@ def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
 
 
 def refuse_unknown(tag: str, attributes: dict[str, str], known: set[str]) -> None:
-    """Refuse attributes that would be lost on paper."""
+    """Raise ValueError for attributes that are not known and would be lost on paper."""
     unknown = sorted(set(attributes) - known)
     if unknown:
         raise ValueError(f"no way to print the attributes {', '.join(unknown)} of the SVG element {tag}")
 
 
 def make_painted_path(tag: str, attributes: dict[str, str]) -> PaintedPath:
+    """Return a "rect", "circle" or "path" element as a painted path with its style."""
     path = PaintedPath()
     if tag == "rect":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"x", "y", "width", "height", "rx"})
@@ -134,7 +136,7 @@ def make_painted_path(tag: str, attributes: dict[str, str]) -> PaintedPath:
 
 
 def trace(path: PaintedPath, d: str) -> None:
-    """Follow SVG path data with absolute commands."""
+    """Append SVG path data with the absolute commands M, L, A and Z to a path."""
     here = (0.0, 0.0)
     for letter, numbers in COMMAND.findall(d):
         values = [float(word) for word in NUMBER.findall(numbers)]
@@ -154,13 +156,12 @@ def trace(path: PaintedPath, d: str) -> None:
 
 
 def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
-    """Follow a circular arc of at most half a turn as two Bezier curves.
+    """Append a circular arc of at most half a turn to a path as two Bezier curves.
 
-    A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the tangents (A.
-    Riskus, *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two quarter turns
-    are off by 3e-4 radii.
-
-    The values are those of the command A: two equal radii, no turn, no large arc, the sense, and the end.
+    ``values`` are those of the SVG command A: two equal radii, no rotation, no large arc, the direction, and
+    the end point. A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the
+    tangents (A. Riskus, *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two
+    quarter turns are off by 3e-4 radii. Raises ValueError for other arcs.
     """
     radius, other, turn, large, positive, x1, y1 = values
     if radius != other or turn or large:
@@ -188,6 +189,7 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
 
 
 def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
+    """Set a path's fill and stroke from SVG attributes."""
     style.auto_close = False
     style.stroke_join_style = "round"
     style.stroke_cap_style = attributes.get("stroke-linecap", "butt")
@@ -206,6 +208,7 @@ def set_style(style: GraphicsStyle, attributes: dict[str, str]) -> None:
 
 
 def draw_text(pdf: FPDF, element: ET.Element) -> None:
+    """Draw a text element with its anchor, halo and rotation; characters without a glyph become "?"."""
     attributes = element.attrib
     known = {"x", "y", "font-size", "font-weight", "text-anchor", "transform", "paint-order", "fill"}
     refuse_unknown("text", attributes, known | {"stroke", "stroke-width"} | SILENT)

@@ -18,13 +18,13 @@ from workhold.drawing.annotation import (
     PAST_END,
     Label,
     LabelPlacer,
-    Place,
+    PlacedLabel,
     compute_dimension_box,
     draw_dimension,
     join_labels,
     make_label_around,
 )
-from workhold.drawing.bench import PEG_FILL, Bench, compute_force_arrow, draw_bench, draw_zero
+from workhold.drawing.bench import PEG_FILL, BenchDrawing, compute_force_arrow, draw_bench, draw_zero
 from workhold.drawing.carriers import avoid_clamp, choose_labelled, draw_block_arrow
 from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.scene import (
@@ -35,8 +35,8 @@ from workhold.drawing.scene import (
     Scene,
     View,
     format_degrees,
+    format_number,
     measure_text,
-    number,
 )
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import make_column_letters
@@ -71,7 +71,7 @@ MOST_HOLES_AVOIDED = 2000
 
 def draw_labels(
     scene: Scene,
-    bench: Bench,
+    bench: BenchDrawing,
     view: View,
     workpiece: Workpiece,
     bounds: Box,
@@ -82,9 +82,10 @@ def draw_labels(
     path: PlannedPath | None,
     lengths: LengthUnit,
 ) -> None:
-    """Label pegs, touched faces, the part's turn and marked page points, where that hides nothing.
+    """Draw the labels of pegs (hole names), touched faces (numbers), the part's turn and marked page points.
 
-    Pegs are named by their holes, faces by their numbers.
+    ``names`` are boxes of lettering to keep off, ``marks`` page points with their names, ``angle`` the words
+    at the turn.
     """
     center = view(bench.fixture.pose.apply(*workpiece.center))
     placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
@@ -93,7 +94,7 @@ def draw_labels(
     for box in names:
         placer.avoid_box(box)
     for (x, y), _ in marks:
-        placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
+        placer.avoid_box(Box(x, y, x, y).grow(MARK_RADIUS))
     if supports is not None:
         supports.keep_labels_off(placer, view)
     if path is not None:
@@ -110,7 +111,7 @@ def draw_labels(
             make_label_around(
                 center, direction, angle_size, (26, 32, 40, 50, 64), list_turns_around(24), turn_cost=4
             ),
-            *(mark_label(point, name) for point, name in marks),
+            *(make_mark_label(point, name) for point, name in marks),
             *([] if path is None else path.make_labels(view, lengths)),
             *([] if supports is None else supports.make_labels(view)),
         ]
@@ -129,8 +130,8 @@ def draw_labels(
         supports.draw_names(group, list(places), view)
 
 
-def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View) -> None:
-    """Mark where the drawing is, so that labels keep off."""
+def avoid_drawing(placer: LabelPlacer, bench: BenchDrawing, view: View) -> None:
+    """Mark everything drawn of a bench for the label placer to avoid."""
     for outline in bench.sample_outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
         placer.avoid_walls(outline[::3])
@@ -149,11 +150,11 @@ def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View) -> None:
             placer.avoid_box(view.map_box(bar))
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
-            placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
+            placer.avoid_ink([view(hole.center) for hole in shown.list_holes()], 2.0)
 
 
-def avoid_turn(placer: LabelPlacer, bench: Bench, center: Point) -> None:
-    """Mark where the part's turn is drawn around a page point."""
+def avoid_turn(placer: LabelPlacer, bench: BenchDrawing, center: Point) -> None:
+    """Mark the drawing of the part's turn around a page point for the label placer to avoid."""
     turn = radians(bench.fixture.pose.written_deg)
     x, y = center
     placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
@@ -163,13 +164,15 @@ def avoid_turn(placer: LabelPlacer, bench: Bench, center: Point) -> None:
 
 
 def list_turns_around(count: int) -> list[float]:
-    """Turn all around, the small ones first, radians."""
+    """Return ``count`` equally spaced turns in radians from above -pi to pi, smallest first."""
     turns = [2 * pi * k / count for k in range(-count // 2 + 1, count // 2 + 1)]
     return sorted(turns, key=lambda turn: (abs(turn), turn))
 
 
-def make_peg_label(bench: Bench, index: int, view: View) -> Label:
-    """Return the candidates for the label of a peg: best away from the part, close by; that of a clamp at its hole."""
+def make_peg_label(bench: BenchDrawing, index: int, view: View) -> Label:
+    """Return the label of a peg's hole name: best on the side away from the
+    part, close by; a clamp's at its hole.
+    """
     peg = bench.fixture.pegs[index]
     nx, ny = bench.contacts[index][1]
     size = (measure_text(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
@@ -178,26 +181,27 @@ def make_peg_label(bench: Bench, index: int, view: View) -> Label:
     return make_label_around(view(at), atan2(-ny, nx), size, distances, list_turns_around(24))
 
 
-def mark_label(point: Point, name: str) -> Label:
+def make_mark_label(point: Point, name: str) -> Label:
+    """Return the label of a marked page point, in all directions around it."""
     size = (measure_text(name, TAG_SIZE) + 6, TAG_SIZE + 4)
     distances = [MARK_RADIUS + gap for gap in (3, 10, 20, 34, 52, 76, 110)]
     return make_label_around(point, pi / 4, size, distances, list_turns_around(24), turn_cost=2)
 
 
-def make_face_tag(bench: Bench, face_number: int, view: View) -> Label:
-    """Return the candidates for the number of a face: inside the part, beside the contacts on it."""
+def make_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
+    """Return the label of a touched face's number: inside the part, best beside the contacts on the face."""
     index = next(k for k in bench.touching if bench.fixture.pegs[k].face == face_number)
     face = bench.faces[index]
     size = (max(TAG_HEIGHT, measure_text(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
     half = face.half_extent
-    near = face.parameter(bench.contacts[index][0])
+    near = face.find_parameter(bench.contacts[index][0])
     labels = []
     for parameter in (share * half for share in (-0.85, -0.6, -0.35, 0.0, 0.35, 0.6, 0.85)):
-        nx, ny = face.normal(parameter)
+        nx, ny = face.compute_normal(parameter)
         extra = 4 * abs(parameter - near) / half
         labels.append(
             make_label_around(
-                view(face.at(parameter)),
+                view(face.compute_point(parameter)),
                 atan2(ny, -nx),
                 size,
                 (7, 14, 24, 40, 60),
@@ -208,9 +212,9 @@ def make_face_tag(bench: Bench, face_number: int, view: View) -> Label:
     return join_labels(labels)
 
 
-def make_gripped_face_tag(bench: Bench, face_number: int, view: View) -> Label:
-    """Return the candidates for the number of a face that a flat jaw touches: inside the part, beside the
-    middle of it.
+def make_gripped_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
+    """Return the label of the number of a face that a flat jaw touches: inside
+    the part, beside the face's middle.
     """
     face = bench.gripped[face_number]
     hold = bench.fixture.hold
@@ -222,7 +226,8 @@ def make_gripped_face_tag(bench: Bench, face_number: int, view: View) -> Label:
     return make_label_around(view((x, y)), turn, size, (9, 16, 26, 42, 60), list_turns_around(8))
 
 
-def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
+def draw_flag(scene: Scene, place: PlacedLabel, radius: float, name: str) -> None:
+    """Write a peg's hole name at its place, with a leader to the rim of a peg of ``radius`` page units."""
     leader = place.compute_leader(radius)
     if dist(*leader) > 2:
         scene.add_line(leader, PEG_FILL, 1.4)
@@ -230,13 +235,15 @@ def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
     scene.add_text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
 
 
-def draw_mark(scene: Scene, place: Place, name: str) -> None:
+def draw_mark(scene: Scene, place: PlacedLabel, name: str) -> None:
+    """Draw the sign of a zero point at a mark's anchor, with its name at its place."""
     scene.add_line(place.compute_leader(), BLACK, 0.8)
     draw_zero(scene, place.anchor, MARK_RADIUS)
     scene.add_text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
 
 
-def draw_tag(scene: Scene, place: Place, name: str) -> None:
+def draw_tag(scene: Scene, place: PlacedLabel, name: str) -> None:
+    """Write a face's number at its place, with a leader."""
     scene.add_line(place.compute_leader(), BLACK, 0.8)
     scene.add_rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
     scene.add_text(place.box.center, name, TAG_SIZE, "middle")
@@ -260,7 +267,7 @@ NAME_SIZE = (12.0, 14.0)
 
 def draw_plan(
     scene: Scene,
-    bench: Bench,
+    bench: BenchDrawing,
     view: View,
     workpiece: Workpiece,
     bounds: Box,
@@ -279,7 +286,7 @@ def draw_plan(
     supports : what stands under the part and presses on it, to draw as well.
     path : of the program's tools, to draw as well.
     """
-    frame = view.map_box(reduce(Box.union, (Box(*point, *point) for point, _ in marks), bench.extent))
+    frame = view.map_box(reduce(Box.unite, (Box(*point, *point) for point, _ in marks), bench.extent))
     names = draw_hole_names(scene, bench, view, frame, supports)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
     if path is not None:
@@ -296,11 +303,12 @@ def draw_plan(
 
 
 def draw_hole_names(
-    scene: Scene, bench: Bench, view: View, frame: Box, supports: PlannedSupports | None = None
+    scene: Scene, bench: BenchDrawing, view: View, frame: Box, supports: PlannedSupports | None = None
 ) -> list[Box]:
-    """Write column letters above and below the plates and row numbers beside them, as on a map's rim.
+    """Write column letters above and below the plates and row numbers beside
+    them; return the boxes of the names.
 
-    Where another plate stands there are none. Returns the boxes of the names.
+    ``frame`` is the page box of plates and part. Nothing is written on a side where another plate stands.
     """
     group, names = scene.group("hole-names"), []
     if not bench.shown.carriers:
@@ -330,10 +338,11 @@ def draw_hole_names(
 
 
 def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> list[Box]:
-    """Write column letters and row numbers; return their boxes.
+    """Write column letters and row numbers, given as (page point, name, has
+    a peg, anchor); return their boxes.
 
-    Those of pegs (the third entry is True) come first, and move aside where another name stands. The others
-    are written where there is room.
+    Names with pegs are written first, and move aside where another name stands. The others are left out where
+    there is no room.
     """
     boxes: list[Box] = []
     for at, name, used, wanted in sorted(names, key=lambda each: not each[2]):
@@ -341,10 +350,14 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
         for other in boxes if used else []:
             places += [((other.x0 - 3, at[1]), "end"), ((other.x1 + 3, at[1]), "start")]
         placed = [
-            (abs(place[0] - at[0]), place, anchor, name_box(place, name, used, anchor))
+            (abs(place[0] - at[0]), place, anchor, compute_name_box(place, name, used, anchor))
             for place, anchor in places
         ]
-        free = [each for each in placed if all(each[3].grown(1.5).overlap(other) == 0 for other in boxes)]
+        free = [
+            each
+            for each in placed
+            if all(each[3].grow(1.5).compute_overlap_area(other) == 0 for other in boxes)
+        ]
         if free:
             _, place, anchor, box = min(free, key=lambda each: each[0])
             scene.add_text(place, name, NAME_SIZE[used], anchor, bold=used, fill=BLACK if used else GREY)
@@ -353,19 +366,25 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
 
 
 def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
-    """Write "row" and "column" at the left rim where no name stands; return the boxes of the words."""
+    """Write "row" and "column" at the left rim of the frame unless a name is
+    there; return the boxes of the words.
+    """
     boxes = []
     for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
         right = frame.x0 - 5
         box = Box(right - measure_text(word, RIM_WORD), y - RIM_WORD / 2, right, y + RIM_WORD / 2)
-        if all(box.grown(2.0).overlap(name) == 0 for name in names):
+        if all(box.grow(2.0).compute_overlap_area(name) == 0 for name in names):
             scene.add_text((right, y), word, RIM_WORD, "end", fill=GREY)
             boxes.append(box)
     return boxes
 
 
 def choose_letter_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
-    """Return the anchor of a column's letter: beside the column where plates all but meet, else on it."""
+    """Return the SVG anchor of a column's letter: "middle", or away from the gap at
+    columns next to a nearly closed gap.
+
+    ``gap`` is the distance between the plates in page units.
+    """
     if gap >= 20:
         return "middle"
     if "right" in shown.facing and column == shown.columns[-1]:
@@ -374,13 +393,15 @@ def choose_letter_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
 
 
 def draw_ruling(scene: Scene, rim: Point, plate: Point) -> None:
-    """Draw a faint line that leads from a name at the rim to a plate that lies further in."""
+    """Draw a faint dotted line from a name at the rim to its plate, if they
+    are more than 12 page units apart.
+    """
     if abs(rim[0] - plate[0]) + abs(rim[1] - plate[1]) > 12:
         scene.add_line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
 
 
-def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
-    """Return the box of a column letter or row number."""
+def compute_name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
+    """Return the page box of a column letter or row number."""
     size = NAME_SIZE[used]
     width = measure_text(name, size, used)
     left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
@@ -388,12 +409,12 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
 
 
 def draw_travel(
-    scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit
+    scene: Scene, bench: BenchDrawing, view: View, frame: Box, bounds: Box, lengths: LengthUnit
 ) -> list[Box]:
-    """Return the dimensions the lengths to set, above the plates or at their right; return boxes of words and
-    lines.
+    """Draw the lengths to set as dimensions, above the plates or at their right;
+    return the boxes of words and lines.
 
-    All words are within the bounds. Of two lengths along the same way the second stands farther out.
+    All words are within ``bounds``. Of two lengths in one direction the second stands farther out.
     """
     group, boxes, lines = scene.group("opening"), [], []
     for place, measured in enumerate(bench.shown.measured):
@@ -425,10 +446,11 @@ def draw_travel(
     return boxes
 
 
-def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Name the carriers below them, with an arrow which way one slides to clamp; return the boxes.
+def draw_captions(scene: Scene, bench: BenchDrawing, view: View, frame: Box, bounds: Box) -> list[Box]:
+    """Write the names of the carriers below them, with an arrow in the
+    direction of closing; return their boxes.
 
-    Where clamps are drawn, they and the one plate need no names.
+    Where clamps are drawn, nothing is written.
     """
     if bench.shown.clamps:
         return []
@@ -459,37 +481,43 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
             drop = 24 if shown.clamping[0] else 46
             draw_block_arrow(group, (tip + 29, y + drop), shown.clamping)
             group.add_text((tip + 66, y + drop), verb, 13)
-            box = box.union(Box(tip, y - 8, tip + 66 + measure_text(verb, 13), y + 2 * drop - 10))
+            box = box.unite(Box(tip, y - 8, tip + 66 + measure_text(verb, 13), y + 2 * drop - 10))
         boxes.append(box)
     return boxes
 
 
 def draw_jaw_captions(scene: Scene, jaws: ShownJaws, view: View) -> list[Box]:
-    """Name two flat jaws and a work stop, with an arrow which way the jaw that moves closes; return the boxes."""
+    """Write the names of two flat jaws and a work stop, with an arrow in the
+    direction of closing; return their boxes.
+    """
     boxes = list[Box]()
     for name, bar in (("fixed jaw", jaws.fixed), ("moving jaw", jaws.moving)):
         page = view.map_box(bar)
         size = min(15.0, 0.6 * page.height)
         middle = (page.x0 + page.x1) / 2, (page.y0 + page.y1) / 2
         scene.add_text(middle, name, size, "middle")
-        boxes.append(Box.about(middle, measure_text(name, size), size))
+        boxes.append(Box.from_center(middle, measure_text(name, size), size))
     page = view.map_box(jaws.moving)
     tip = page.x1 - 40, (page.y0 + page.y1) / 2
     draw_block_arrow(scene, tip, (0.0, -1.0), 0.7)
-    boxes.append(Box.about(tip, 40, 60))
+    boxes.append(Box.from_center(tip, 40, 60))
     if jaws.stop is not None:
         page = view.map_box(jaws.stop)
         at = (page.x0 + page.x1) / 2, page.y0 - 10
         scene.add_text(at, "work stop", 12, "middle", halo=3)
-        boxes.append(Box.about(at, measure_text("work stop", 12), 12))
+        boxes.append(Box.from_center(at, measure_text("work stop", 12), 12))
         boxes.append(page)
     return boxes
 
 
 def place_side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) -> list[float]:
-    """Return the left ends of pieces of some widths, moved apart and kept left of ``right``. >>>
-    place_side_by_side([0.0, 10.0], [20.0, 20.0], 100.0), place_side_by_side([50.0, 60.0], [30.0, 30.0],
-    100.0) ([0.0, 36.0], [24.0, 70.0])
+    """Return the left ends of pieces with these widths, moved apart by
+    ``CAPTION_GAP`` and kept left of ``right``.
+
+    >>> place_side_by_side([0.0, 10.0], [20.0, 20.0], 100.0)
+    [0.0, 36.0]
+    >>> place_side_by_side([50.0, 60.0], [30.0, 30.0], 100.0)
+    [24.0, 70.0]
     """
     order, placed = sorted(range(len(lefts)), key=lambda k: lefts[k]), list(lefts)
     for before, k in pairwise(order):
@@ -502,7 +530,11 @@ def place_side_by_side(lefts: Sequence[float], widths: Sequence[float], right: f
 
 
 def draw_angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
-    """Draw the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
+    """Draw the turn from the vise's x axis (a dashed line) to the part's x
+    axis (an arrow) about a page point.
+
+    ``radius`` of the arc and ``reach`` of the axes are in page units.
+    """
     x, y = center
     theta = radians(theta_deg)
     mark = scene.group("pose")
@@ -514,11 +546,11 @@ def draw_angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float
     way = copysign(1.0, theta)
     end = theta - way * 7.0 / radius  # leave room for the head
     pieces = max(1, floor(abs(end) / (pi / 2)) + 1)
-    d = f"M{number(x + radius)} {number(y)}"
+    d = f"M{format_number(x + radius)} {format_number(y)}"
     for k in range(1, pieces + 1):
         a = end * k / pieces
-        end_x, end_y = number(x + radius * cos(a)), number(y - radius * sin(a))
-        d += f"A{number(radius)} {number(radius)} 0 0 {0 if way > 0 else 1} {end_x} {end_y}"
+        end_x, end_y = format_number(x + radius * cos(a)), format_number(y - radius * sin(a))
+        d += f"A{format_number(radius)} {format_number(radius)} 0 0 {0 if way > 0 else 1} {end_x} {end_y}"
     mark.add_path(d, GREY, 1.0)
     tip = (x + radius * cos(theta), y - radius * sin(theta))
     mark.add_arrow_head(tip, -(theta + way * pi / 2) + way * 3.5 / radius, GREY, 7.5)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import inf
 
-from workhold.drawing.annotation import scale_bar
+from workhold.drawing.annotation import draw_scale_bar
 from workhold.drawing.bench import make_outline_path
 from workhold.drawing.panel import TextColumn, format_count
 from workhold.drawing.part_pictures import EDGE, FOOTER, HEADER, draw_header
@@ -22,7 +22,7 @@ from workhold.drawing.path_drawn import (
     shade_colour,
 )
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, LengthUnit, Scene, View, shorten_text
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, write_heading
+from workhold.drawing.sheet_writing import BODY, NOTE, SetupSheet, write_heading
 from workhold.errors import join_words
 from workhold.model.program import Program
 from workhold.model.program_figures import bound_tip, measure_tools
@@ -43,7 +43,7 @@ SIZE = 12.0
 
 
 def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: Unit = MILLIMETRE) -> str:
-    """Draw the paths of a program's tools on A4.
+    """Return the paths of a program's tools from above on A4.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     lengths = LengthUnit.from_typical_length(unit, max(bounds.width, bounds.height))
     width, height = LANDSCAPE
     room = Box(EDGE, EDGE + HEADER, width - EDGE - SIDE, height - EDGE - FOOTER)
-    view = View.fit_box(bounds, room.grown(-8))
+    view = View.fit_box(bounds, room.grow(-8))
     scene = Scene.make_page(LANDSCAPE, f"{program.name}: paths of the tools")
     words = (
         f"{format_count(len(program.moves), 'move')} of {format_count(len(figures), 'tool')}, seen from above"
@@ -71,20 +71,21 @@ def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: 
     draw_paths(scene.group("paths", view), program, PagePaths.from_moves(program.moves, view))
     draw_zero(scene, view(program.zero))
     draw_legend(scene, program, lengths, Box(width - EDGE - SIDE + 20, room.y0, width - EDGE, room.y1))
-    scale_bar(scene, (EDGE, height - EDGE), view.scale, lengths)
+    draw_scale_bar(scene, (EDGE, height - EDGE), view.scale, lengths)
     return scene.to_svg()
 
 
 def compute_shown_bounds(program: Program, workpiece: Workpiece | None) -> Box:
-    """Return what is shown, in mm: all that the flutes sweep at their paths, the zero and the part."""
+    """Return the box in mm of all that the tools sweep, the program's zero and the part."""
     low, high = bound_tip(program.moves)
     around = max(tool.diameter for tool in program.tools.values()) / 2
-    swept = Box(*low[:2].tolist(), *high[:2].tolist()).grown(around)
-    bounds = swept.union(Box(*program.zero, *program.zero))
-    return bounds if workpiece is None else bounds.union(Box(*workpiece.bounds))
+    swept = Box(*low[:2].tolist(), *high[:2].tolist()).grow(around)
+    bounds = swept.unite(Box(*program.zero, *program.zero))
+    return bounds if workpiece is None else bounds.unite(Box(*workpiece.bounds))
 
 
 def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
+    """Draw the program's zero with its X and Y axes at a page point."""
     group = scene.group("program-zero")
     x, y = at
     group.add_arrow((x, y), (x + 34, y), BLACK, 1.4, 8)
@@ -95,6 +96,9 @@ def draw_zero(scene: Scene, at: tuple[float, float]) -> None:
 
 
 def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -> None:
+    """Write the tools with their colours, the shades of height and the sign of rapid moves into a page
+    box.
+    """
     group, figures, y = scene.group("legend"), measure_tools(program), box.y0 + 8
     for place, one in enumerate(figures[:MOST_LISTED]):
         tool = program.tools[one.tool]
@@ -105,7 +109,7 @@ def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -
         group.add_text((box.x0 + 40, y), head, 14, bold=True)
         words = [tool.name] if tool.name else []
         if one.lowest_cut is not None:
-            words.append(f"down to z {lengths.number(one.lowest_cut)}")
+            words.append(f"down to z {lengths.format_number(one.lowest_cut)}")
         for line, text in enumerate(words):
             shown = shorten_text(text, 12, box.width - 40)
             group.add_text((box.x0 + 40, y + 19 + 17 * line), shown, 12, fill=GREY)
@@ -119,14 +123,15 @@ def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -
     for level in range(SHADES):
         x = box.x0 + 22 * level
         group.add_rectangle(Box(x, y - 6, x + 22, y + 6), shade_colour(COLOURS[0], level))
-    low, high = map(lengths.number, find_heights_cut(program))
+    low, high = map(lengths.format_number, find_heights_cut(program))
     group.add_text((box.x0, y + 20), f"dark at z {low}, light at z {high} {lengths.sign}", 12, fill=GREY)
     y += 52
     group.add_line([(box.x0, y), (box.x0 + 34, y)], GREY, 1.2, stroke_dasharray="6 5")
     group.add_text((box.x0 + 44, y), "rapid move", 12, fill=GREY)
 
 
-def write_program(column: TextColumn, sheet: Sheet) -> None:
+def write_program(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block on a sheet's program: its path, tools and cutting forces."""
     details = sheet.details
     assert details.program is not None
     write_heading(column, "Program")
@@ -136,7 +141,7 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
     write_path(column, path, sheet.lengths)
     if details.cutting is not None:
         moving, unit = sheet.toolkit.moving.noun, sheet.lengths.unit
-        needed, *others = details.cutting.words(moving, unit, len(sheet.fixture.travels))
+        needed, *others = details.cutting.list_sentences(moving, unit, len(sheet.fixture.travels))
         column.y += 3
         column.write_paragraph(needed, BODY, bold=True)
         for sentence in others:
@@ -144,12 +149,16 @@ def write_program(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill: str = BLACK) -> None:
-    """Write where a program runs, its tools in their colours with their lines, and where they come nearest."""
+    """Write the program's zero, its tools in their colours with their lines, and
+    the move nearest to what holds the part.
+    """
     program = path.program
     x, y = program.zero
     name = shorten_text(program.name, BODY, 0.75 * column.width, bold=True)
     column.write_fact("program", name, BODY, bold=True)
-    column.write_fact("its X0 Y0, as drawn", f"x {lengths.number(x)}, y {lengths.format_length(y)}", BODY)
+    column.write_fact(
+        "its X0 Y0, as drawn", f"x {lengths.format_number(x)}, y {lengths.format_length(y)}", BODY
+    )
     column.write_fact("its Z0 above the part's lower side", lengths.format_length(program.z_zero), BODY)
     column.write_fact("tools keep off at least", lengths.format_length(program.clearance), BODY)
     column.y += 2
@@ -168,6 +177,7 @@ def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill:
 
 
 def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill: str) -> None:
+    """Write the table of tools: colour, number, diameter, lines and lowest cut; at most ``MOST_TOOLS``."""
     ends = [column.x + SWATCH + 8 + share * (column.width - SWATCH - 8) for share in COLUMNS]
     figures = measure_tools(program)
     header = ("", "tool", f"Ø {lengths.sign}", "lines", "lowest cut z")
@@ -185,7 +195,7 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
         column.scene.add_line(
             [(column.x + 3, y), (column.x + SWATCH - 3, y)], colour, 6.0, stroke_linecap="round"
         )
-        low = "–" if one.lowest_cut is None else lengths.number(one.lowest_cut)
+        low = "–" if one.lowest_cut is None else lengths.format_number(one.lowest_cut)
         span = f"{one.first_line} to {last_lines[one.tool]}"
         cells = (f"T{one.tool}", lengths.format_short_number(tool.diameter), span, low)
         for number, (at, words) in enumerate(zip(ends[1:], cells, strict=True)):
@@ -202,13 +212,16 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
 
 
 def list_tools_above_pegs(path: PlannedPath) -> list[str]:
-    """Return the tools that never come down to the pegs; empty if the height of the pegs is not known."""
+    """Return the names ("T3") of tools that never come down to the pegs; [] if the pegs' height is not
+    known.
+    """
     if path.peg_height is None:
         return []
     return [f"T{one.tool}" for one in measure_tools(path.program) if one.lowest > path.peg_height]
 
 
 def describe_clearance(path: PlannedPath, lengths: LengthUnit) -> str:
+    """Return a sentence on the move that comes nearest to what holds the part."""
     near = path.passing
     if path.peg_height is None:
         # That all tools keep clear of what friction holds with is asked of each set-up.

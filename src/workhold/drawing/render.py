@@ -8,7 +8,7 @@ from zlib import crc32
 
 import resvg_py
 
-from workhold.drawing.scene import SVG_NAMESPACE, Scene, list_font_files, number
+from workhold.drawing.scene import SVG_NAMESPACE, Scene, format_number, list_font_files
 from workhold.errors import InputError
 
 __all__ = ["render", "stack_pages", "convert_svg_to_png"]
@@ -21,7 +21,7 @@ MARK = (len(SOFTWARE) - 4).to_bytes(4, "big") + SOFTWARE + crc32(SOFTWARE).to_by
 
 
 def convert_svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
-    """Render SVG text to a PNG of a width in pixels, with the bundled fonts only.
+    """Return SVG text rendered as a PNG ``width`` pixels wide, with the bundled fonts only.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def convert_svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
 
 
 def render(svg: str, ending: str) -> bytes:
-    """Return the bytes of a picture file with the ending ".svg" or ".png" (in capitals as well).
+    """Return the bytes of a picture file whose name ends in ".svg" or ".png", in any case.
 
     Raises
     ------
@@ -64,7 +64,9 @@ def render(svg: str, ending: str) -> bytes:
 
 
 def stack_pages(pages: Sequence[str]) -> str:
-    """Return the pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
+    """Return SVG pages of one size as a single SVG picture, one below the other;
+    a single page is returned unchanged.
+    """
     if len(pages) == 1:
         return pages[0]
     ET.register_namespace("", SVG_NAMESPACE)
@@ -75,6 +77,10 @@ def stack_pages(pages: Sequence[str]) -> str:
     )
     text = whole.to_svg().removesuffix("</svg>\n")
     for k, root in enumerate(roots):
-        root.attrib |= {"width": number(width), "height": number(height), "y": number(k * height)}
+        root.attrib |= {
+            "width": format_number(width),
+            "height": format_number(height),
+            "y": format_number(k * height),
+        }
         text += ET.tostring(root, encoding="unicode") + "\n"
     return text + "</svg>\n"

@@ -38,7 +38,7 @@ __all__ = [
     "format_degrees",
     "list_font_files",
     "has_character",
-    "number",
+    "format_number",
     "shorten_text",
     "measure_text",
     "wrap_text",
@@ -53,7 +53,8 @@ UNKNOWN_WIDTH = 1.0
 
 
 def format_degrees(turn: float, decimals: int) -> str:
-    """Return a turn in degrees as it is drawn, with a real minus sign and no negative zero.
+    """Return a turn in degrees with ``decimals`` decimals and the sign °, with a
+    real minus sign and no negative zero.
 
     >>> format_degrees(-0.31, 1), format_degrees(-0.01, 1)
     ('−0.3°', '0.0°')
@@ -68,7 +69,7 @@ def list_font_files() -> list[str]:
 
 @cache
 def load_advance_widths() -> dict[str, dict[str, float]]:
-    """Return the width in ems of every bundled character, by weight ("regular", "bold")."""
+    """Return the width in ems of every character of the bundled typeface, by weight ("regular", "bold")."""
     widths: dict[str, dict[str, float]] = json.loads(
         (FOLDER / "advance_widths.json").read_text(encoding="ascii")
     )
@@ -87,7 +88,7 @@ def measure_text(content: str, size: float, bold: bool = False) -> float:
 
 
 def has_character(character: str) -> bool:
-    """Return whether the bundled typeface has a character.
+    """Return whether the bundled typeface has a glyph for a character.
 
     >>> has_character("Ø"), has_character("樂")
     (True, False)
@@ -96,7 +97,7 @@ def has_character(character: str) -> bool:
 
 
 def shorten_text(content: str, size: float, width: float, bold: bool = False) -> str:
-    """Return the text itself, or its beginning and an ellipsis when it is wider than ``width`` page units.
+    """Return the text, or its beginning and an ellipsis when the text is wider than ``width`` page units.
 
     >>> shorten_text("a plate", 10, 200), shorten_text("a very long plate", 10, 50)
     ('a plate', 'a very l…')
@@ -107,9 +108,10 @@ def shorten_text(content: str, size: float, width: float, bold: bool = False) ->
 
 
 def count_fitting_letters(content: str, size: float, width: float, bold: bool, behind: str = "") -> int:
-    """Return how many letters of a text, with those behind, are no wider than ``width`` page units.
+    """Return the largest number of leading letters that, followed by ``behind``,
+    are at most ``width`` page units wide.
 
-    It looks at few more letters than fit, however long the text is.
+    It measures few more letters than fit, however long the text is.
     """
     most = 1
     while most < len(content) and measure_text(content[:most] + behind, size, bold) <= width:
@@ -122,7 +124,8 @@ def count_fitting_letters(content: str, size: float, width: float, bold: bool, b
 
 
 def wrap_text(content: str, size: float, width: float, bold: bool = False) -> list[str]:
-    """Return the text in lines no wider than ``width`` page units, broken at spaces, or inside long words.
+    """Return the text as lines no wider than ``width`` page units, broken at
+    spaces, or inside words that are too long.
 
     >>> wrap_text("a plate with holes", 10, 50)
     ['a plate', 'with', 'holes']
@@ -155,8 +158,8 @@ SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 Attributes = dict[str, str]
 
 
-def number(value: float) -> str:
-    """Return a page coordinate with at most three decimals, always written the same way.
+def format_number(value: float) -> str:
+    """Return a page coordinate as text with at most three decimals, without trailing zeros or negative zero.
 
     >>> number(2.0), number(-0.0001), number(1.23456)
     ('2', '0', '1.235')
@@ -166,7 +169,8 @@ def number(value: float) -> str:
 
 
 def choose_decimals(length: float) -> int:
-    """Return the decimals for dimensions in mm where ``length`` mm is typical: three, more for tiny parts.
+    """Return the number of decimals for dimensions in mm where ``length`` mm is
+    typical: three, more for tiny parts.
 
     >>> choose_decimals(10.0), choose_decimals(0.05)
     (3, 5)
@@ -184,17 +188,21 @@ class View:
 
     @classmethod
     def fit_box(cls, model: Box, page: Box, scale: float | None = None) -> View:
-        """Centre a model box in a page box, as large as fits or at a scale in page units per mm."""
+        """Return the view that centres a model box (mm) in a page box.
+
+        It is as large as fits, or at ``scale`` in page units per mm.
+        """
         if scale is None:
             scale = min(page.width / model.width, page.height / model.height)
         (mx, my), (px, py) = model.center, page.center
         return cls(scale, px - scale * mx, py + scale * my)
 
     def __call__(self, point: Point) -> Point:
-        """Return where a point of the model, in mm, is on the page."""
+        """Return the page point of a model point in mm."""
         return self.left + self.scale * point[0], self.top - self.scale * point[1]
 
     def map_box(self, model: Box) -> Box:
+        """Return the page box of a model box in mm."""
         (x0, y1), (x1, y0) = self((model.x0, model.y0)), self((model.x1, model.y1))
         return Box(x0, y0, x1, y1)
 
@@ -205,11 +213,11 @@ class View:
 
 
 class Scene:
-    """An SVG page, or a group of one, that shapes are added to in page units.
+    """An SVG page, or a group within one, to which shapes are added in page units.
 
     Parameters
     ----------
-    element : the group that shapes go to.
+    element : the SVG element to which shapes are added.
     """
 
     def __init__(self, element: ET.Element) -> None:
@@ -223,9 +231,9 @@ class Scene:
             "svg",
             {
                 "xmlns": SVG_NAMESPACE,
-                "width": f"{number(width / UNITS_PER_MM)}mm",
-                "height": f"{number(height / UNITS_PER_MM)}mm",
-                "viewBox": f"0 0 {number(width)} {number(height)}",
+                "width": f"{format_number(width / UNITS_PER_MM)}mm",
+                "height": f"{format_number(height / UNITS_PER_MM)}mm",
+                "viewBox": f"0 0 {format_number(width)} {format_number(height)}",
                 "font-family": FAMILY,
                 "fill": "none",
                 "stroke-linejoin": "round",
@@ -233,11 +241,14 @@ class Scene:
         )
         ET.SubElement(root, "title").text = make_printable(title)
         scene = cls(root)
-        scene.add("rect", {"width": number(width), "height": number(height), "fill": "#ffffff"})
+        scene.add(
+            "rect",
+            {"width": format_number(width), "height": format_number(height), "fill": "#ffffff"},
+        )
         return scene
 
     def to_svg(self) -> str:
-        """Return the page as SVG text, marked as workhold's own, see ``cli.outputs``."""
+        """Return the page as SVG text, marked by a comment as workhold's own (see ``cli.outputs``)."""
         ET.indent(self.element, " ")
         return (
             '<?xml version="1.0" encoding="UTF-8"?>\n<!-- workhold -->\n'
@@ -248,14 +259,20 @@ class Scene:
     def add(
         self, tag: str, attributes: Attributes, stroke: str = "none", width: float = 1.0, **more: str
     ) -> ET.Element:
-        """Add any element; further attributes are named with ``_`` for ``-``."""
+        """Add an SVG element and return it; in the names of further attributes ``_`` stands for ``-``.
+
+        ``attributes`` may be changed in place.
+        """
         if stroke != "none":
-            attributes |= {"stroke": stroke, "stroke-width": number(width)}
+            attributes |= {"stroke": stroke, "stroke-width": format_number(width)}
         attributes |= {key.replace("_", "-"): value for key, value in more.items()}
         return ET.SubElement(self.element, tag, attributes)
 
     def group(self, name: str, view: View | None = None, **attributes: str) -> Scene:
-        """Add a group of the class ``name``; with a view, ``data-model-to-page`` holds the map from mm."""
+        """Add a group of the class ``name`` and return it as a scene.
+
+        With a view, its attribute ``data-model-to-page`` holds the map from mm.
+        """
         element = self.add("g", {"class": name}, "none", 1.0, **attributes)
         if view is not None:
             element.set("data-model-to-page", view.matrix)
@@ -264,34 +281,40 @@ class Scene:
     def add_path(
         self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
     ) -> ET.Element:
+        """Add a path with SVG path data ``d`` in page units."""
         return self.add("path", {"d": d, "fill": fill}, stroke, width, **more)
 
     def add_line(
         self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str
     ) -> ET.Element:
-        """Add an open polyline."""
+        """Add an open polyline through page points."""
         return self.add_path(
-            "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points), stroke, width, **more
+            "M" + "L".join(f"{format_number(x)} {format_number(y)}" for x, y in points),
+            stroke,
+            width,
+            **more,
         )
 
     def add_polygon(
         self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0
     ) -> ET.Element:
-        d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
+        """Add a closed polygon through page points."""
+        d = "M" + "L".join(f"{format_number(x)} {format_number(y)}" for x, y in points) + "Z"
         return self.add_path(d, stroke, width, fill)
 
     def add_rectangle(
         self, box: Box, fill: str, stroke: str = "none", width: float = 1.0, round_by: float = 0.0
     ) -> ET.Element:
+        """Add a rectangle; ``round_by`` is the radius of its corners."""
         attributes = {
-            "x": number(box.x0),
-            "y": number(box.y0),
-            "width": number(box.width),
-            "height": number(box.height),
+            "x": format_number(box.x0),
+            "y": format_number(box.y0),
+            "width": format_number(box.width),
+            "height": format_number(box.height),
             "fill": fill,
         }
         if round_by:
-            attributes["rx"] = number(round_by)
+            attributes["rx"] = format_number(round_by)
         return self.add("rect", attributes, stroke, width)
 
     def add_circle(
@@ -303,7 +326,13 @@ class Scene:
         width: float = 1.0,
         **more: str,
     ) -> ET.Element:
-        attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
+        """Add a circle with centre and radius in page units."""
+        attributes = {
+            "cx": format_number(center[0]),
+            "cy": format_number(center[1]),
+            "r": format_number(radius),
+            "fill": fill,
+        }
         return self.add("circle", attributes, stroke, width, **more)
 
     def add_text(
@@ -329,15 +358,26 @@ class Scene:
         turned : degrees counter-clockwise.
         """
         x, y = at[0], at[1] + (CAP_HEIGHT * size / 2 if middle else 0.0)
-        attributes = {"x": number(x), "y": number(y), "font-size": number(size), "fill": fill}
+        attributes = {
+            "x": format_number(x),
+            "y": format_number(y),
+            "font-size": format_number(size),
+            "fill": fill,
+        }
         if anchor != "start":
             attributes["text-anchor"] = anchor
         if bold:
             attributes["font-weight"] = "bold"
         if halo:
-            attributes |= {"stroke": "#ffffff", "stroke-width": number(2 * halo), "paint-order": "stroke"}
+            attributes |= {
+                "stroke": "#ffffff",
+                "stroke-width": format_number(2 * halo),
+                "paint-order": "stroke",
+            }
         if turned:
-            attributes["transform"] = f"rotate({number(-turned)} {number(at[0])} {number(at[1])})"
+            attributes["transform"] = (
+                f"rotate({format_number(-turned)} {format_number(at[0])} {format_number(at[1])})"
+            )
         element = self.add("text", attributes)
         element.text = make_printable(content)
         return element
@@ -345,7 +385,7 @@ class Scene:
     def add_arrow(
         self, tail: Point, tip: Point, stroke: str = BLACK, width: float = 1.0, head: float = 8.0
     ) -> None:
-        """Add an arrow; ``head`` is the length of its head."""
+        """Add an arrow from tail to tip; ``head`` is the length of its head, shortened on a shorter arrow."""
         dx, dy = tip[0] - tail[0], tip[1] - tail[1]
         length = hypot(dx, dy)
         head = min(head, length) if length > 0 else head
@@ -355,7 +395,7 @@ class Scene:
         self.add_arrow_head(tip, atan2(dy, dx), stroke, head)
 
     def add_arrow_head(self, tip: Point, angle: float, fill: str, length: float) -> None:
-        """Add the head of an arrow that points along ``angle`` (radians on the page, y down)."""
+        """Add an arrow head that points along ``angle`` (radians on the page, y down)."""
         c, s = cos(angle), sin(angle)
         half = 0.34 * length
         back = (tip[0] - length * c, tip[1] - length * s)
@@ -381,6 +421,7 @@ class LengthUnit:
 
     @classmethod
     def in_mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
+        """Return millimetres with this number of decimals."""
         return cls(MILLIMETRE, decimals)
 
     @classmethod
@@ -390,20 +431,22 @@ class LengthUnit:
 
     @property
     def sign(self) -> str:
-        """What stands behind a number."""
+        """The unit's abbreviation, such as "mm"."""
         return self.unit.abbreviation
 
-    def number(self, length: float) -> str:
-        """Return a length in mm as a number of this unit, with a real minus sign and no negative zero."""
-        return self.unit.number(length, self.decimals).replace("-", "−")
+    def format_number(self, length: float) -> str:
+        """Return a length in mm as a number in this unit, without the unit's name, with a
+        real minus sign and no negative zero.
+        """
+        return self.unit.format_number(length, self.decimals).replace("-", "−")
 
     def format_length(self, length: float) -> str:
-        """Return a length in mm with the sign of the unit."""
-        return f"{self.number(length)} {self.sign}"
+        """Return a length in mm as a number in this unit, followed by the unit's abbreviation."""
+        return f"{self.format_number(length)} {self.sign}"
 
     def format_short(self, length: float, digits: int = 6) -> str:
-        """Return a length in mm, such as a pitch, with as few decimals as it needs and at most ``digits``
-        digits.
+        """Return a length in mm, such as a pitch, in this unit with at most ``digits``
+        significant digits and no trailing zeros.
 
         >>> LengthUnit.in_mm().format_short(12.7), LengthUnit.in_mm().format_short(10.0)
         ('12.7 mm', '10 mm')
@@ -411,5 +454,5 @@ class LengthUnit:
         return f"{self.format_short_number(length, digits)} {self.sign}"
 
     def format_short_number(self, length: float, digits: int = 6) -> str:
-        """Return a length in mm as :meth:`format_short` writes it, without the sign of the unit."""
+        """Return a length in mm as :meth:`format_short` does, without the unit's abbreviation."""
         return f"{length / self.unit.millimetres:.{digits}g}"

@@ -27,7 +27,8 @@ STOPPED: Mapping[Measure, str] = {"opening": JAWS_STOP, "stroke": CLAMP_STOPS, "
 
 
 def round_down_in_words(value: float, digits: int = 2) -> str:
-    """Return an upper bound in words, rounded down to ``digits`` significant digits.
+    """Return a number, to be used as an upper bound, rounded down to ``digits``
+    significant digits, as text; "0" below 0.
 
     >>> [round_down_in_words(value) for value in (0.4475, 12.99, 123.4, 0.02999, 0.0)]
     ['0.44', '12', '120', '0.029', '0']
@@ -41,7 +42,7 @@ def round_down_in_words(value: float, digits: int = 2) -> str:
 
 @frozen(slots=False)
 class SeatingSentences:
-    """The words of one fixture.
+    """Sentences on the seating of one fixture.
 
     Parameters
     ----------
@@ -61,66 +62,75 @@ class SeatingSentences:
 
     @property
     def sign(self) -> str:
-        """What is read, such as S."""
+        """The sign of the length that is read, such as S."""
         return self.gauge.setting.sign
 
     def compute_reading(self, seat: Seat) -> float:
-        """Return what is read in a seat, in mm."""
-        return self.gauge.at(seat.jaw_separation)
+        """Return the length in mm that is read in a seat."""
+        return self.gauge.compute_reading(seat.jaw_separation)
 
     def format_reading(self, length: float) -> str:
+        """Return a reading given in mm in words, such as "S = 24.125 mm"."""
         return f"{self.sign} = {self.lengths.format_length(length)}"
 
     def bound(self, length: float) -> str:
-        """Return a length in mm that must not be passed, in words."""
+        """Return a length in mm that must not be exceeded, rounded down, in words with its unit."""
         unit = self.lengths.unit
         return f"{round_down_in_words(length / unit.millimetres)} {unit.abbreviation}"
 
     def format_reading_short_of(self, opened: float) -> float:
-        """Return the reading when the jaws are opened by a length in mm, rounded so that they open no further."""
+        """Return the reading in mm when the jaws are opened by ``opened`` mm from the own seat.
+
+        It is rounded to what is displayed, so that the jaws open no further.
+        """
         step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
-        reading = self.gauge.at(self.own.jaw_separation + self.seating.clamping * opened) / step
+        reading = self.gauge.compute_reading(self.own.jaw_separation + self.seating.clamping * opened) / step
         return (floor(reading) if self.gauge.grows else ceil(reading)) * step
 
     @cached_property
     def own(self) -> Seat:
+        """The fixture's own seat."""
         return next(seat for seat in self.seating.seats if seat.is_own)
 
     @cached_property
     def wrong(self) -> list[Seat]:
-        """The wrong seats that the jaws open far enough for, those nearest to the right reading first."""
+        """The wrong seats that the opening reaches, those nearest to the right reading first."""
         return sorted(
-            self.seating.wrong_within(),
+            self.seating.list_wrong_seats(),
             key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg),
         )
 
     @property
     def alike(self) -> int:
-        """The number of seats besides its own in which the part covers its place."""
+        """The number of other seats in which the part covers its own place."""
         return sum(seat.same_place and not seat.is_own for seat in self.seating.seats)
 
     def compute_safe_start(self, workpiece: Workpiece) -> tuple[float, float] | None:
-        """Return the shift in mm and turn in degrees by which the part may lie off and is sure to come home.
+        """Return the shift in mm and the turn in degrees off its place from
+        which the part certainly settles there.
 
-        It is None where nothing bounds them. Half of ``placing`` is for the shift, half for 2 R sin(turn /
-        2), R the farthest point of the part from its middle.
+        None where nothing bounds them. Half of ``seating.placing`` is for the shift, half for 2 R sin(turn /
+        2), R the distance of the part's farthest point from its middle.
         """
         if self.seating.placing is None:
             return None
         half = self.seating.placing / 2.0
-        arm = Silhouette.of(workpiece).arm
+        arm = Silhouette.from_workpiece(workpiece).arm
         return half, min(2.0 * degrees(asin(min(half / (2.0 * arm), 1.0))), ANY_TURN)
 
     def describe_difference(self, seat: Seat) -> str:
+        """Return how a seat's reading differs from the right one, such as "0.35 mm less", or "the same"."""
         if abs(seat.difference) < 0.5 * 10.0**-self.lengths.decimals * self.lengths.unit.millimetres:
             return "the same"
         more = self.compute_reading(seat) > self.compute_reading(self.own)
         return f"{self.lengths.format_length(abs(seat.difference))} {'more' if more else 'less'}"
 
     def list_steps(self, workpiece: Workpiece) -> list[str]:
-        """Return what to do and what to read, one step each."""
+        """Return sentences on how far to open, where to put the part, and what to read, in the order of
+        work.
+        """
         seating, right = self.seating, self.format_reading(self.compute_reading(self.own))
-        ways = self.gauge.ways
+        ways = self.gauge.opening_words
         most, more = ("at most", "more") if self.gauge.grows else ("at least", "less")
         capture, room = seating.capture_opening, seating.drop_room
         widest = inf if seating.most is None else seating.most
@@ -156,10 +166,12 @@ class SeatingSentences:
         return steps
 
     def describe_wrong_seats(self) -> list[str]:
-        """Return the sentences on how many wrong seats there are, and on what no reading shows."""
+        """Return sentences on how many wrong seats there are, and on what the reading does not show."""
         seating, reach = self.seating, ""
         if seating.opening is not None:
-            reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(seating.opening)},"
+            reach = (
+                f", {self.gauge.opening_words.done.lower()} by no more than {self.bound(seating.opening)},"
+            )
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
         turned = "" if not over else f", {f'{over} of them ' if over < len(wrong) else ''}turned over"
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
@@ -177,8 +189,15 @@ class SeatingSentences:
         return [*words, *map(capitalize_sentence, seating.unsettled)]
 
     def describe_ending(self, ending: str, seat: Seat | None, travelled: float) -> str:
-        """Return a sentence on how a closing ended, see ``seating.closing_simulation.ENDINGS``, with the reading."""
-        read, stop = self.format_reading(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
+        """Return a sentence on how a simulated closing ended, with the reading.
+
+        ``ending`` is one of ``seating.closing_simulation.ENDINGS``, ``seat`` the seat reached or None,
+        ``travelled`` the separation in mm.
+        """
+        read, stop = (
+            self.format_reading(self.gauge.compute_reading(travelled)),
+            STOPPED[self.gauge.carrier.measure],
+        )
         if seat is not None and ending == "right":
             return f"The part is in its place: {read}."
         if seat is not None and ending == "same place":
@@ -201,14 +220,14 @@ class SeatingSentences:
         }.get(ending, f"The motion could not be followed to its end; the last reading is {read}.")
 
     def list_cautions(self) -> list[tuple[str, str]]:
-        """Return the cautions: of each its kind, "capture" or "reading", and a sentence."""
+        """Return cautions as (kind, sentence); the kind is "capture" or "reading"."""
         seating, found = self.seating, list[tuple[str, str]]()
         if seating.is_untold:
             words = "It is not known how far you may open: hold the part in its place while you close."
             found.append(("capture", words))
         elif seating.capture_opening is not None and seating.is_hardly_caught:
             words = (
-                f"The part settles only from very close: {self.gauge.ways.done.lower()} by "
+                f"The part settles only from very close: {self.gauge.opening_words.done.lower()} by "
                 f"{self.bound(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
                 "place while you close, and compare the reading."
             )
@@ -222,5 +241,5 @@ class SeatingSentences:
 
 
 def capitalize_sentence(words: str) -> str:
-    """Return the words that begin with a capital letter."""
+    """Return a text with its first letter as a capital."""
     return f"{words[:1].upper()}{words[1:]}"

@@ -16,7 +16,7 @@ from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, arrange_cells, dr
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, measure_text
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, write_heading
+from workhold.drawing.sheet_writing import BODY, NOTE, SetupSheet, write_heading
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
@@ -25,7 +25,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import WHY, Gauge
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["RIGHT", "Placed", "draw_seats", "write_seating", "write_wrong_seats"]
+__all__ = ["RIGHT", "PlacedSeat", "draw_seats", "write_seating", "write_wrong_seats"]
 
 # The right seat, and one that no reading distinguishes from it.
 RIGHT, ALIKE = "#2e7d32", "#8a6d00"
@@ -44,7 +44,8 @@ def draw_seats(
     title: str = "Fixture",
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw up to twelve seats of a fixture's pegs on an A4 sheet to one scale, with their readings.
+    """Return up to twelve seats of a fixture's pegs on an A4 sheet to one
+    scale, with their readings, as SVG text.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def draw_seats(
     str
         SVG text.
     """
-    placed = [Placed.from_seat(seat, fixture, workpiece, toolkit) for seat in seats[:MOST_THUMBNAILS]]
+    placed = [PlacedSeat.from_seat(seat, fixture, workpiece, toolkit) for seat in seats[:MOST_THUMBNAILS]]
     scene = Scene.make_page(LANDSCAPE, f"{workpiece.name}: seats")
     more = len(seats) - len(placed)
     words = "all to the same scale" if not more else f"{more} more not drawn; all to the same scale"
@@ -69,8 +70,8 @@ def draw_seats(
 
 
 @frozen(eq=False)
-class Placed:
-    """A seat with its part and pegs where they are, in mm in the vise frame.
+class PlacedSeat:
+    """A seat with its part and pegs placed, in mm in the vise frame.
 
     Parameters
     ----------
@@ -92,28 +93,26 @@ class Placed:
     touching: str
 
     @classmethod
-    def from_seat(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
+    def from_seat(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> PlacedSeat:
+        """Return a seat of a fixture with everything placed; a mirrored seat has the part turned over."""
         part = workpiece.turned_over if seat.mirrored else workpiece
-        lying = part.placed(seat.pose)
+        lying = part.apply_pose(seat.pose)
         touching, gauge = {contact.peg for contact in seat.contacts}, Gauge(fixture, toolkit)
         pegs = [
             ((peg.x, peg.y), toolkit.find_carrier(peg.carrier).peg_radius, k in touching)
-            for k, peg in enumerate(gauge.pegs(seat.jaw_separation))
+            for k, peg in enumerate(gauge.place_pegs(seat.jaw_separation))
             if toolkit.find_carrier(peg.carrier).contact.is_placed
         ]
-        reading = gauge.at(seat.jaw_separation), gauge.setting.length
+        reading = gauge.compute_reading(seat.jaw_separation), gauge.setting.length
         bounds, walls = Box(*lying.bounds), len(toolkit.ends_on_walls)
-        boxes = [bounds, *(Box(*at, *at).grown(radius) for at, radius, _ in pegs)]
+        boxes = [bounds, *(Box(*at, *at).grow(radius) for at, radius, _ in pegs)]
         boxes += [Box(bounds.x0, -WALL, bounds.x1, 0.0)] * walls
-        extent, lies = reduce(Box.union, boxes), toolkit.setup_words.touching
+        extent, lies = reduce(Box.unite, boxes), toolkit.setup_words.touching
         return cls(seat, lying.loop_segments, pegs, reading, extent, walls, lies)
 
 
-def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
-    """Draw the part as it lies and the pegs, those that touch filled.
-
-    Lines are ``weight`` page units wide.
-    """
+def draw_lying(scene: Scene, placed: PlacedSeat, view: View, weight: float = 1.2) -> None:
+    """Draw the part of a seat and the pegs, those that touch filled; lines are ``weight`` page units wide."""
     for _ in range(placed.walls):
         x0, x1 = placed.extent.x0, placed.extent.x1
         scene.add_polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
@@ -125,7 +124,8 @@ def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) ->
         )
 
 
-def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
+def draw_seat(scene: Scene, placed: PlacedSeat, number: int, cell: Box, view: View, unit: Unit) -> None:
+    """Draw a seat with its number, reading and kind into a page cell."""
     seat, (reading, own) = placed.seat, placed.reading
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
     scene.add_rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
@@ -157,8 +157,10 @@ GAP, TALL = 8.0, 0.95
 LINE, READING, SMALL = 12.5, 11.0, 9.5
 
 
-def write_seating(column: TextColumn, sheet: Sheet) -> None:
-    """Write how far to open, where to put the part and what to read; or how to put it into two clamps."""
+def write_seating(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block on opening, placing the part and reading; with two
+    clamps, on putting the part in by hand.
+    """
     write_heading(column, "Does the part end up there?")
     put_in, steps = sheet.details.by_hand, list[str]()
     if sheet.seating is not None:
@@ -166,15 +168,15 @@ def write_seating(column: TextColumn, sheet: Sheet) -> None:
     elif put_in is not None:
         column.write_paragraph(WHY, BODY)
         # The order of tightening has a block of its own.
-        steps = put_in.steps(sheet.lengths.format_length, with_order=False)
+        steps = put_in.list_steps(sheet.lengths.format_length, with_order=False)
     else:
         column.write_paragraph(sheet.details.not_seated, BODY)
     for number, step in enumerate(steps, 1):
         column.write_item(f"{number}.", step, BODY)
 
 
-def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
-    """Draw the right seat and the wrong ones that read most like it, each with its reading."""
+def write_wrong_seats(column: TextColumn, sheet: SetupSheet) -> None:
+    """Draw the right seat and the wrong seats that read most like it, each with its reading."""
     words = sheet.seating
     assert words is not None
     write_heading(column, "What it looks like")
@@ -191,8 +193,8 @@ def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
             column.y + 6 + k // ACROSS * (TALL * width + below + GAP),
         )
         cells.append(Box(x, y, x + width, y + TALL * width))
-    placed = [Placed.from_seat(seat, sheet.fixture, sheet.workpiece, sheet.toolkit) for seat in shown]
-    rooms = [cell.grown(-5.0) for cell in cells]
+    placed = [PlacedSeat.from_seat(seat, sheet.fixture, sheet.workpiece, sheet.toolkit) for seat in shown]
+    rooms = [cell.grow(-5.0) for cell in cells]
     scale = min(View.fit_box(one.extent, room).scale for one, room in zip(placed, rooms, strict=True))
     group = column.scene.group("seats")
     for one, lines, cell, room in zip(placed, captions, cells, rooms, strict=True):
@@ -213,7 +215,9 @@ def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
 
 
 def write_caption(words: SeatingSentences, seat: Seat) -> list[str]:
-    """Return the lines below the picture of a seat: the reading, how it differs, and what is wrong."""
+    """Return the lines below a seat's picture: its reading, the difference from the
+    right one, and what is wrong, if any.
+    """
     notes = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
     notes += ["not settled"] * (seat.kind == "unsettled")
     lines = [

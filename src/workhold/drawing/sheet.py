@@ -22,8 +22,8 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, make_bench
+from workhold.drawing.annotation import draw_scale_bar
+from workhold.drawing.bench import BenchDrawing, make_bench
 from workhold.drawing.bent_part import draw_bent_page
 from workhold.drawing.carriers import limit_holes_drawn
 from workhold.drawing.hold_cautions import list_hold_cautions
@@ -49,14 +49,14 @@ from workhold.drawing.sheet_facts import (
     list_cautions,
     measure_edge_distances,
 )
-from workhold.drawing.sheet_writing import Block, Sheet, find_sheet_heights, measure_block_height
+from workhold.drawing.sheet_writing import Block, SetupSheet, find_sheet_heights, measure_block_height
 from workhold.drawing.side_drawing import SideFigure
 from workhold.drawing.side_view import choose_side_view
 from workhold.drawing.supports_drawn import PlannedSupports
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.result import Result
-from workhold.model.setup import part_zero
+from workhold.model.setup import choose_part_zero
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["draw_sheet", "draw_setup_sheet", "choose_standard_scale"]
@@ -71,14 +71,15 @@ NEAR = 2
 def draw_sheet(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
 ) -> tuple[str, ...]:
-    """Draw the setup sheet of a fixture, lying or upright, whichever shows the part largest.
+    """Return the pages of a fixture's setup sheet as SVG text, landscape or
+    portrait, whichever shows the part largest.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
-    attribute ``data-model-to-page``, written as an SVG matrix. On paper its scale is a standard one. Returns
-    the SVG text of every page, each of the paper's size.
+    attribute ``data-model-to-page``, written as an SVG matrix. The plan's scale on paper is a standard one.
+    All pages have the paper's size.
     """
     bench = make_bench(fixture, workpiece, toolkit)
-    details = details if details.zero else evolve(details, zero=part_zero(workpiece))
+    details = details if details.zero else evolve(details, zero=choose_part_zero(workpiece))
     lengths = LengthUnit.from_typical_length(details.unit, bench.shown.pitch)
     if fixture.hold is not None:
         distances, heights = list[float](), None
@@ -87,14 +88,16 @@ def draw_sheet(
         distances = measure_edge_distances(fixture, workpiece, toolkit)
         cautions = list_cautions(fixture, toolkit, distances, details, lengths)
         heights = find_sheet_heights(fixture, workpiece, toolkit, details)
-    sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), tuple(distances), heights)
+    sheet = SetupSheet(
+        fixture, workpiece, toolkit, details, lengths, tuple(cautions), tuple(distances), heights
+    )
     figure = make_side_figure(sheet, bench)
     zero = sheet.zero_place
-    near = bench.extent.grown(NEAR * bench.shown.pitch)
+    near = bench.extent.grow(NEAR * bench.shown.pitch)
     zero_box, origin_box = Box(*zero, *zero), Box(0.0, 0.0, 0.0, 0.0)
     sheet = evolve(sheet, zero_shown=near.contains(zero_box), origin_shown=near.contains(origin_box))
-    extent = bench.extent.union(zero_box) if sheet.zero_shown else bench.extent
-    extent = extent.union(origin_box) if sheet.origin_shown else extent
+    extent = bench.extent.unite(zero_box) if sheet.zero_shown else bench.extent
+    extent = extent.unite(origin_box) if sheet.origin_shown else extent
     path = None
     if details.program is not None:
         path = PlannedPath(details.program, fixture, details.passing)
@@ -114,7 +117,7 @@ def draw_sheet(
     words = f", scale {layout.scale.name}"
     if bench.shown.carriers and not limit_holes_drawn(view, bench.shown):
         words += "; only the holes near the pegs are drawn"
-    scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
+    draw_scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     for page, columns in zip(pages, (layout.columns, *layout.more), strict=True):
         write_columns(page, columns)
     if figure is not None and layout.figure is not None:
@@ -133,16 +136,18 @@ def draw_sheet(
 
 
 def draw_setup_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]:
-    """Return the pages of the setup sheet of one fixture, as SVG text.
+    """Return the pages of the setup sheet of a result's fixture, as SVG text.
 
-    Its arguments and errors are those of :func:`workhold.drawing.sheet_facts.collect_sheet_details`.
+    Arguments and errors are those of :func:`workhold.drawing.sheet_facts.collect_sheet_details`.
     """
     fixture, details = collect_sheet_details(result, rank, **asked)
     return draw_sheet(fixture, result.workpiece, result.toolkit, details)
 
 
-def make_side_figure(sheet: Sheet, bench: Bench) -> SideFigure | None:
-    """Return the view from the side; None if the thickness of the part is not known."""
+def make_side_figure(sheet: SetupSheet, bench: BenchDrawing) -> SideFigure | None:
+    """Return the view from the side; None where the sheet has no heights (the part's thickness is not
+    known).
+    """
     if sheet.heights is None:
         return None
     view = choose_side_view(bench, sheet.workpiece, sheet.heights, sheet.details.supports)
@@ -150,6 +155,7 @@ def make_side_figure(sheet: Sheet, bench: Bench) -> SideFigure | None:
 
 
 def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
+    """Write blocks of words into their columns (box, blocks) of a page."""
     group = scene.group("words")
     for box, blocks in columns:
         column = TextColumn(group, box.x0, box.y0, box.width)
@@ -157,7 +163,8 @@ def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
             block(column)
 
 
-def draw_foot(scene: Scene, layout: PageLayout, sheet: Sheet, page: str) -> None:
+def draw_foot(scene: Scene, layout: PageLayout, sheet: SetupSheet, page: str) -> None:
+    """Draw the line of cells at a page's lower edge; ``page`` is the page's number in words."""
     details, (width, height) = sheet.details, layout.page
     box = Box(MARGIN, height - MARGIN - FOOT + 10, width - MARGIN, height - MARGIN)
     cells = [
@@ -208,7 +215,7 @@ class StandardScale:
 
 
 def choose_standard_scale(largest: float) -> StandardScale:
-    """Return the largest scale of these with at most ``largest`` millimetres on paper for one of the model.
+    """Return the largest standard scale with at most ``largest`` mm on paper for one mm of the model.
 
     >>> [choose_standard_scale(largest).name for largest in (1.0, 0.99, 0.3, 7.0, 0.011)]
     ['1:1', '1:1.5', '1:4', '6:1', '1:100']
@@ -245,7 +252,7 @@ Filled = tuple[Box, tuple[Block, ...]]
 
 @frozen
 class PageLayout:
-    """Where things go.
+    """The places of plan and blocks on the pages of a sheet.
 
     Parameters
     ----------
@@ -253,7 +260,7 @@ class PageLayout:
     plan : the box of the drawing.
     columns : columns of words beside or below the plan, each with its blocks.
     more : columns of each further page, if there are some.
-    scale : what the plan is drawn to.
+    scale : of the plan.
     figure : the box of the side view at the top of the second page, and its scale; None without one.
     """
 
@@ -274,8 +281,9 @@ def arrange_sheet(
 ) -> PageLayout:
     """Return the best layout of blocks and a plan of an extent (mm) on paper.
 
-    ``paper`` is width and height when upright, page units. Where the needed blocks leave no room for a plan,
-    the last ones go to the second page. A view from the side stands at the top of that page.
+    ``paper`` is its width and height when upright, page units. The blocks ``needed`` stand on the page of the
+    plan; where they leave no room for it, the last ones go to the second page. A view from the side stands at
+    the top of that page. A layout of one page is preferred where its drawing is as large, or large enough.
     """
     lying_page, blocks = (paper[1], paper[0]), [*needed, *others]
     least = len(needed)
@@ -303,7 +311,7 @@ def arrange_sheet(
 
 
 def overflows_page(choice: PageLayout) -> bool:
-    """Return whether words run over the foot of a further page."""
+    """Return whether the words of a further page run over its foot."""
     columns = (column for page in choice.more for column in page)
     return any(
         sum(measure_block_height(block, box.width) for block in blocks) > box.height
@@ -312,7 +320,7 @@ def overflows_page(choice: PageLayout) -> bool:
 
 
 def compute_plan_room(plan: Box) -> Box:
-    """Return the part of a plan's box that jaws and part may take."""
+    """Return the part of a plan's box in which jaws and part may be drawn, without the room for lettering."""
     return Box(plan.x0 + LEFT, plan.y0 + TOP, plan.x1 - RIGHT, plan.y1 - BOTTOM - SCALE_BAR)
 
 
@@ -324,7 +332,10 @@ def make_layout(
     rest: Sequence[Block],
     figure: SideFigure | None = None,
 ) -> PageLayout | None:
-    """Return a layout with the rest of the blocks on further pages; None when no room is left for the plan."""
+    """Return a layout with the blocks ``rest`` on further pages; None where the plan would be too small.
+
+    ``columns`` are the filled columns beside or below the plan.
+    """
     room = compute_plan_room(plan)
     if min(room.width, room.height) < SMALLEST_PLAN:
         return None
@@ -350,13 +361,17 @@ def make_layout(
 def lay_out_under_figure(
     inner: Box, rest: Sequence[Block], figure: SideFigure, scale: StandardScale
 ) -> tuple[float, tuple[tuple[Filled, ...], ...]]:
-    """Return where a view from the side at a scale ends, and the pages of words, the first below it."""
+    """Return the lower edge of a side view at a scale, and the pages of
+    words, the first of them below the view.
+
+    ``inner`` is a page without margins and foot.
+    """
     foot = inner.y0 + figure.compute_height(inner.width, scale.factor)
     return foot, fill_pages(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
 
 
 def list_scales_between(least: float, most: float) -> list[StandardScale]:
-    """Return the standard scales from one below the larger factor down to the smaller one."""
+    """Return the standard scales below the factor ``most`` down to ``least``, largest first."""
     found = list[StandardScale]()
     scale = choose_standard_scale(most * (1 - 1e-6))
     while scale.factor >= least * (1 - ROUNDING):
@@ -368,7 +383,10 @@ def list_scales_between(least: float, most: float) -> list[StandardScale]:
 def lay_out_beside_plan(
     page: Page, extent: Box, blocks: Sequence[Block], least: int, count: int, figure: SideFigure | None = None
 ) -> PageLayout | None:
-    """Return the plan at the left and a panel of ``count`` columns; None when the ``least`` first blocks do not fit."""
+    """Return a layout with the plan at the left and ``count`` columns at the right; None if it does not fit.
+
+    The first ``least`` blocks must fit in the columns.
+    """
     inner, width = compute_inner_box(page), PANELS[count]
     heights = [measure_block_height(block, width) for block in blocks]
     columns, first = [], 0
@@ -388,7 +406,11 @@ def lay_out_beside_plan(
 def lay_out_below_plan(
     page: Page, extent: Box, blocks: Sequence[Block], first: int, figure: SideFigure | None = None
 ) -> PageLayout | None:
-    """Return the plan above and the ``first`` blocks in a strip of two columns, of three on a lying page."""
+    """Return a layout with the ``first`` blocks in columns below the plan;
+    None where the plan would be too small.
+
+    There are two columns, or three on a landscape page.
+    """
     inner, count = compute_inner_box(page), 3 if page[0] > page[1] else 2
     width = (inner.width - (count - 1) * GUTTER) / count
     runs, height = balance_runs(
@@ -403,10 +425,10 @@ def lay_out_below_plan(
 def fill_pages(
     inner: Box, blocks: Sequence[Block], first: Box | None = None
 ) -> tuple[tuple[Filled, ...], ...]:
-    """Return the columns of as few pages as hold the blocks: three on a lying page, two on an upright one.
+    """Return the pages, each a tuple of filled columns, on which the blocks fit in as few pages as possible.
 
-    ``inner`` is a page without margins and foot, ``first`` what there is of the first page, where not all of
-    it is free.
+    A landscape page has three columns, a portrait page two. ``inner`` is a page without margins and foot,
+    ``first`` the free part of the first page (None: all of ``inner``).
     """
     if not blocks:
         return ()
@@ -429,9 +451,10 @@ def fill_pages(
 def fill_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int, height: float
 ) -> list[Sequence[Block]] | None:
-    """Return the runs that hold all blocks within a height; None where there are none.
+    """Return ``count`` runs that hold all blocks, each at most ``height``
+    high; None where that is not possible.
 
-    The first of them stand in their order, and the rest where a column has room below.
+    The first blocks keep their order, and the rest go where a column has room below.
     """
     for last in range(len(blocks), 0, -1):
         runs, most = balance_runs(blocks[:last], heights[:last], count)
@@ -452,21 +475,23 @@ def fill_runs(
 
 
 def place_in_columns(box: Box, runs: Sequence[Sequence[Block]]) -> list[Filled]:
-    """Return the runs of blocks in columns of equal width."""
+    """Return the runs of blocks as (box, blocks) in columns of equal width side by side in a box."""
     width = (box.width - (len(runs) - 1) * GUTTER) / len(runs)
     lefts = [box.x0 + k * (width + GUTTER) for k in range(len(runs))]
     return [(Box(x0, box.y0, x0 + width, box.y1), tuple(run)) for x0, run in zip(lefts, runs, strict=True)]
 
 
 def compute_inner_box(page: Page) -> Box:
-    """Return a page without its margins and its foot."""
+    """Return the box of a page without its margins and foot."""
     return Box(MARGIN, MARGIN, page[0] - MARGIN, page[1] - MARGIN - FOOT)
 
 
 def balance_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int
 ) -> tuple[list[Sequence[Block]], float]:
-    """Return the blocks in ``count`` runs as level as their order allows, and the height of the highest."""
+    """Return the blocks in order, cut into ``count`` runs of nearly equal
+    height, and the height of the highest run.
+    """
     if count == 1:
         return [blocks], sum(heights)
     best: tuple[list[Sequence[Block]], float] | None = None

@@ -12,7 +12,7 @@ from functools import partial
 from math import isfinite
 
 from workhold.drawing.hardware_table import write_hardware
-from workhold.drawing.hold_blocks import hold_writers
+from workhold.drawing.hold_blocks import list_hold_blocks
 from workhold.drawing.panel import (
     NUMBERS,
     TextColumn,
@@ -20,11 +20,11 @@ from workhold.drawing.panel import (
     describe_fixture,
     describe_holes,
     describe_move,
+    describe_row_offset,
     draw_legend,
     format_count,
     format_value,
     name_pegs,
-    offset_words,
 )
 from workhold.drawing.program_picture import write_program
 from workhold.drawing.scene import BLACK, LengthUnit, format_degrees, measure_text, shorten_text, wrap_text
@@ -35,7 +35,7 @@ from workhold.drawing.sheet_writing import (
     NOTE,
     Block,
     MovingBlocks,
-    Sheet,
+    SetupSheet,
     Writer,
     describe_lie,
     describe_pegs_in_holes,
@@ -46,7 +46,7 @@ from workhold.drawing.sheet_writing import (
     write_heading,
 )
 from workhold.drawing.support_signs import draw_pad, draw_tip
-from workhold.drawing.supports_drawn import support_steps, write_heights, write_supports
+from workhold.drawing.supports_drawn import list_support_steps, write_heights, write_supports
 from workhold.drawing.upper_side import write_part, write_side, write_side_up
 from workhold.errors import join_words
 from workhold.fixels.carrier import Carrier, Measure, make_column_letters, make_hole_name
@@ -55,8 +55,8 @@ from workhold.model.clamps import (
     compute_clamp_force_ratio,
     compute_clamp_shares,
     describe_clamp_freedom,
+    describe_tightening_order,
     name_clamps,
-    order_words,
 )
 from workhold.model.moved_setup import count_spare_holes, describe_overhang
 from workhold.model.quality import (
@@ -76,7 +76,10 @@ from workhold.units import INCH
 __all__ = ["make_blocks"]
 
 
-def write_pegs(column: TextColumn, sheet: Sheet) -> None:
+def write_pegs(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the table of the pegs, and notes on where x and y are measured,
+    walls, overhang, forces, flats and dowels.
+    """
     toolkit, plates = sheet.toolkit, sheet.toolkit.plates
     first, noun = plates[0], toolkit.moving.noun
     write_heading(column, f"{toolkit.setup_words.standing} {describe_peg_size(sheet, first)}")
@@ -103,7 +106,8 @@ def write_pegs(column: TextColumn, sheet: Sheet) -> None:
     write_dowel(column, sheet)
 
 
-def describe_peg_size(sheet: Sheet, carrier: Carrier) -> str:
+def describe_peg_size(sheet: SetupSheet, carrier: Carrier) -> str:
+    """Return the diameter of a carrier's pegs, and of their bodies where these are wider, in words."""
     if not carrier.peg_radius:
         return "(points, no diameter)"
     lengths = sheet.lengths
@@ -113,7 +117,8 @@ def describe_peg_size(sheet: Sheet, carrier: Carrier) -> str:
     return size
 
 
-def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
+def write_flush(column: TextColumn, sheet: SetupSheet, wall: Carrier) -> None:
+    """Write on which faces the part lies flush on a wall."""
     plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
@@ -125,7 +130,8 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
     column.write_paragraph(words, NOTE)
 
 
-def put_words(sheet: Sheet) -> str:
+def put_words(sheet: SetupSheet) -> str:
+    """Return the step that says in which holes to put the pegs."""
     plates, holes = sheet.toolkit.plates, list[str]()
     for plate in plates:
         there = join_words([peg.hole for peg in sheet.fixture.pegs if peg.carrier == plate.name])
@@ -140,12 +146,14 @@ def put_words(sheet: Sheet) -> str:
     )
 
 
-def describe_touch(sheet: Sheet) -> str:
+def describe_touch(sheet: SetupSheet) -> str:
+    """Return a sentence on which face each peg touches, and how to check it."""
     touch = join_words([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
     return f"{touch}. A strip of paper must not pull out at any of them."
 
 
-def write_opening(column: TextColumn, sheet: Sheet) -> None:
+def write_opening(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the opening between jaws, with how to measure it by calipers on two pegs."""
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
     first, moving = toolkit.plates[0], toolkit.moving
     write_heading(column, f"Opening S of the {moving.noun}s")
@@ -172,7 +180,8 @@ def write_opening(column: TextColumn, sheet: Sheet) -> None:
     column.write_fact("outside, over both pegs", lengths.format_length(check.distance + diameter), bold=True)
 
 
-def list_opening_steps(sheet: Sheet) -> list[str]:
+def list_opening_steps(sheet: SetupSheet) -> list[str]:
+    """Return the steps of setting up between jaws that slide."""
     fixture, lengths, moving = sheet.fixture, sheet.lengths, sheet.toolkit.moving
     words, force = sheet.toolkit.setup_words, sheet.details.jaw_force
     there, more, back = "Open", "wider", "Close"
@@ -195,8 +204,10 @@ def list_opening_steps(sheet: Sheet) -> list[str]:
 OPENING = MovingBlocks(lambda sheet: [write_opening], list_opening_steps)
 
 
-def clamp_writers(sheet: Sheet) -> list[Writer]:
-    """Return the blocks about the clamp, or about each of two and the order in which they are tightened."""
+def list_clamp_blocks(sheet: SetupSheet) -> list[Writer]:
+    """Return the blocks about the clamp; with two clamps one block for each,
+    and one on the order of tightening.
+    """
     shares = compute_clamp_shares(sheet.fixture)
     each: list[Writer] = [
         partial(write_clamp, setting=one, share=share)
@@ -205,7 +216,11 @@ def clamp_writers(sheet: Sheet) -> list[Writer]:
     return each if sheet.is_closed_at_once else [*each, write_order]
 
 
-def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share: float) -> None:
+def write_clamp(column: TextColumn, sheet: SetupSheet, setting: LengthSetting, share: float) -> None:
+    """Write the block of a clamp: the length to set, direction, tip, stroke and force.
+
+    ``share`` is the clamp's share of the total clamp force.
+    """
     clamp, lengths = setting.carrier, sheet.lengths
     write_heading(column, f"{setting.label} {setting.place}")
     column.write_line(
@@ -215,7 +230,7 @@ def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share:
     column.write_paragraph(f"{how}, once it touches.", NOTE)
     column.y += 3
     direction = clamp.direction.replace("-", "−")
-    column.write_fact("pushes", f"{clamp.towards}, {direction}", bold=True)
+    column.write_fact("pushes", f"{clamp.direction_words}, {direction}", bold=True)
     column.write_fact("round tip", describe_diameter(clamp, lengths), bold=True)
     if clamp.travel is not None and clamp.travel.most is not None:
         least, most = sorted((abs(clamp.travel.least), abs(clamp.travel.most)))
@@ -234,17 +249,20 @@ def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share:
     write_fact_or_field(column, "torque of its screw", None)
 
 
-def compute_needed_clamp_force(sheet: Sheet) -> float:
-    """Return the clamp force, of two clamps added up, that the loads and the program need, in N."""
+def compute_needed_clamp_force(sheet: SetupSheet) -> float:
+    """Return the clamp force in N that the loads and the program need, the
+    sum of both clamps' if there are two.
+    """
     cutting = sheet.details.cutting
     needs = [case.needed.value for case in sheet.details.loads]
     return max([*needs, 0.0 if cutting is None else cutting.jaw.force])
 
 
-def write_order(column: TextColumn, sheet: Sheet) -> None:
+def write_order(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write in which order to tighten two clamps, and the ratio of their forces."""
     fixture, (first, second) = sheet.fixture, name_clamps(sheet.fixture)
     write_heading(column, "Order of tightening")
-    column.write_paragraph(order_words(fixture), BODY, bold=True)
+    column.write_paragraph(describe_tightening_order(fixture), BODY, bold=True)
     ratio = compute_clamp_force_ratio(fixture)
     freedom = fixture.quality["clamp_freedom"]
     column.write_fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
@@ -255,13 +273,14 @@ def write_order(column: TextColumn, sheet: Sheet) -> None:
     )
 
 
-def clamp_steps(sheet: Sheet) -> list[str]:
+def list_clamp_steps(sheet: SetupSheet) -> list[str]:
+    """Return the steps of setting up with clamps."""
     toolkit, lengths, alone = sheet.toolkit, sheet.lengths, sheet.is_closed_at_once
     plate, noun = toolkit.plates[0], toolkit.moving.noun
     bolts, ups = [], []
     for setting, tip in zip(sheet.settings, sheet.fixture.pegs[-len(sheet.settings) :], strict=True):
         put = setting.mounting.put.format(clamp=f"{'the' if alone else 'a'} {noun}", place=setting.place)
-        bolts.append(f"{put}, pushing {setting.carrier.towards}, and draw it back.")
+        bolts.append(f"{put}, pushing {setting.carrier.direction_words}, and draw it back.")
         one = f"the {noun}" if alone else tip.hole
         what = setting.mounting.then.format(name=setting.name, title=setting.title)
         ups.append(
@@ -280,27 +299,30 @@ def clamp_steps(sheet: Sheet) -> list[str]:
     ]
 
 
-def describe_clamping(sheet: Sheet) -> str:
+def describe_clamping(sheet: SetupSheet) -> str:
+    """Return a sentence on clamping, with the forces that are known."""
     fixture, force, unit = sheet.fixture, sheet.details.jaw_force, sheet.lengths.unit
     if sheet.is_closed_at_once:
         return f"Clamp{'' if force is None else f' with {unit.format_force(force)}'}."
     if force is None:
-        return order_words(fixture)
+        return describe_tightening_order(fixture)
     shares = zip(name_clamps(fixture), compute_clamp_shares(fixture), strict=True)
     each = [f"{unit.format_force(share * force)} at {name}" for name, share in shares]
-    return f"{order_words(fixture)} {join_words(each)} add up to the {unit.format_force(force)} given."
+    return f"{describe_tightening_order(fixture)} {join_words(each)} add up to the {unit.format_force(force)} given."
 
 
-CLAMPS = MovingBlocks(clamp_writers, clamp_steps)
+CLAMPS = MovingBlocks(list_clamp_blocks, list_clamp_steps)
 
 
-def write_counting(column: TextColumn, sheet: Sheet) -> None:
+def write_counting(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block on how holes are counted."""
     write_heading(column, "Counting holes")
     several = len(sheet.toolkit.plates) > 1
     (write_jaws if several else write_plate)(column, sheet)
 
 
-def write_jaws(column: TextColumn, sheet: Sheet) -> None:
+def write_jaws(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write how the holes of two jaws are counted."""
     lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
     pitch_x, pitch_y = (lengths.format_short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
@@ -314,13 +336,14 @@ def write_jaws(column: TextColumn, sheet: Sheet) -> None:
     if first.rows is not None:
         rows = f"Row 1 is the lowest of {first.rows}."
     column.write_paragraph(f"Columns: {where}. {rows}", BODY)
-    if offset := offset_words(sheet.toolkit, lengths):
+    if offset := describe_row_offset(sheet.toolkit, lengths):
         column.write_paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
-    if words := place_words(sheet):
+    if words := describe_place(sheet):
         column.write_paragraph(words, BODY)
 
 
-def write_plate(column: TextColumn, sheet: Sheet) -> None:
+def write_plate(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write how the holes of a plate are counted, and how far the set-up may be moved."""
     plate, lengths = sheet.toolkit.plates[0], sheet.lengths
     peg = next(peg for peg in sheet.fixture.pegs if peg.carrier == plate.name)
     pitch_x, pitch_y = plate.pitch
@@ -334,12 +357,14 @@ def write_plate(column: TextColumn, sheet: Sheet) -> None:
     size = "" if plate.columns is None and plate.rows is None else f", {describe_holes(plate)}"
     column.write_paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
     column.write_paragraph(describe_moving(sheet), BODY)
-    if words := place_words(sheet):
+    if words := describe_place(sheet):
         column.write_paragraph(words, BODY)
 
 
-def place_words(sheet: Sheet) -> str:
-    """Return where on its plate all of a set-up stands, a sentence; nothing where that is as it is listed."""
+def describe_place(sheet: SetupSheet) -> str:
+    """Return a sentence on how far the whole set-up is moved on its plate; ""
+    where it stands as listed or on supports.
+    """
     if sheet.details.supports is not None or sheet.details.moved == (0, 0):
         return ""
     where = (
@@ -348,7 +373,8 @@ def place_words(sheet: Sheet) -> str:
     return f"The whole set-up stands {describe_move(sheet.details.moved)} than in the list, {where}."
 
 
-def describe_moving(sheet: Sheet) -> str:
+def describe_moving(sheet: SetupSheet) -> str:
+    """Return a sentence on how far the whole set-up may be moved along columns and rows."""
     ways = []
     spares = count_spare_holes(sheet.fixture, sheet.toolkit)
     words = (("column", "left", "right"), ("row", "down", "up"))
@@ -377,8 +403,10 @@ MOST_LOADS = 6
 WIDEST_LOAD = 0.3
 
 
-def write_quality(column: TextColumn, sheet: Sheet) -> None:
-    """Write the figures of quality that are known and that no other block shows."""
+def write_quality(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the figures of quality that are known and that no other block
+    shows, and why this is the first choice.
+    """
     write_heading(column, "Quality")
     for figure in (FIGURES[number] for number in ON_THE_SHEET):
         value = sheet.fixture.quality.get(figure.key)
@@ -410,15 +438,15 @@ def write_quality(column: TextColumn, sheet: Sheet) -> None:
         column.write_paragraph(sheet.details.why_first, NOTE)
 
 
-def load_words(load: Load, lengths: LengthUnit) -> str:
-    """Return what a load is, in the part's coordinates.
+def describe_load(load: Load, lengths: LengthUnit) -> str:
+    """Return a load in words: force, place and direction in the part's frame, and moment.
 
     >>> load_words(Load(((10, 5),), 200, (30, 30), -500), LengthUnit.in_mm(1))
     '200 N at x 10.0, y 5.0 mm, towards 30°; moment −0.5 N m'
     """
     unit, words = lengths.unit, []
     if load.force:
-        x, y = (lengths.number(value) for value in load.points[0])
+        x, y = (lengths.format_number(value) for value in load.points[0])
         place = (
             f"x {x}, y {y} {unit.abbreviation}"
             if len(load.points) == 1
@@ -433,8 +461,10 @@ def load_words(load: Load, lengths: LengthUnit) -> str:
     return "; ".join(words)
 
 
-def write_loads(column: TextColumn, sheet: Sheet) -> None:
-    """Write the loads, the hardest first, with the jaw force needed and each peg's largest force."""
+def write_loads(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the table of loads, the hardest first: the clamping force each
+    needs, and each peg's largest force.
+    """
     details, unit, moving = sheet.details, sheet.lengths.unit, sheet.toolkit.moving
     write_heading(column, f"Loads and reactions, {unit.force}")
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
@@ -459,7 +489,7 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     column.write_table(header, rows, BODY)
     for number, case in cases[:MOST_LOADS]:
         column.write_paragraph(
-            f"{case.load.name or f'load {number}'}: {load_words(case.load, sheet.lengths)}.", NOTE
+            f"{case.load.name or f'load {number}'}: {describe_load(case.load, sheet.lengths)}.", NOTE
         )
     if len(cases) > MOST_LOADS:
         column.write_paragraph(
@@ -486,11 +516,12 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
     )
 
 
-def write_bending(column: TextColumn, sheet: Sheet) -> None:
+def write_bending(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the table of how far pegs bend, and how far that moves the part."""
     bent, lengths, mover = sheet.details.bent, sheet.lengths, sheet.toolkit.moving.noun
     assert bent is not None
     write_heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")
-    at = bent.at_force(mover, lengths.unit)
+    at = bent.describe_force(mover, lengths.unit)
     header = [
         "",
         f"pressed at {lengths.sign}",
@@ -500,8 +531,8 @@ def write_bending(column: TextColumn, sheet: Sheet) -> None:
     rows = [
         [
             peg.hole,
-            lengths.number(peg.height),
-            lengths.number(peg.deflection),
+            lengths.format_number(peg.height),
+            lengths.format_number(peg.deflection),
             lengths.unit.format_stress_number(peg.stress),
         ]
         for peg in bent.pegs
@@ -523,7 +554,7 @@ MOST_NAME_LINES = 3
 MOVING: Mapping[Measure, MovingBlocks] = {"opening": OPENING, "stroke": CLAMPS, "tip": CLAMPS}
 
 
-def make_blocks(sheet: Sheet) -> tuple[list[Block], list[Block]]:
+def make_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
     """Return all blocks of a sheet in reading order: those needed beside the plan, and the others."""
     if sheet.fixture.hold is not None:
         return make_hold_blocks(sheet)
@@ -550,26 +581,27 @@ def make_blocks(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     others += [write_quality, write_counting, write_legend]
 
     def bound(writer: Writer) -> Block:
+        """Return a block that writes this sheet."""
         return lambda column: writer(column, sheet)
 
     return list(map(bound, needed)), list(map(bound, others))
 
 
-def make_hold_blocks(sheet: Sheet) -> tuple[list[Block], list[Block]]:
-    """Return the blocks of a sheet of flat jaws: what to set, the view from the end, the force, zero and
-    cautions first.
-    """
-    setting, rest = hold_writers(sheet)
+def make_hold_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
+    """Return the blocks of a sheet of flat jaws or straps: those needed beside the plan, and the others."""
+    setting, rest = list_hold_blocks(sheet)
     needed = [write_title, *setting, write_zero, *([write_cautions] if sheet.cautions else [])]
     others = [*rest, *([write_program] if sheet.details.program is not None else []), write_part]
 
     def bound(writer: Writer) -> Block:
+        """Return a block that writes this sheet."""
         return lambda column: writer(column, sheet)
 
     return list(map(bound, needed)), list(map(bound, others))
 
 
-def write_title(column: TextColumn, sheet: Sheet) -> None:
+def write_title(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the part's name, the fixture's rank, its arrangement and the part's size."""
     size = next(
         (s for s in NAME_SIZES if measure_text(sheet.name, s, bold=True) <= column.width), NAME_SIZES[-1]
     )
@@ -583,11 +615,12 @@ def write_title(column: TextColumn, sheet: Sheet) -> None:
     column.write_line(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
     column.write_paragraph(describe_fixture(sheet.fixture, sheet.toolkit), BODY)
     x0, y0, x1, y1 = sheet.workpiece.bounds
-    outside = f"{sheet.lengths.number(x1 - x0)} × {sheet.lengths.format_length(y1 - y0)}"
+    outside = f"{sheet.lengths.format_number(x1 - x0)} × {sheet.lengths.format_length(y1 - y0)}"
     column.write_line(f"Size {outside}, as drawn", BODY, gap=0.3)
 
 
-def write_zero(column: TextColumn, sheet: Sheet) -> None:
+def write_zero(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write where part zero is, the part's angle, and the lines to enter at the control (G54, G68)."""
     zero, lengths = sheet.zero, sheet.lengths
     (x, y), turn = sheet.zero_place, sheet.fixture.pose.written_deg
     write_heading(column, "Part zero X0 Y0 and angle")
@@ -609,7 +642,8 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
         column.write_paragraph(words, NOTE)
         return
     gx, gy = (
-        lengths.number(start + way).replace("−", "-") for start, way in zip(machine, (x, y), strict=True)
+        lengths.format_number(start + way).replace("−", "-")
+        for start, way in zip(machine, (x, y), strict=True)
     )
     unit = "G20" if sheet.lengths.unit is INCH else "G21"
     column.write_paragraph(
@@ -622,22 +656,25 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
     column.write_line(f"G54 {turning}" if float(word) else "G54", BODY, bold=True)
 
 
-def write_cautions(column: TextColumn, sheet: Sheet) -> None:
+def write_cautions(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write what to beware of."""
     write_heading(column, "Beware")
     for caution in sheet.cautions:
         column.write_item("▲", caution.sentence, BODY)
 
 
-def write_steps(column: TextColumn, sheet: Sheet) -> None:
+def write_steps(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the numbered steps of setting up."""
     write_heading(column, "Setting up")
     given = "as given under part zero X0 Y0, or touch off the part there"
     zero = f"Set the machine's zero, G54, from {sheet.datum.name} {given}."
-    steps = support_steps(sheet, MOVING[sheet.toolkit.moving.measure].steps(sheet))
+    steps = list_support_steps(sheet, MOVING[sheet.toolkit.moving.measure].steps(sheet))
     for number, step in enumerate([*steps, zero], 1):
         column.write_item(f"{number}.", step, BODY)
 
 
-def write_legend(column: TextColumn, sheet: Sheet) -> None:
+def write_legend(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the legend of the plan's signs."""
     write_heading(column, "Signs")
     of_supports = ((draw_pad, "support below the part"), (draw_tip, "clamp on top, presses down"))
     draw_legend(column, sheet.toolkit, BLACK, of_supports if sheet.details.supports is not None else ())

@@ -27,18 +27,18 @@ from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.model.setup import PartZero, part_zero
+from workhold.model.setup import PartZero, choose_part_zero
 from workhold.model.support_bodies import find_support_height
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
-from workhold.seating.clamping import ByHand, by_hand
-from workhold.statics.bent_pegs import BentPegs, bent_pegs
-from workhold.statics.contact_matrix import Touched
+from workhold.seating.clamping import HandLoading, plan_hand_loading
+from workhold.statics.bent_pegs import BentPegs, compute_bent_pegs
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.judging import is_astray, is_near_edge, is_strong, is_unfit, is_weak, lets_go
-from workhold.statics.loads import LoadCase, load_cases
-from workhold.statics.program_clearance import Passing, find_nearest_passing
+from workhold.statics.loads import LoadCase, compute_load_cases
+from workhold.statics.program_clearance import ToolClearance, find_nearest_passing
 from workhold.statics.program_forces import CuttingNeed, find_cutting_need
-from workhold.statics.why_first import why_first
+from workhold.statics.why_first import explain_why_first
 from workhold.units import MILLIMETRE, Unit
 from workhold.version import __version__
 
@@ -125,14 +125,14 @@ class SheetDetails:
     others: int = 0
     why_first: str = ""
     seating: Seating | None = None
-    by_hand: ByHand | None = None
+    by_hand: HandLoading | None = None
     not_seated: str = ""
     supports: ChosenSupports | None = None
     support_height: float | None = None
     plate_thickness: float | None = None
     first_side: FirstSide | None = None
     program: Program | None = None
-    passing: Passing | None = None
+    passing: ToolClearance | None = None
     cutting: CuttingNeed | None = None
     bending: Bending | None = None
     bend: float | None = None
@@ -143,7 +143,9 @@ class SheetDetails:
 
     @property
     def paper_size(self) -> str:
-        """The size of the paper: the one asked for, or the one that the unit's users have."""
+        """The key of the paper, "a4" or "letter": the one asked for, else
+        "letter" for inch units and "a4" for mm.
+        """
         return self.paper or ("letter" if self.unit.force == "lbf" else "a4")
 
 
@@ -156,12 +158,12 @@ UNFIT = (
 
 @frozen
 class Caution:
-    """Something to beware of.
+    """A caution of a setup sheet.
 
     Parameters
     ----------
-    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "bending", "load", "capture",
-        "reading" or "pose".
+    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "bending", "load", "capture", "reading" or
+        "pose".
     sentence : for people; lengths in it are in mm or inch as asked for.
     """
 
@@ -187,12 +189,11 @@ class CaliperCheck:
 
 
 def choose_caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
-    """Return the pair of holes, one in either carrier's column at the opening, to measure the opening
-    between.
+    """Return the pair of holes to measure the opening between: one in each carrier's column at the opening.
 
-    They are as level as possible, so that calipers held square to the plates span them; among those, with as
-    many pegs of the fixture as possible, then the lowest. Columns at the opening are the first carrier's last
-    and the other one's first.
+    These are the first carrier's last column and the other carrier's first. The holes are as level as
+    possible, so that calipers held square to the plates span them. Among those, pairs with most pegs of the
+    fixture come first, then the lowest rows.
     """
     first, second = toolkit.carriers
     rows = sorted({peg.row for peg in fixture.pegs})
@@ -207,32 +208,36 @@ def choose_caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
             continue
         if first.is_blocked(last, low) or second.is_blocked(0, high):
             continue
-        tilt = abs(second.place(0, high)[1] - first.place(last, low)[1])
+        tilt = abs(second.compute_hole_center(0, high)[1] - first.compute_hole_center(last, low)[1])
         placed = ((first.name, last, low) in used) + ((second.name, 0, high) in used)
         key = (round(tilt, 9), -placed, low, high)
         best = key if best is None else min(best, key)
     _, placed, low, high = best or (0.0, 0, rows[0], rows[0])
-    distance = dist(first.place(last, low), second.place(0, high, travelled))
+    distance = dist(first.compute_hole_center(last, low), second.compute_hole_center(0, high, travelled))
     return CaliperCheck((last, low), (0, high), distance, -placed)
 
 
 def measure_edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
-    """Return the distances in mm of the pegs' centres from the ends of their contact features at an edge or
-    another face.
+    """Return for each peg the distance in mm from its centre to the nearer edge that
+    ends its path along the touched face.
 
-    The nearer end counts; without any (a whole circle, tangent joints) the distance is infinite.
+    It is inf where there is no edge (a whole circle, tangent joints).
     """
-    return [float(edge) for edge in Touched.of(workpiece, toolkit).of_fixture(fixture, toolkit).edges[0]]
+    return [
+        float(edge)
+        for edge in TouchableFeatures.from_workpiece(workpiece, toolkit)
+        .compute_for_fixture(fixture, toolkit)
+        .edges[0]
+    ]
 
 
 def list_cautions(
     fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """Return the cautions of ``statics.judging``, those about contacts first, and other ways to lie in the
-    holes.
+    """Return the cautions of a fixture: unfit, program zero, contacts, forces, bending, loads, then seating.
 
-    These come from the seating where it is known. For the distances of the four contacts see
-    :func:`measure_edge_distances`.
+    ``distances`` are those of :func:`measure_edge_distances`. Where the seating is not known, the last
+    caution is about other fixtures in the same holes.
     """
     found: list[Caution] = []
     margin, error = fixture.quality.get("closure_margin", inf), fixture.quality.get("location_error", 0.0)
@@ -241,7 +246,7 @@ def list_cautions(
         found.append(Caution("unfit", UNFIT))
     program, zero = details.program, details.zero
     if program is not None and zero is not None and dist(zero.point, program.zero) > ZERO_OFF:
-        x, y = (lengths.number(value) for value in program.zero)
+        x, y = (lengths.format_number(value) for value in program.zero)
         words = (
             f"The program's X0 Y0 is at x {x}, y {y} {lengths.sign} of the drawing, and this sheet's "
             "is elsewhere"
@@ -269,7 +274,7 @@ def list_cautions(
         words = f"Pegs and faces within tolerance may still shift the part by {lengths.format_length(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))
     if details.bent is not None:
-        of_pegs = details.bent.cautions(toolkit.moving.noun, lengths.unit)
+        of_pegs = details.bent.list_cautions(toolkit.moving.noun, lengths.unit)
         found += [Caution("bending", one) for one in of_pegs]
     if details.jaw_force is not None:
         lifting = [
@@ -283,7 +288,7 @@ def list_cautions(
             words = f"Under {name}, {peg.hole} lets go at the {lengths.unit.format_force(details.jaw_force)} given"
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
     if details.cutting is not None and (details.cutting.room or 0.0) < 0.0:
-        sentences = details.cutting.words(toolkit.moving.noun, lengths.unit, len(fixture.travels))
+        sentences = details.cutting.list_sentences(toolkit.moving.noun, lengths.unit, len(fixture.travels))
         found.append(Caution("load", " ".join(sentences[:2])))
     if details.seating is not None:
         seated = SeatingSentences(details.seating, fixture, toolkit, lengths)
@@ -301,14 +306,18 @@ def list_cautions(
 
 
 def find_placing(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
-    """Return the columns and rows by which a fixture of a result stands further on where it is asked to."""
+    """Return the columns and rows by which a fixture is moved on its plate: to
+    ``at``, or if None to the plate's middle.
+    """
     if at is None:
         return find_move_to_middle(fixture, result.toolkit, result.workpiece)
     return move_to(fixture, result.toolkit, at)
 
 
 def find_part_lift(supports: ChosenSupports | None, support_height: float | None) -> float:
-    """Return how far the part lies above the plates in mm: as high as its supports, or 0 without any."""
+    """Return the height in mm of the part's lower side above the plates: that
+    of its supports, or 0 without any.
+    """
     if supports is None:
         return 0.0
     own = find_support_height(supports.supports.query.toolkit) if support_height is None else support_height
@@ -318,10 +327,11 @@ def find_part_lift(supports: ChosenSupports | None, support_height: float | None
 def find_pressed_height(
     thickness: float | None, peg_height: float | None, supports: ChosenSupports | None, lift: float
 ) -> float | None:
-    """Return the height up to which pegs press on a prism in mm; None where neither height is known.
+    """Return the height in mm above the part's lower side up to which pegs press on
+    a prism; None where nothing is known.
 
-    The thickness is that of the part, or that which supports were asked for. The height of the pegs is above
-    the plates, over which the part lies by ``lift``.
+    It is the lesser of the part's thickness (or that asked for with supports) and of ``peg_height``, above
+    the plates, less ``lift``.
     """
     if thickness is None and supports is not None:
         thickness = supports.supports.request.thickness
@@ -332,13 +342,15 @@ def find_pressed_height(
 def choose_zero_to_set(
     program: Program | None, workpiece: Workpiece, question: SheetQuestion, unit: Unit
 ) -> PartZero:
-    """Return the part zero that the machinist sets: that of the program where there is one and none is asked for."""
+    """Return the part zero to set at the machine: the program's if there is one and
+    none is asked for, else the asked one.
+    """
     if program is not None and question.zero is None:
         return PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
-    return part_zero(workpiece, question.zero, unit)
+    return choose_part_zero(workpiece, question.zero, unit)
 
 
-def hold_details(
+def collect_hold_details(
     result: Result,
     rank: int,
     question: SheetQuestion,
@@ -348,7 +360,9 @@ def hold_details(
     count: int | None,
     listed_as: str,
 ) -> tuple[Fixture, SheetDetails]:
-    """Return the same of a fixture that flat jaws hold, which has no pegs to say anything of."""
+    """Return a fixture held by friction (``rank`` from 1) and the details of its
+    setup sheet, without those of pegs.
+    """
     query = result.query
     details = SheetDetails(
         number=rank if number is None else number,
@@ -367,7 +381,9 @@ def hold_details(
 
 
 def list_result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
-    """Return what the setup sheet of one fixture says to beware of; see :func:`collect_sheet_details`."""
+    """Return the cautions of the setup sheet of one fixture; arguments as of
+    :func:`collect_sheet_details`.
+    """
     fixture, details = collect_sheet_details(result, rank, **asked)
     if fixture.hold is not None:
         return [Caution(kind, words) for kind, words in list_hold_cautions(fixture)]
@@ -393,7 +409,7 @@ def collect_sheet_details(
     bending: Bending | None = None,
     **asked: Any,
 ) -> tuple[Fixture, SheetDetails]:
-    """Return one fixture with all figures of quality, and the further details of its setup sheet.
+    """Return one fixture with all its figures of quality, and the details of its setup sheet.
 
     Parameters
     ----------
@@ -411,12 +427,14 @@ def collect_sheet_details(
     InputError
         For a jaw force, a coefficient of friction, a part zero or a place on the plate that cannot be.
     """
-    from workhold.seating.solver import Solver
+    from workhold.seating.solver import SeatingSolver
     from workhold.statics.quality import measure_fixture
 
     question = SheetQuestion(**asked)
     if result.toolkit.holds_by_friction:
-        held, details = hold_details(result, rank, question, result_hash, unit, number, count, listed_as)
+        held, details = collect_hold_details(
+            result, rank, question, result_hash, unit, number, count, listed_as
+        )
         return held, evolve(details, bending=bending, bend=question.bend)
     at, jaw, friction, seating = question.at, question.jaw, question.friction, question.seating
     peg_height, support_height = question.peg_height, question.support_height
@@ -426,7 +444,7 @@ def collect_sheet_details(
     workpiece, toolkit = result.workpiece, result.toolkit
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if supports is not None and at is not None:
-        supports = supports.standing_at(at)
+        supports = supports.move_to_hole(at)
     move = find_placing(fixture, result, at) if supports is None else supports.recounted.move
     placed = move_fixture_by_holes(fixture, toolkit, move) if supports is None else supports.recounted.fixture
     if placed.pegs != fixture.pegs:
@@ -435,10 +453,10 @@ def collect_sheet_details(
         fixture = evolve(placed, quality=fixture.quality)
     if seating is None and not toolkit.closes_at_once:
         seating = rank <= (result.query.seating or 0)
-    put_in = None if not seating or toolkit.closes_at_once else by_hand(fixture, workpiece, toolkit)
+    put_in = None if not seating or toolkit.closes_at_once else plan_hand_loading(fixture, workpiece, toolkit)
     if seating and known is None and put_in is None:
         try:
-            known = Solver(workpiece, toolkit).of(fixture)
+            known = SeatingSolver(workpiece, toolkit).solve(fixture)
         except InputError as error:
             not_seated = capitalize_sentence(str(error))
     program, reach = result.query.program, result.query.peg_height
@@ -451,13 +469,13 @@ def collect_sheet_details(
     )
     named = [peg.hole for peg in result[rank - 1].pegs], [peg.hole for peg in fixture.pegs]
     if cutting is not None:
-        cutting = cutting.in_holes(*named)
+        cutting = cutting.rename_holes(*named)
     if passing is not None:
-        passing = passing.in_holes(*named)
-    cases = load_cases(fixture, workpiece, toolkit, loads, jaw_force, friction, jaw)
+        passing = passing.rename_holes(*named)
+    cases = compute_load_cases(fixture, workpiece, toolkit, loads, jaw_force, friction, jaw)
     thickness = question.thickness or result.query.thickness
     lift = find_part_lift(supports, support_height)
-    bent = bent_pegs(
+    bent = compute_bent_pegs(
         fixture,
         workpiece,
         toolkit,
@@ -479,7 +497,7 @@ def collect_sheet_details(
         zero=choose_zero_to_set(program, workpiece, question, unit),
         peg_height=peg_height,
         others=result.table.count_in_same_holes(rank - 1) if others is None else others,
-        why_first=why_first(result, unit) if rank == (number or 1) == 1 else "",
+        why_first=explain_why_first(result, unit) if rank == (number or 1) == 1 else "",
         seating=known,
         by_hand=put_in,
         not_seated=not_seated,

@@ -26,14 +26,20 @@ from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
 from workhold.model.bodies import THICKNESS
-from workhold.model.dowel_lengths import SoldDowel, find_shortest_dowel, standouts
+from workhold.model.dowel_lengths import SoldDowel, find_shortest_dowel, list_standouts
 from workhold.model.dowels import describe_fit
 from workhold.model.fixture import Fixture
-from workhold.model.own_outlines import numbered_solid
-from workhold.model.setup import LengthSetting, PartZero, list_length_settings, name_contacts, part_zero
+from workhold.model.own_outlines import number_solid
+from workhold.model.setup import (
+    LengthSetting,
+    PartZero,
+    choose_part_zero,
+    list_length_settings,
+    name_contacts,
+)
 from workhold.model.solid import Band
 from workhold.model.support_bodies import find_support_height
-from workhold.model.support_request import pressed_by
+from workhold.model.support_request import find_pressed_heights
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 
@@ -42,7 +48,7 @@ __all__ = [
     "NOTE",
     "Block",
     "MovingBlocks",
-    "Sheet",
+    "SetupSheet",
     "SheetHeights",
     "Writer",
     "write_fact_or_field",
@@ -67,20 +73,20 @@ Block = Callable[[TextColumn], None]
 
 @frozen
 class SheetHeights:
-    """Heights in mm, z upward from the lying plane.
+    """Heights in mm, z upward from the plane on which the part lies.
 
     Parameters
     ----------
     thickness : of the part.
     peg_top : up to which pegs reach.
-    head_room : kept free above the pegs; None of a part that is no solid.
+    head_room : kept free above the pegs; None for a part that is no solid.
     supported_by : height of the supports, 0 without them.
     plate_thickness : of the plates, through which pegs stand.
     peg_length : of the pegs.
+    bands : for each peg the heights (low, high) at which it presses; None where they are unknown.
+    assumed : names of the fields above whose values nobody gave.
     clamped_height : of the face on which the clamp on top presses; None without one.
-    dowel : that is sold and stands out so far, where no length of the pegs was given; None where none is.
-    bands : of each peg of the fixture the heights at which it presses; None where nobody knows.
-    assumed : names of those of these that nobody said.
+    dowel : the dowel on sale that stands out far enough, where no peg length was given; None where there is none.
     """
 
     thickness: float
@@ -96,17 +102,17 @@ class SheetHeights:
 
     @property
     def above_plate(self) -> float:
-        """How far the pegs stand out of the plates."""
+        """The height in mm of the pegs above the plates."""
         return self.peg_top + self.supported_by
 
     @property
     def known_up_to(self) -> float:
-        """The height up to which the outline is that of the part."""
+        """The height in mm up to which the part's outline is known to hold."""
         top = self.thickness if self.head_room is None else self.peg_top + self.head_room
         return min(top, self.thickness)
 
     def note_if_assumed(self, name: str) -> str:
-        """Return what stands behind a height that was assumed, and nothing behind another one."""
+        """Return " (assumed)" for a height that nobody gave, else ""."""
         return " (assumed)" if name in self.assumed else ""
 
 
@@ -115,7 +121,10 @@ def find_sheet_heights(
 ) -> SheetHeights | None:
     """Return the heights of a set-up; None if the thickness of the part is not known.
 
-    Refuses pegs that end below the part.
+    Raises
+    ------
+    InputError
+        For pegs that end below the part.
     """
     solid, supports = workpiece.solid, details.supports
     thickness = details.thickness
@@ -165,46 +174,49 @@ def find_sheet_heights(
 
 
 def find_clamped_height(supports: ChosenSupports | None, thickness: float) -> float | None:
-    """Return the height of the face on which the clamp presses in mm; None without supports."""
+    """Return the height in mm of the face on which the clamp on top presses; None without supports."""
     if supports is None:
         return None
     request = supports.supports.request
-    asked = request.clamped_height(supports.clamp.at)
+    asked = request.find_clamped_height(supports.clamp.at)
     return thickness if asked == request.thickness else min(asked, thickness)
 
 
 def find_peg_bands(
     fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
 ) -> tuple[Band | None, ...]:
-    """Return the heights at which each peg may press: as supports were asked for, of the solid, or of a
-    prism.
+    """Return for each peg the heights (low, high) in mm at which it may press, None where unknown.
 
-    Nothing presses above the top of the pegs.
+    They are those that supports were asked with, else those of the solid, else of a prism; none is above
+    ``top``, the pegs' top.
     """
-    supports, solid = details.supports, numbered_solid(workpiece)
+    supports, solid = details.supports, number_solid(workpiece)
     if supports is not None:
         request, reach = supports.supports.request, supports.supports.query.peg_height
-        given = request.for_fixture(fixture, solid, reach, workpiece.numbered).peg_bands(len(fixture.pegs))
+        given = request.adapt_to_fixture(fixture, solid, reach, workpiece.numbered).list_peg_bands(
+            len(fixture.pegs)
+        )
         bands: list[Band | None] = [(float(low), float(high)) for low, high in given]
     elif solid is not None:
-        bands = [pressed_by(peg, fixture, workpiece.numbered) for peg in fixture.pegs]
+        bands = [find_pressed_heights(peg, fixture, workpiece.numbered) for peg in fixture.pegs]
     else:
         bands = [(0.0, thickness)] * len(fixture.pegs)
     return tuple(band and (min(band[0], top), min(band[1], top, thickness)) for band in bands)
 
 
 @frozen
-class Sheet:
+class SetupSheet:
     """The data of a setup sheet.
 
     Parameters
     ----------
-    fixture, workpiece, toolkit, details : what it is of, and what does not follow from these.
+    fixture, workpiece, toolkit : what the sheet is of.
+    details : what does not follow from these.
     lengths : how lengths are written.
     cautions : what to beware of.
-    edge_distances : of the contacts from edges, in mm; infinite where there are none.
-    heights : those that are known; None where nobody knows how thick the part is.
-    zero_shown, origin_shown : whether these are on the plan.
+    edge_distances : of the contacts from edges, in mm; inf where there are none.
+    heights : those that are known; None where the part's thickness is unknown.
+    zero_shown, origin_shown : whether part zero, and the point that places are measured from, are on the plan.
     """
 
     fixture: Fixture
@@ -220,38 +232,40 @@ class Sheet:
 
     @property
     def name(self) -> str:
+        """The part's name on the sheet."""
         return self.details.part_name or self.workpiece.name
 
     @property
     def zero(self) -> PartZero:
-        return self.details.zero or part_zero(self.workpiece)
+        """The part zero that the machinist sets."""
+        return self.details.zero or choose_part_zero(self.workpiece)
 
     @property
     def zero_place(self) -> Point:
-        """Where part zero lies in the vise frame, in mm."""
+        """Part zero in the vise frame, in mm."""
         return self.fixture.pose.apply(*self.zero.point)
 
     @property
     def seating(self) -> SeatingSentences | None:
-        """Sentences on where else the pegs can hold the part; None where the sheet does not show it."""
+        """The sentences on where else the pegs can hold the part; None where the sheet does not show them."""
         if self.details.seating is None:
             return None
         return SeatingSentences(self.details.seating, self.fixture, self.toolkit, self.lengths)
 
     @property
     def datum(self) -> Datum:
-        """What places are measured from."""
+        """The point and lines that places are measured from."""
         return self.toolkit.datum
 
     @property
     def plates_noun(self) -> str:
-        """What pegs stand in, such as "plate" or "jaws"."""
+        """The noun of what pegs stand in, such as "plate" or "jaws"."""
         first, *others = self.toolkit.plates
         return f"{first.noun}s" if others else first.noun
 
     @property
     def dowel(self) -> str | None:
-        """What the pegs are and how they fit their holes; None where nobody knows."""
+        """The pegs and how they fit their holes, in words; None where unknown."""
         fit, diameter = self.details.tolerance.fit, 2 * self.toolkit.plates[0].peg_radius
         return self.details.dowel or (None if fit is None else describe_fit(fit, diameter))
 
@@ -265,12 +279,12 @@ class Sheet:
         return list_length_settings(self.fixture, self.toolkit)
 
 
-Writer = Callable[[TextColumn, Sheet], None]
+Writer = Callable[[TextColumn, SetupSheet], None]
 
 
 @frozen
 class MovingBlocks:
-    """What a sheet says of things that move.
+    """The blocks and steps of a sheet about what moves.
 
     Parameters
     ----------
@@ -278,27 +292,27 @@ class MovingBlocks:
     steps : what to do, one or two sentences each, up to the machine's zero.
     """
 
-    settings: Callable[[Sheet], list[Writer]]
-    steps: Callable[[Sheet], list[str]]
+    settings: Callable[[SetupSheet], list[Writer]]
+    steps: Callable[[SetupSheet], list[str]]
 
 
 # A layout asks for each block in each width many times; a sheet has some hundred of these.
 @lru_cache(maxsize=256)
 def measure_block_height(block: Block, width: float) -> float:
-    """Return the height of a block in a column of a width, page units."""
+    """Return the height of a block in a column of this width, both in page units."""
     column = TextColumn(Scene(ET.Element("g")), 0.0, 0.0, width)
     block(column)
     return column.y
 
 
 def write_heading(column: TextColumn, words: str) -> None:
-    """Write the heading of a block below a line."""
+    """Draw a rule and write the heading of a block below it."""
     column.draw_rule(1.4)
     column.write_line(words, HEADING, bold=True, gap=0.65)
 
 
 def write_fact_or_field(column: TextColumn, name: str, value: str | None) -> None:
-    """Write a fact, or where it is not known a line to write it on."""
+    """Write a fact; where its value is None, a line to write it on."""
     if value is not None:
         column.write_fact(name, value, bold=True)
         return
@@ -313,9 +327,11 @@ def write_fact_or_field(column: TextColumn, name: str, value: str | None) -> Non
     column.y += 0.62 * HEADING
 
 
-def make_peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
-    """Return the table of the pegs: its header, its rows, and what the forces in it are, up to "of"."""
-    force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.number
+def make_peg_rows(sheet: SetupSheet) -> tuple[list[str], list[list[str]], str]:
+    """Return the header and the rows of the table of the pegs, and a clause
+    on its forces that ends before "of".
+    """
+    force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.format_number
     per = "N per kN" if unit.newtons == 1 else f"per {KILO:.0f} {unit.force}"
     flats = FLAT_PIN in sheet.toolkit.contacts
     header = ["Hole", "face", *["flat"] * flats, f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
@@ -330,7 +346,8 @@ def make_peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
     return header, rows, f"{per}: {unit.force} of the {name_pegs(sheet.toolkit)} on the part for each {each}"
 
 
-def write_flats(column: TextColumn, sheet: Sheet) -> None:
+def write_flats(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write what the table's flat angles mean, where pegs have flats."""
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.write_paragraph(
@@ -341,15 +358,17 @@ def write_flats(column: TextColumn, sheet: Sheet) -> None:
         )
 
 
-def describe_lie(sheet: Sheet) -> str:
-    """Return how the part lies beside its drawing."""
+def describe_lie(sheet: SetupSheet) -> str:
+    """Return how far the part is turned from its drawing, in words."""
     turn = f"{sheet.fixture.pose.written_deg:z.1f}"
     way = "clockwise" if turn.startswith("-") else "counter-clockwise"
     return f"turned {turn.removeprefix('-')}° {way} from its drawing" if float(turn) else "not turned"
 
 
-def describe_pegs_in_holes(sheet: Sheet) -> str:
-    """Return which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
+def describe_pegs_in_holes(sheet: SetupSheet) -> str:
+    """Return a sentence, with a leading space, on pegs that stand in holes of the part; "" where none
+    does.
+    """
     faces = sheet.workpiece.numbered.inside
     inside = [peg.hole for peg in sheet.fixture.pegs if peg.face in faces]
     return (
@@ -359,8 +378,10 @@ def describe_pegs_in_holes(sheet: Sheet) -> str:
     )
 
 
-def write_dowel(column: TextColumn, sheet: Sheet) -> None:
-    """Write what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
+def write_dowel(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write what the pegs are, their fit, length and height above the
+    plates, with fields for what is unknown.
+    """
     details, lengths, fit = sheet.details, sheet.lengths, sheet.details.tolerance.fit
     column.y += 3
     write_fact_or_field(column, "dowel and fit", sheet.dowel)
@@ -391,9 +412,11 @@ def write_dowel(column: TextColumn, sheet: Sheet) -> None:
     column.write_fact(above, lengths.format_length(known.above_plate), bold=True)
 
 
-def find_usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
-    """Return the dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
+def find_usual_dowel(sheet: SetupSheet, heights: SheetHeights) -> SoldDowel | None:
+    """Return the shortest dowel on sale that stands out as far as usual, but not
+    above ``heights.peg_top``; None for none.
+    """
     diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
-    low = [one for one in standouts(diameter) if one <= usual]
+    low = [one for one in list_standouts(diameter) if one <= usual]
     return find_shortest_dowel(diameter, max(low)) if low else None

@@ -44,13 +44,13 @@ STEM, HEAD = 44.0, 12.0
 
 @frozen
 class SideFigure:
-    """The drawing with its words.
+    """A side view with its lettering.
 
     Parameters
     ----------
     view : what is drawn.
     lengths : how lengths are written.
-    plates : what pegs stand in, such as "jaws".
+    plates : the noun of what pegs stand in, such as "jaws".
     """
 
     view: SideView
@@ -59,8 +59,8 @@ class SideFigure:
 
     @property
     def levels(self) -> list[tuple[float, str]]:
-        """Heights to mark, and what is there."""
-        heights, number = self.view.heights, self.lengths.number
+        """(height in mm, words) of the levels to mark, from the lowest up."""
+        heights, number = self.view.heights, self.lengths.format_number
         marks: dict[float, list[str]] = {0.0: ["the part lies here"]}
         marks.setdefault(heights.thickness, []).append("top of the part")
         marks.setdefault(heights.peg_top, []).append("top of the pegs")
@@ -83,11 +83,12 @@ class SideFigure:
 
     @property
     def highest(self) -> float:
+        """The height in mm of the part's or the pegs' top, whichever is higher."""
         return max(self.view.heights.thickness, self.view.heights.peg_top)
 
     @property
     def dimensions(self) -> list[tuple[float, float, str]]:
-        """Lengths to dimension: from and to which height, and words. The last stands outermost."""
+        """(from, to, words) of the heights in mm to dimension; the last stands outermost."""
         heights, words = self.view.heights, self.lengths.format_length
         low, found = -heights.supported_by, list[tuple[float, float, str]]()
         if heights.supported_by:
@@ -98,26 +99,28 @@ class SideFigure:
 
     @property
     def left_room(self) -> float:
-        """Room for the dimensions, page units."""
+        """The room for the dimensions at the left, page units."""
         lines = self.dimensions
         return OUT + BETWEEN * len(lines) + BEND + max(measure_text(words, WORDS) for _, _, words in lines)
 
     @property
     def right_room(self) -> float:
-        """Room for the heights of levels, page units."""
+        """The room for the words of levels at the right, page units."""
         return BEND + 8 + max(measure_text(words, WORDS) for _, words in self.levels)
 
     @property
     def top_room(self) -> float:
+        """The room above the drawing for the title and the clamp on top, page units."""
         return TITLE_ROOM + (ABOVE if self.view.clamp is None else CLAMP_ROOM)
 
     @property
     def title(self) -> str:
-        """What is seen, without the scale."""
+        """The title of the view, without the scale."""
         return f"Side view {self.view.way.words}, along {self.view.way.seen_along}"
 
     @property
     def notes(self) -> list[str]:
+        """The sentences below the view."""
         heights, words = self.view.heights, self.lengths.format_length
         notes = [
             "Heights above the plane on which the part lies, in "
@@ -152,11 +155,12 @@ class SideFigure:
         return notes
 
     def compute_largest_scale(self, width: float, most: float, plan: float) -> float:
-        """Return the largest factor of a scale, paper over model, with room that is not far from the plan's.
+        """Return the largest scale factor, paper over model, that fits and is at
+        most ``LARGER`` times the plan's.
 
         Parameters
         ----------
-        width, most : of the page's room for all of it, page units.
+        width, most : width and largest height on the page, page units.
         plan : factor of the plan's scale.
         """
         extent = self.view.extent
@@ -165,14 +169,16 @@ class SideFigure:
         return min(LARGER * plan, across / UNITS_PER_MM, high / UNITS_PER_MM)
 
     def compute_height(self, width: float, factor: float) -> float:
-        """Return the height of all of it in a box of a width, page units, at a scale of a factor."""
+        """Return the height in page units of the view with its lettering, ``width``
+        page units wide, at a scale factor.
+        """
         notes = TextColumn(Scene.make_page((1.0, 1.0), ""), 0.0, 0.0, width)
         notes.write_paragraph(" ".join(self.notes), NOTE)
         drawn = self.view.extent.height * factor * UNITS_PER_MM
         return self.top_room + drawn + NAMES_ROOM + (notes.y + NOTE_GAP)
 
     def draw(self, scene: Scene, box: Box, name: str, factor: float) -> None:
-        """Draw all of it into a page box of at least its height, at a scale of a name and a factor."""
+        """Draw the view with its lettering into a page box, at a scale with this name and factor."""
         head = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
         head.draw_rule(1.4)
         head.write_line(f"{self.title}, scale {name}", TITLE, bold=True)
@@ -189,7 +195,10 @@ class SideFigure:
         foot.write_paragraph(" ".join(self.notes), NOTE)
 
     def draw_bodies(self, scene: Scene, page: View) -> None:
-        """Draw plates, pegs, supports, the part, clamps and walls, those behind the part first."""
+        """Draw plates, pegs, supports, the part, clamps and walls, those hidden by the part first.
+
+        ``page`` is the map from mm to the page.
+        """
         view, heights = self.view, self.view.heights
         low = -heights.supported_by
         for span in view.plates:
@@ -219,7 +228,9 @@ class SideFigure:
             self.draw_top_clamp(scene, page)
 
     def draw_part(self, scene: Scene, page: View) -> None:
-        """Draw the part as far as it is known; what is not stands in dashes."""
+        """Draw the part up to the height where its outline is known; above,
+        pale, with its level faces dashed.
+        """
         view, heights = self.view, self.view.heights
         known = page.map_box(Box(view.part[0], 0.0, view.part[1], heights.known_up_to))
         scene.add_path(
@@ -238,6 +249,7 @@ class SideFigure:
             scene.add_line([page((low, 0.0)), page((high, 0.0))], BLACK, 3.4, **{"class": "foot-face"})
 
     def draw_contact(self, scene: Scene, page: View, one: SideContact) -> None:
+        """Draw a peg with its dashed foot in the plate, or a clamp."""
         heights = self.view.heights
         begin, top = one.heights or (0.0, heights.peg_top)
         low = begin or -heights.supported_by
@@ -258,6 +270,9 @@ class SideFigure:
             )
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
+        """Draw the heights at which a peg presses, as a thick line on the
+        part; nothing where they are unknown.
+        """
         if one.band is None:
             return
         ends = [page((one.touches, height)) for height in one.band]
@@ -265,6 +280,7 @@ class SideFigure:
         scene.add_line(ends, BLACK, 1.2)
 
     def draw_top_clamp(self, scene: Scene, page: View) -> None:
+        """Draw the clamp on top as an arrow with a tip."""
         assert self.view.clamp is not None
         x, y = page((self.view.clamp, self.view.clamped_height))
         stem = page((self.view.clamp, self.highest))[1] - HEAD
@@ -273,6 +289,7 @@ class SideFigure:
         scene.add_rectangle(Box(x - half, y - HEAD, x + half, y), "#ffffff", SUPPORT, 1.8, 2.0)
 
     def draw_levels(self, scene: Scene, page: View, drawn: Box) -> None:
+        """Draw the lines of the levels with their words at the right."""
         levels = self.levels
         wanted = [page((0.0, height))[1] for height, _ in levels]
         low, high = drawn.y0 - ABOVE - HEIGHT_OF_LINE, drawn.y1 + NAMES_ROOM - 12
@@ -283,6 +300,7 @@ class SideFigure:
             scene.add_text((right + BEND - 2, at), words, WORDS)
 
     def draw_dimensions(self, scene: Scene, page: View, drawn: Box) -> None:
+        """Draw the heights as dimensions at the left."""
         lines = self.dimensions
         wanted = [page((0.0, (start + end) / 2))[1] for start, end, _ in lines]
         places = move_apart(
@@ -300,7 +318,9 @@ class SideFigure:
             scene.add_text((left - BEND + 4, at), words, WORDS, "end")
 
     def draw_names(self, scene: Scene, page: View, row: Box) -> None:
-        """Write names below the plates, each with a line that leads to it; those of one place together."""
+        """Write the names of pegs, clamps and supports below the plates, each with a
+        leader; names of one place are joined.
+        """
         view = self.view
         found: dict[tuple[float, str], list[str]] = {}
         for one in view.contacts:
@@ -323,7 +343,7 @@ class SideFigure:
 
 
 def make_box_path(box: Box) -> str:
-    """Return SVG path data of a box."""
+    """Return SVG path data of a box's outline."""
     corners = ((box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1))
     return "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in corners) + "Z"
 
@@ -331,12 +351,12 @@ def make_box_path(box: Box) -> str:
 def move_apart(
     wanted: Sequence[float], sizes: Sequence[float], gap: float, low: float, high: float
 ) -> list[float]:
-    """Return the middles of names of some sizes on a line, ``gap`` apart, nearest to the places that are
-    wanted.
+    """Return the middles of names with these sizes on a line, at least ``gap``
+    apart, nearest to the wanted places.
 
-    Names keep their order. Where all of them do not fit between ``low`` and ``high`` they begin at ``low``.
-    The sum of squares of the moves is least: runs of names that touch move together (pool adjacent
-    violators).
+    The result is in the order of ``wanted``. Names keep their order along the line. Where they do not all fit
+    between ``low`` and ``high``, they begin at ``low``. The sum of squares of the moves is least: runs of
+    names that touch move together (pool adjacent violators).
 
     Examples
     --------

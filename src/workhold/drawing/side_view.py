@@ -18,11 +18,11 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.bench import Bench, find_contact
+from workhold.drawing.bench import BenchDrawing, find_contact
 from workhold.drawing.scene import View
 from workhold.drawing.sheet_writing import SheetHeights
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.geometry.loop import check_vertices, loop_segments
+from workhold.geometry.loop import check_vertices, make_loop_segments
 from workhold.geometry.segment import Box, Point
 from workhold.model.solid import Band
 from workhold.model.support_triples import ChosenSupports
@@ -36,15 +36,15 @@ FINE = 1 / 400
 
 
 @frozen
-class ViewWay:
-    """A direction to look in, and what it is called.
+class ViewDirection:
+    """A direction of view.
 
     Parameters
     ----------
     words : such as "from below".
     seen_along : the direction of the plan along which the viewer looks.
     right : unit vector in the plan that points to the right of the view.
-    towards : unit vector towards the viewer.
+    towards : unit vector in the plan towards the viewer.
     """
 
     words: str
@@ -53,19 +53,19 @@ class ViewWay:
     towards: Point
 
     def project(self, point: Point) -> float:
-        """Return where a point of the plan is across the view."""
+        """Return a plan point's horizontal coordinate in the view, in mm."""
         return point[0] * self.right[0] + point[1] * self.right[1]
 
     def project_box(self, box: Box) -> Span:
-        """Return how far a box of the plan reaches across the view."""
+        """Return the least and greatest horizontal coordinate, in mm, of a plan box."""
         ends = [self.project(corner) for corner in ((box.x0, box.y0), (box.x1, box.y1))]
         return min(ends), max(ends)
 
 
 # The view that stands below the plan in first-angle order comes first: it is taken where all else is equal.
 WAYS = (
-    ViewWay("from the lower side of the plan", "+y", (1.0, 0.0), (0.0, -1.0)),
-    ViewWay("from the right side of the plan", "−x", (0.0, 1.0), (1.0, 0.0)),
+    ViewDirection("from the lower side of the plan", "+y", (1.0, 0.0), (0.0, -1.0)),
+    ViewDirection("from the right side of the plan", "−x", (0.0, 1.0), (1.0, 0.0)),
 )
 
 
@@ -76,13 +76,13 @@ class SideContact:
     Parameters
     ----------
     name : its hole.
-    at, radius : across the view.
-    touches : where it touches the part, across the view.
-    band : the heights at which it presses; None where nobody knows.
+    at, radius : its horizontal coordinate and its radius, in mm.
+    touches : horizontal coordinate of the point where it touches the part.
+    band : the heights at which it presses; None where they are unknown.
     is_hidden : whether the part stands before it.
-    hole : of a clamp with a known hole, where that is across the view; None of pegs.
+    hole : for a clamp with a known hole, the hole's horizontal coordinate; None for pegs.
     is_clamp : whether it is the tip of a clamp.
-    heights : from which to which height it reaches, where these are its own; None as the pegs do.
+    heights : from which to which height it reaches, where these are its own; None if it reaches as pegs do.
     """
 
     name: str
@@ -98,7 +98,7 @@ class SideContact:
 
 @frozen
 class SidePad:
-    """A support in the view: its hole's name, and where it stands across."""
+    """A support in the view: its hole's name, and its horizontal coordinate in mm."""
 
     name: str
     at: float
@@ -106,17 +106,17 @@ class SidePad:
 
 @frozen
 class SideView:
-    """What there is in the view.
+    """A set-up from the side; spans and coordinates are horizontal, in mm.
 
     Parameters
     ----------
-    way : from where it is taken.
+    way : direction of view.
     heights : of everything.
-    part : how far the part's outline reaches.
-    upper : how far it is known to reach above ``heights.known_up_to``.
+    part : span of the part's outline.
+    upper : span of the part above ``heights.known_up_to``, as far as it is known.
     tops : spans of its level upper faces above ``heights.known_up_to``, each with its height.
-    feet : spans over which it lies; the whole outline where no level face below is known.
-    plates, walls : spans of these.
+    feet : spans on which it lies; the whole outline where no level face below is known.
+    plates, walls : their spans.
     contacts : pegs and clamps.
     pads, pad_radius : the supports.
     clamp, tip_radius : the clamp on top; None without one.
@@ -124,7 +124,7 @@ class SideView:
     wall_heights : from which to which height walls reach, where these are their own.
     """
 
-    way: ViewWay
+    way: ViewDirection
     heights: SheetHeights
     part: Span
     upper: Span
@@ -142,7 +142,7 @@ class SideView:
 
     @property
     def extent(self) -> Box:
-        """Everything, across and by height in mm."""
+        """The box of everything, horizontal coordinate by height, in mm."""
         spans = [self.part, self.upper, *self.plates, *self.walls]
         spans += [(one.at - one.radius, one.at + one.radius) for one in self.contacts]
         spans += [
@@ -155,12 +155,15 @@ class SideView:
 
 
 def choose_side_view(
-    bench: Bench,
+    bench: BenchDrawing,
     workpiece: Workpiece,
     heights: SheetHeights,
     supports: ChosenSupports | None = None,
 ) -> SideView:
-    """Return the view in which most pegs stand apart, by the widest least distance, with no wall before the part."""
+    """Return the side view in which no wall stands before the part and most pegs stand clear of each other.
+
+    Among equal ones the widest least gap between pegs counts.
+    """
     way = max(
         WAYS, key=lambda one: (sees_past_walls(bench, one), *measure_peg_spread(bench, one), -WAYS.index(one))
     )
@@ -202,15 +205,17 @@ def choose_side_view(
     )
 
 
-def sees_past_walls(bench: Bench, way: ViewWay) -> bool:
-    """Return whether no wall covers most of the part."""
+def sees_past_walls(bench: BenchDrawing, way: ViewDirection) -> bool:
+    """Return whether every wall covers less than half of the part's width in the view."""
     low, high = way.project_box(bench.shown.part)
     walls = [way.project_box(wall.bar) for wall in bench.shown.walls]
     return all(min(high, b) - max(low, a) < 0.5 * (high - low) for a, b in walls)
 
 
-def measure_peg_spread(bench: Bench, way: ViewWay) -> tuple[int, float]:
-    """Return how many pegs stand beside their neighbours rather than over them, and the least distance of these."""
+def measure_peg_spread(bench: BenchDrawing, way: ViewDirection) -> tuple[int, float]:
+    """Return the number of gaps between neighbouring pegs in the view, and
+    the least gap in mm (0 without gaps).
+    """
     pegs = [bench.fixture.pegs[k] for k in bench.placed]
     places = sorted(
         (way.project((peg.x, peg.y)), bench.toolkit.find_carrier(peg.carrier).peg_radius) for peg in pegs
@@ -221,7 +226,7 @@ def measure_peg_spread(bench: Bench, way: ViewWay) -> tuple[int, float]:
 
 
 def merge_spans(spans: Iterable[Span]) -> list[Span]:
-    """Return the spans without overlaps, from left to right.
+    """Return the union of spans as disjoint spans, from left to right.
 
     >>> merge_spans([(5, 9), (0, 3), (2, 4)])
     [(0, 4), (5, 9)]
@@ -235,14 +240,18 @@ def merge_spans(spans: Iterable[Span]) -> list[Span]:
     return out
 
 
-def collect_spans(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way: ViewWay) -> list[Span]:
-    """Return the spans of level faces, given as loops in the part's coordinates, without overlaps."""
+def collect_spans(
+    loops: Iterable[Sequence[Sequence[float]]], bench: BenchDrawing, way: ViewDirection
+) -> list[Span]:
+    """Return the disjoint horizontal spans in the view of level faces, given as loops in the part's frame."""
     found = []
     for number, loop in enumerate(loops):
         rows = [list(vertex) for vertex in loop]
         vertices = check_vertices(rows, f"face {number}", lambda side: f"side {side}")
-        placed = map(bench.fixture.pose.carry, loop_segments(vertices))
-        places = [way.project(one.at(share * one.half_extent)) for one in placed for share in SHARES]
+        placed = map(bench.fixture.pose.carry, make_loop_segments(vertices))
+        places = [
+            way.project(one.compute_point(share * one.half_extent)) for one in placed for share in SHARES
+        ]
         found.append((min(places), max(places)))
     return merge_spans(found)
 
@@ -250,7 +259,10 @@ def collect_spans(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way:
 SHARES = tuple(np.linspace(-1.0, 1.0, 33).tolist())
 
 
-def list_side_contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[SideContact]:
+def list_side_contacts(
+    bench: BenchDrawing, way: ViewDirection, heights: SheetHeights
+) -> Iterable[SideContact]:
+    """Yield the pegs and clamps of a fixture as they stand in the view."""
     size = max(bench.shown.part.width, bench.shown.part.height)
     step = max(size * FINE, 1e-9)
     outlines = bench.sample_outlines(View(1.0, 0.0, 0.0), step)
@@ -273,10 +285,10 @@ def list_side_contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Ite
         )
 
 
-def hides_point(outline: NDArray[np.float64], at: Point, way: ViewWay) -> bool:
-    """Return whether a loop of the part lies between a point and the viewer.
+def hides_point(outline: NDArray[np.float64], at: Point, way: ViewDirection) -> bool:
+    """Return whether a loop of the part lies between a plan point and the viewer.
 
-    The outline has points (N, 2) in mm with y downward, as on a page.
+    ``outline`` (N, 2) has its points in mm with y downward, as on a page.
     """
     x, y = outline[:, 0], -outline[:, 1]
     across = x * way.right[0] + y * way.right[1] - way.project(at)

@@ -4,35 +4,35 @@ from __future__ import annotations
 
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import GREY, LengthUnit, format_degrees
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, write_heading
+from workhold.drawing.sheet_writing import BODY, NOTE, SetupSheet, Writer, write_heading
 from workhold.model.fixture import Fixture
-from workhold.model.hold_words import set_force
+from workhold.model.hold_words import round_force_up
 from workhold.model.straps import StrappedHold
-from workhold.supports.straps import StrapQuestion, question_of
+from workhold.supports.straps import StrapQuestion, make_question
 from workhold.supports.words_of_straps import (
+    describe_assumptions,
     describe_program_need,
     list_remarks,
     list_steps,
     list_warnings,
-    reckoned_with,
 )
 
-__all__ = ["draw_strap_panel", "strap_writers"]
+__all__ = ["draw_strap_panel", "list_strap_writers"]
 
 # Loads beyond this are left to the command line; the hardest are shown.
 MOST_LOADS = 6
 
 
-def hold_of(fixture: Fixture) -> tuple[StrappedHold, StrapQuestion]:
-    """How straps hold the part of a fixture of a list, and what was asked of them."""
+def get_hold(fixture: Fixture) -> tuple[StrappedHold, StrapQuestion]:
+    """Return the straps of a fixture of a list, and what was asked of them."""
     hold = fixture.hold
     assert isinstance(hold, StrappedHold)
-    return hold, question_of(fixture.listing.result.query)
+    return hold, make_question(fixture.listing.result.query)
 
 
 def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
     """Writes what to set and what follows, for a picture."""
-    hold, asked = hold_of(fixture)
+    hold, asked = get_hold(fixture)
     write_force_needed(column, hold, lengths, 30)
     column.write_fact("Locators in", ", ".join(peg.hole for peg in fixture.pegs), bold=True)
     column.write_fact("on faces", ", ".join(str(peg.face) for peg in fixture.pegs))
@@ -44,7 +44,7 @@ def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) 
         column.write_item("▲", f"{sentence[:1].upper()}{sentence[1:]}", 12.5)
     write_program_need(column, fixture, lengths, 11.5)
     if hold.needs:
-        column.write_paragraph(reckoned_with(asked), 11.5, fill=GREY)
+        column.write_paragraph(describe_assumptions(asked), 11.5, fill=GREY)
     column.draw_rule()
 
 
@@ -53,7 +53,7 @@ def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUn
     unit = lengths.unit
     if hold.clamp_needed is not None:
         column.write_line("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
-        words = f"{unit.format_force(set_force(hold.clamp_needed))} or more"
+        words = f"{unit.format_force(round_force_up(hold.clamp_needed))} or more"
         column.write_line(words, size, bold=True, gap=0.4)
     elif hold.needs:
         column.write_line("No force of the straps holds all loads", 15, bold=True, gap=0.6)
@@ -66,7 +66,7 @@ def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUn
 
 def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit, size: float) -> None:
     """Writes what the tools of the program ask of each strap, where they do."""
-    hold, _ = hold_of(fixture)
+    hold, _ = get_hold(fixture)
     program = fixture.listing.result.query.program
     if hold.program_need is not None and program is not None:
         column.write_paragraph(describe_program_need(hold.program_need, program, lengths.unit), size)
@@ -74,12 +74,12 @@ def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit
 
 def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
     """Writes where each strap is bolted, where its tip presses, and how high its heel stands."""
-    hold, asked = hold_of(fixture)
+    hold, asked = get_hold(fixture)
     if not hold.straps:
         return
-    sign, bolts = lengths.sign, asked.bolts(fixture)
+    sign, bolts = lengths.sign, asked.get_bolt_holes(fixture)
     rows = [
-        [bolts.place_name(*one.hole), *(lengths.number(value) for value in (*one.at, one.height))]
+        [bolts.name_place(*one.hole), *(lengths.format_number(value) for value in (*one.at, one.height))]
         for one in hold.straps
     ]
     column.write_table(["bolt in", f"tip x {sign}", f"tip y {sign}", f"heel {sign}"], rows, BODY)
@@ -89,29 +89,29 @@ def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> N
     """Writes where and in which direction a hand seats the part."""
     if hold.push is None:
         return
-    x, y = (lengths.number(value) for value in hold.push.at)
+    x, y = (lengths.format_number(value) for value in hold.push.at)
     column.write_fact("Push by hand at", f"({x}, {y}) {lengths.sign}")
     column.write_fact("towards", f"{format_degrees(hold.push.direction_deg, 1)} from x")
 
 
-def strap_writers() -> tuple[list[Writer], list[Writer]]:
-    """The blocks that a sheet of straps needs beside the plan, and the others."""
+def list_strap_writers() -> tuple[list[Writer], list[Writer]]:
+    """Return the blocks that a sheet of straps needs beside the plan, and the others."""
     return [write_places, write_straps, write_strap_force], [write_strap_steps, write_strap_loads, write_seat]
 
 
-def write_places(column: TextColumn, sheet: Sheet) -> None:
+def write_places(column: TextColumn, sheet: SetupSheet) -> None:
     write_heading(column, "Locators")
     sign = sheet.lengths.sign
     rows = [
-        [peg.hole, sheet.lengths.number(peg.x), sheet.lengths.number(peg.y), str(peg.face)]
+        [peg.hole, sheet.lengths.format_number(peg.x), sheet.lengths.format_number(peg.y), str(peg.face)]
         for peg in sheet.fixture.pegs
     ]
     column.write_table(["hole", f"x {sign}", f"y {sign}", "face"], rows, BODY)
     column.write_fact("part turned by θ", format_degrees(sheet.fixture.pose.written_deg, 3))
 
 
-def write_straps(column: TextColumn, sheet: Sheet) -> None:
-    hold, _ = hold_of(sheet.fixture)
+def write_straps(column: TextColumn, sheet: SetupSheet) -> None:
+    hold, _ = get_hold(sheet.fixture)
     write_heading(column, "Straps")
     if hold.straps:
         write_strap_table(column, sheet.fixture, sheet.lengths)
@@ -120,19 +120,19 @@ def write_straps(column: TextColumn, sheet: Sheet) -> None:
     write_push(column, hold, sheet.lengths)
 
 
-def write_strap_force(column: TextColumn, sheet: Sheet) -> None:
-    hold, asked = hold_of(sheet.fixture)
+def write_strap_force(column: TextColumn, sheet: SetupSheet) -> None:
+    hold, asked = get_hold(sheet.fixture)
     if not hold.needs:
         return
     write_heading(column, "Force")
     write_force_needed(column, hold, sheet.lengths, 20)
     write_program_need(column, sheet.fixture, sheet.lengths, NOTE)
     column.write_paragraph("The bolt carries more than the tip: the heel takes its share.", NOTE)
-    column.write_paragraph(reckoned_with(asked), NOTE)
+    column.write_paragraph(describe_assumptions(asked), NOTE)
 
 
-def write_strap_steps(column: TextColumn, sheet: Sheet) -> None:
-    hold, asked = hold_of(sheet.fixture)
+def write_strap_steps(column: TextColumn, sheet: SetupSheet) -> None:
+    hold, asked = get_hold(sheet.fixture)
     write_heading(column, "Setting up")
     steps = ["Clean plate, locators and part", *list_steps(hold, sheet.fixture, asked, sheet.lengths.unit)]
     steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
@@ -142,8 +142,8 @@ def write_strap_steps(column: TextColumn, sheet: Sheet) -> None:
         column.write_paragraph(remark, NOTE)
 
 
-def write_strap_loads(column: TextColumn, sheet: Sheet) -> None:
-    hold, _ = hold_of(sheet.fixture)
+def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
+    hold, _ = get_hold(sheet.fixture)
     query, unit = sheet.fixture.listing.result.query, sheet.lengths.unit
     if not hold.clamp_needed_each:
         return
@@ -160,7 +160,7 @@ def write_strap_loads(column: TextColumn, sheet: Sheet) -> None:
         column.write_paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)
 
 
-def write_seat(column: TextColumn, sheet: Sheet) -> None:
+def write_seat(column: TextColumn, sheet: SetupSheet) -> None:
     quality, lengths = sheet.fixture.quality, sheet.lengths
     write_heading(column, "The seat")
     column.write_fact("location error", lengths.format_length(quality["location_error"]))

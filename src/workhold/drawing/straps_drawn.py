@@ -27,13 +27,13 @@ def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, 
     bolt = max(plate.peg_radius * view.scale, 2.5)
     pad = max(find_usual_pad_radius(toolkit) * view.scale, 4.0)
     for place in hold.supports:
-        x, y = plate.place(*place)
+        x, y = plate.compute_hole_center(*place)
         draw_pad(scene.group("supports"), view((float(x), float(y))), pad)
     for number, one in enumerate(hold.straps, 1):
         group = scene.group("strap")
-        hole = straps.bolts.place(*one.hole)
+        hole = straps.bolts.compute_hole_center(*one.hole)
         start, tip = view((float(hole[0]), float(hole[1]))), view(one.at)
-        far = heel_of(start, tip, radius)
+        far = locate_heel(start, tip, radius)
         group.add_line([far, tip], BAR_FILL, 1.5 * radius, stroke_linecap="round", stroke_opacity="0.55")
         group.add_circle(tip, radius, "none", BLACK, 1.2 * weight)
         group.add_circle(start, bolt, "#ffffff", BLACK, 1.6 * weight)
@@ -57,8 +57,8 @@ def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, 
             hand.add_text(beyond, "hand", 11, "middle", fill=GREY, halo=3.0)
 
 
-def heel_of(start: Point, tip: Point, radius: float) -> Point:
-    """Where a bar ends behind its bolt, on the page."""
+def locate_heel(start: Point, tip: Point, radius: float) -> Point:
+    """Return where a bar ends behind its bolt, on the page."""
     far = hypot(start[0] - tip[0], start[1] - tip[1]) or 1.0
     behind = 1.0 + 2.0 * radius / far
     return tip[0] + (start[0] - tip[0]) * behind, tip[1] + (start[1] - tip[1]) * behind

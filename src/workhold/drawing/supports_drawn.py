@@ -8,10 +8,10 @@ from math import dist, pi
 
 from attrs import frozen
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, make_label_around
+from workhold.drawing.annotation import Label, LabelPlacer, PlacedLabel, make_label_around
 from workhold.drawing.panel import TextColumn, describe_move
 from workhold.drawing.scene import Box, Scene, View, measure_text
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, write_fact_or_field, write_heading
+from workhold.drawing.sheet_writing import BODY, NOTE, SetupSheet, write_fact_or_field, write_heading
 from workhold.drawing.support_signs import SUPPORT, draw_pad, draw_tip
 from workhold.errors import join_words
 from workhold.geometry.segment import Point
@@ -24,7 +24,7 @@ __all__ = [
     "draw_triangle",
     "describe_supports",
     "choose_lettering_size",
-    "support_steps",
+    "list_support_steps",
     "describe_tipping",
     "write_heights",
     "write_supports",
@@ -48,11 +48,11 @@ HANGS = (
 
 @frozen
 class PlannedSupports:
-    """Supports in the plan, in mm in the vise frame.
+    """Three supports on the plan, in mm in the vise frame.
 
     Parameters
     ----------
-    names, places : of the holes of the three.
+    names, places : of the three supports' holes.
     holes : their carriers, columns and rows.
     pad_radius : of the pads.
     clamp, tip_radius : of the clamp on top.
@@ -67,6 +67,7 @@ class PlannedSupports:
 
     @classmethod
     def from_chosen(cls, chosen: ChosenSupports) -> PlannedSupports:
+        """Return the chosen supports placed in the vise frame."""
         pose, request = chosen.recounted.fixture.pose, chosen.supports.request
         return cls(
             names=tuple(pad.hole for pad in chosen.pads),
@@ -78,20 +79,21 @@ class PlannedSupports:
         )
 
     def list_holes_on(self, carrier: str) -> set[tuple[int, int]]:
+        """Return the (column, row) of the supports' holes on a carrier."""
         return {(column, row) for name, column, row in self.holes if name == carrier}
 
     def keep_labels_off(self, placer: LabelPlacer, view: View) -> None:
-        """Mark where these are drawn, so that labels keep off."""
+        """Mark the drawing of the supports for the label placer to avoid."""
         corners = [*self.places, self.places[0]]
         for one, other in pairwise(corners):
             placer.avoid_line(view(one), view(other), 1.0)
         pad, tip = (choose_lettering_size(radius, view) for radius in (self.pad_radius, self.tip_radius))
         for at, radius in (*((place, pad) for place in self.places), (self.clamp, tip)):
             x, y = view(at)
-            placer.avoid_box(Box(x, y, x, y).grown(radius))
+            placer.avoid_box(Box(x, y, x, y).grow(radius))
 
     def make_labels(self, view: View) -> list[Label]:
-        """Return the candidates for the names of the three, and for that of the clamp."""
+        """Return the labels of the three supports' holes, then that of the clamp on top."""
         turns = [2 * pi * k / 24 for k in range(24)]
         found = []
         named = [(name, at, self.pad_radius) for name, at in zip(self.names, self.places, strict=True)]
@@ -101,7 +103,8 @@ class PlannedSupports:
             found.append(make_label_around(view(at), -pi / 4, size, gaps, turns, turn_cost=1.0))
         return found
 
-    def draw_names(self, scene: Scene, places: Sequence[Place], view: View) -> None:
+    def draw_names(self, scene: Scene, places: Sequence[PlacedLabel], view: View) -> None:
+        """Write the names at their places, in the order of :meth:`make_labels`, with leaders."""
         for name, place, radius in zip(
             (*self.names, TOP_NAME), places, (*[self.pad_radius] * 3, self.tip_radius), strict=True
         ):
@@ -113,6 +116,7 @@ class PlannedSupports:
 
 
 def choose_lettering_size(radius: float, view: View) -> float:
+    """Return the drawn radius in page units of a pad or tip of this radius in mm, at least ``SMALLEST``."""
     return max(radius * view.scale, SMALLEST)
 
 
@@ -127,15 +131,15 @@ def draw_supports(scene: Scene, supports: PlannedSupports, view: View) -> None:
 
 
 def draw_triangle(scene: Scene, corners: Sequence[Point]) -> None:
-    """Draw the triangle of three supports, given on the page."""
+    """Draw the dashed triangle of three supports, given as page points."""
     for one, other in pairwise([*corners, corners[0]]):
         scene.add_line(
             [one, other], SUPPORT, 1.1, stroke_dasharray="9 3 2 3", **{"class": "support-triangle"}
         )
 
 
-def write_supports(column: TextColumn, sheet: Sheet) -> None:
-    """Write where supports stand, where the clamp presses, with what force, and what that resists."""
+def write_supports(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block on supports and the clamp on top: holes, place, height, forces and tipping."""
     chosen, lengths = sheet.details.supports, sheet.lengths
     assert chosen is not None
     request, clamp = chosen.supports.request, chosen.clamp
@@ -144,10 +148,12 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
     column.write_fact("round pads", f"Ø {lengths.format_short(2 * request.pad_radius)}", bold=True)
     at = [place - zero for place, zero in zip(clamp.at, sheet.zero.point, strict=True)]
     column.write_fact(
-        "clamp presses at", f"X {lengths.number(at[0])}, Y {lengths.format_length(at[1])}", bold=True
+        "clamp presses at", f"X {lengths.format_number(at[0])}, Y {lengths.format_length(at[1])}", bold=True
     )
     x, y = chosen.recounted.fixture.pose.apply(*clamp.at)
-    column.write_fact(f"from {sheet.datum.point}", f"x {lengths.number(x)}, y {lengths.format_length(y)}")
+    column.write_fact(
+        f"from {sheet.datum.point}", f"x {lengths.format_number(x)}, y {lengths.format_length(y)}"
+    )
     if sheet.heights is not None and sheet.heights.clamped_height is not None:
         column.write_fact("at the height", lengths.format_length(sheet.heights.clamped_height), bold=True)
     column.write_fact("its round tip", f"Ø {lengths.format_short(2 * request.tip_radius)}", bold=True)
@@ -166,7 +172,8 @@ def write_supports(column: TextColumn, sheet: Sheet) -> None:
         column.write_paragraph(sentence, NOTE)
 
 
-def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> None:
+def write_forces(column: TextColumn, sheet: SetupSheet, chosen: ChosenSupports) -> None:
+    """Write the clamp force wanted on top, and the largest force on a support."""
     supports, clamp, unit = chosen.supports, chosen.clamp, sheet.lengths.unit
     noun = sheet.toolkit.moving.noun
     if supports.loads:
@@ -191,9 +198,9 @@ def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> No
 
 
 def describe_tipping(chosen: ChosenSupports, unit: Unit) -> str:
-    """Return how large a moment the clamp on top resists, a sentence.
+    """Return a sentence on the largest moment that the clamp on top resists alone.
 
-    The moment that tips the part is the clamp's force times the distance from the triangle's nearest side.
+    The moment is the clamp's force times its distance from the nearest side of the triangle.
     """
     force = chosen.clamp.clamp_needed if chosen.supports.loads else 0.0
     what = "that force" if force > 0 else f"each {ROUND_FORCE:.0f} {unit.force}"
@@ -203,7 +210,8 @@ def describe_tipping(chosen: ChosenSupports, unit: Unit) -> str:
     return f"With {what} the clamp alone resists a tipping moment of up to {words}."
 
 
-def describe_supports(sheet: Sheet, chosen: ChosenSupports) -> str:
+def describe_supports(sheet: SetupSheet, chosen: ChosenSupports) -> str:
+    """Return a sentence on whether the part stands on the supports before it is clamped."""
     triple = chosen.triple
     inside = f"the centre of its area is {sheet.lengths.format_length(triple.standing)} inside their triangle"
     if triple.stands:
@@ -219,8 +227,10 @@ def describe_supports(sheet: Sheet, chosen: ChosenSupports) -> str:
     )
 
 
-def explain_hole_names(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
-    """Return what to know where holes have other names than in the list of fixtures."""
+def explain_hole_names(sheet: SetupSheet, chosen: ChosenSupports) -> list[str]:
+    """Return sentences on a shift of the set-up or a changed opening, after which
+    holes differ from the list of fixtures.
+    """
     recounted, sentences = chosen.recounted, list[str]()
     if recounted.move != (0, 0):
         sentences.append(
@@ -237,14 +247,15 @@ def explain_hole_names(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
     return sentences
 
 
-def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
-    """Return the steps of setting up with those about supports among them; the steps themselves without supports."""
+def list_support_steps(sheet: SetupSheet, steps: list[str]) -> list[str]:
+    """Return the steps of setting up with those about supports added; unchanged without supports."""
     chosen = sheet.details.supports
     if chosen is None:
         return steps
     lengths, unit = sheet.lengths, sheet.lengths.unit
     x, y = (
-        lengths.number(place - zero) for place, zero in zip(chosen.clamp.at, sheet.zero.point, strict=True)
+        lengths.format_number(place - zero)
+        for place, zero in zip(chosen.clamp.at, sheet.zero.point, strict=True)
     )
     force = ""
     if chosen.supports.loads:
@@ -255,7 +266,8 @@ def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
     return [put, *steps[1:], press]
 
 
-def write_heights(column: TextColumn, sheet: Sheet) -> None:
+def write_heights(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of heights: part, pegs, supports, and the heights at which each peg presses."""
     heights, lengths = sheet.heights, sheet.lengths
     assert heights is not None
     noun = sheet.toolkit.plates[0].noun
@@ -269,7 +281,9 @@ def write_heights(column: TextColumn, sheet: Sheet) -> None:
     own = {one.elements: one.heights for one in sheet.toolkit.carriers if one.heights is not None}
     for elements, (low, high) in own.items():
         column.write_fact(
-            f"{elements}, from and to", f"{lengths.number(low)}, {lengths.format_length(high)}", bold=True
+            f"{elements}, from and to",
+            f"{lengths.format_number(low)}, {lengths.format_length(high)}",
+            bold=True,
         )
     if any(low > 0 for low, _ in own.values()):
         column.write_paragraph(FROM_THE_SIDE, NOTE)
@@ -280,7 +294,7 @@ def write_heights(column: TextColumn, sheet: Sheet) -> None:
         column.write_fact(name, lengths.format_length(heights.supported_by), bold=True)
         column.write_fact(f"pegs above the {noun}", lengths.format_length(heights.above_plate), bold=True)
     rows = [
-        [peg.hole, *((lengths.number(end) for end in band) if band else ("?", "?"))]
+        [peg.hole, *((lengths.format_number(end) for end in band) if band else ("?", "?"))]
         for peg, band in zip(sheet.fixture.pegs, heights.bands, strict=True)
     ]
     column.y += 2

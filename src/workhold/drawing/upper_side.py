@@ -18,10 +18,10 @@ from attrs import frozen
 from workhold.drawing.bench import LOWEST, draw_inset
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import Box, LengthUnit
-from workhold.drawing.sheet_writing import BODY, Sheet, write_fact_or_field, write_heading
+from workhold.drawing.sheet_writing import BODY, SetupSheet, write_fact_or_field, write_heading
 from workhold.errors import join_words
 from workhold.geometry.segment import Arc, Point
-from workhold.geometry.symmetry import is_own_mirror_image, middle_of
+from workhold.geometry.symmetry import find_middle, is_own_mirror_image
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.setup import find_hole_centers
@@ -29,7 +29,7 @@ from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "Mark",
+    "OutlineMark",
     "find_distinguishing_marks",
     "list_marks",
     "describe_solid_side_up",
@@ -52,7 +52,7 @@ TALLEST_INSET, HIGHEST_INSET, INSET_ROOM = 0.75, 150.0, 56.0
 ON_NO_FACE = "The part lies on no level face: hold it level, on vee blocks or packing, while it is clamped."
 
 
-def write_side(column: TextColumn, sheet: Sheet) -> None:
+def write_side(column: TextColumn, sheet: SetupSheet) -> None:
     """Write the part's thickness, and which side is up."""
     write_heading(column, "Part and its upper side")
     thickness = sheet.details.thickness if sheet.heights is None else sheet.heights.thickness
@@ -62,7 +62,8 @@ def write_side(column: TextColumn, sheet: Sheet) -> None:
     column.write_paragraph(describe_upper_side(sheet.workpiece, sheet.fixture, sheet.lengths), BODY)
 
 
-def write_part(column: TextColumn, sheet: Sheet) -> None:
+def write_part(column: TextColumn, sheet: SetupSheet) -> None:
+    """Draw the part as it was drawn into the column."""
     x0, y0, x1, y1 = sheet.workpiece.bounds
     height = INSET_ROOM + min(HIGHEST_INSET, column.width * min(TALLEST_INSET, (y1 - y0) / (x1 - x0)))
     height = max(height, LOWEST)
@@ -73,7 +74,7 @@ def write_part(column: TextColumn, sheet: Sheet) -> None:
 
 
 @frozen
-class Mark:
+class OutlineMark:
     """A hole or a face of the outer outline; lengths in mm.
 
     Parameters
@@ -91,11 +92,13 @@ class Mark:
     radius: float
     bend: int
 
-    def is_like(self, other: Mark) -> bool:
+    def is_like(self, other: OutlineMark) -> bool:
+        """Return whether two marks look the same: equal bend, length and radius to a share of ``SEEN``."""
         sizes = ((self.length, other.length), (self.radius, other.radius))
         return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
 
     def describe(self, lengths: LengthUnit) -> str:
+        """Return the mark in words, such as "hole 2, Ø 8 mm,"."""
         if self.hole:
             return f"hole {self.hole}" + (
                 f", Ø {lengths.format_short(2 * self.radius, 4)}," if self.radius else ""
@@ -106,8 +109,10 @@ class Mark:
         return f"the straight edge {lengths.format_short(self.length, 4)} long"
 
 
-def list_marks(workpiece: Workpiece) -> list[Mark]:
-    """Return the holes, and after them the faces of the outer outline, the longest first of either."""
+def list_marks(workpiece: Workpiece) -> list[OutlineMark]:
+    """Return at most ``MOST_MARKS`` marks: the holes, then the faces of the
+    outer outline, longest first of each.
+    """
     outer, (x, y) = workpiece.outer_count, workpiece.center
     segments = {face.number: face.segment for face in workpiece.faces}
     holes, number = [], outer
@@ -116,22 +121,24 @@ def list_marks(workpiece: Workpiece) -> list[Mark]:
     ):
         face = segments.get(number)
         radius = face.radius if isinstance(face, Arc) and face.is_full else 0.0
-        holes.append(Mark(count, (at[0] - x, at[1] - y), sum(segment.length for segment in loop), radius, 2))
+        holes.append(
+            OutlineMark(count, (at[0] - x, at[1] - y), sum(segment.length for segment in loop), radius, 2)
+        )
         number += len(loop)
     faces = []
     for segment in (segments[number] for number in segments if number < outer):
         radius, bend = (segment.radius, int(segment.sign)) if isinstance(segment, Arc) else (0.0, 0)
-        at = middle_of(segment)
-        faces.append(Mark(0, (at[0] - x, at[1] - y), segment.length, radius, bend))
+        at = find_middle(segment)
+        faces.append(OutlineMark(0, (at[0] - x, at[1] - y), segment.length, radius, bend))
     ordered = [sorted(several, key=lambda mark: -mark.length) for several in (holes, faces)]
     return (ordered[0] + ordered[1])[:MOST_MARKS]
 
 
-def find_distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
-    """Return the two marks, each like no other, that are plainest to see; None where there are no two.
+def find_distinguishing_marks(workpiece: Workpiece) -> tuple[OutlineMark, OutlineMark] | None:
+    """Return the two marks, each unlike any other, that are plainest to see; None where there are no two.
 
-    They span the largest triangle with the middle. A triangle counts twice with one hole and three times with
-    two.
+    They span the largest triangle with the part's middle. A triangle counts twice with one hole and three
+    times with two.
     """
     marks = list_marks(workpiece)
     x0, y0, x1, y1 = workpiece.bounds
@@ -141,7 +148,7 @@ def find_distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
         for mark in marks
         if hypot(*mark.place) >= away and not any(mark.is_like(other) for other in marks if other is not mark)
     ]
-    best: tuple[float, tuple[Mark, Mark]] | None = None
+    best: tuple[float, tuple[OutlineMark, OutlineMark]] | None = None
     for one, other in combinations(single, 2):
         area = abs(one.place[0] * other.place[1] - one.place[1] * other.place[0])
         if area < APART * hypot(*one.place) * hypot(*other.place):
@@ -153,6 +160,7 @@ def find_distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
 
 
 def describe_upper_side(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
+    """Return sentences on how to tell which side of the part is up."""
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         if workpiece.solid is not None:
             up = f"{workpiece.solid.axis.replace('-', '−')} of the file points up"
@@ -178,7 +186,7 @@ def describe_upper_side(workpiece: Workpiece, fixture: Fixture, lengths: LengthU
     )
 
 
-def write_side_up(column: TextColumn, sheet: Sheet) -> None:
+def write_side_up(column: TextColumn, sheet: SetupSheet) -> None:
     """Write which side of the solid is up, and which of its faces the set-up before cut or located on."""
     solid, before = sheet.workpiece.solid, sheet.details.first_side
     assert solid is not None
@@ -190,6 +198,7 @@ def write_side_up(column: TextColumn, sheet: Sheet) -> None:
 
 
 def describe_solid_side_up(solid: SolidOutline, before: FirstSide | None) -> list[str]:
+    """Return sentences on which side of the solid is up, and on the set-up before this one, if any."""
     up = solid.axis.replace("-", "−")
     sentences = [f"{up} of the file points up."]
     if before is None:
@@ -208,6 +217,7 @@ def describe_solid_side_up(solid: SolidOutline, before: FirstSide | None) -> lis
 
 
 def describe_faces_before(before: FirstSide) -> list[str]:
+    """Return sentences on faces that the first set-up cuts, and faces that both set-ups touch."""
     cut, found = list_face_numbers(before.cut_of_solid), list[str]()
     if before.cut:
         found.append(
@@ -230,7 +240,7 @@ def describe_faces_before(before: FirstSide) -> list[str]:
 
 
 def list_face_numbers(numbers: Sequence[int]) -> str:
-    """Return the faces by their numbers, such as ``faces 1, 2 and 5``; empty where there are none."""
+    """Return face numbers in words, such as ``faces 1, 2 and 5``; "" without any."""
     if not numbers:
         return ""
     return f"{'face' if len(numbers) == 1 else 'faces'} {join_words([str(number) for number in numbers])}"

@@ -25,7 +25,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
-from workhold.drawing.annotation import scale_bar
+from workhold.drawing.annotation import draw_scale_bar
 from workhold.drawing.bench import draw_part, draw_pegs, make_bench
 from workhold.drawing.carriers import STILL, choose_labelled, draw_clamp, draw_push, draw_wall
 from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, LengthUnit, Scene, View, shorten_text
@@ -41,7 +41,7 @@ from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["Packing", "make_copies", "draw_copies", "pack_copies", "find_too_near_shifts"]
+__all__ = ["PackedCopies", "make_copies", "draw_copies", "pack_copies", "find_too_near_shifts"]
 
 Array = NDArray[np.float64]
 Shift = tuple[int, int]
@@ -54,13 +54,13 @@ MOST_PLACES = 4000
 
 
 @frozen
-class Packing:
-    """Copies of a fixture.
+class PackedCopies:
+    """Copies of a fixture on a plate.
 
     Parameters
     ----------
-    shifts : columns and rows of each copy, from the lowest row on, from left to right.
-    at_most : it is proven that there is room for no more copies.
+    shifts : columns and rows by which each copy is moved, from the lowest row up, from left to right.
+    at_most : it is proven that there is room for no more copies than this.
     """
 
     shifts: tuple[Shift, ...]
@@ -68,13 +68,13 @@ class Packing:
 
 
 @frozen(eq=False)
-class Bodies:
-    """What one copy takes up, in mm in the plate's frame.
+class CopyOutlines:
+    """The space that one copy takes up, in mm in the plate's frame.
 
     Parameters
     ----------
-    outline : (S, 2, 2) chords of the part's outline.
-    cores : (B, 2, 2) of the bodies: from a clamp's hole to its tip; the ends are one of a locator.
+    outline : (S, 2, 2) chords of the part's outline, as pairs of points.
+    cores : (B, 2, 2) axes of the bodies, from a clamp's hole to its tip; both ends are equal for a locator.
     radius : (B,) of the bodies.
     """
 
@@ -83,7 +83,8 @@ class Bodies:
     radius: Array
 
 
-def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodies:
+def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> CopyOutlines:
+    """Return the space that a fixture takes up; arcs become chords at most ``SAGITTA`` mm off."""
     chords = []
     for loop in workpiece.loop_segments:
         for segment in loop:
@@ -92,7 +93,7 @@ def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
             if not isinstance(placed, Line):
                 turn = 2 * acos(max(1.0 - SAGITTA / placed.radius, -1.0))
                 count = max(1, ceil(2 * placed.half_sweep / max(turn, pi / 720)))
-            ends = [placed.at(placed.half_extent * (2 * k / count - 1)) for k in range(count + 1)]
+            ends = [placed.compute_point(placed.half_extent * (2 * k / count - 1)) for k in range(count + 1)]
             chords += list(pairwise(ends))
     locators = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).has_lattice]
     clamps = list(list_shown_clamps(fixture, toolkit))
@@ -100,13 +101,16 @@ def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
     cores += [(clamp.back, (clamp.tip.x, clamp.tip.y)) for clamp in clamps]
     radius = [toolkit.find_carrier(peg.carrier).body_radius for peg in locators]
     radius += [clamp.carrier.peg_radius for clamp in clamps]
-    return Bodies(np.array(chords), np.array(cores), np.array(radius))
+    return CopyOutlines(np.array(chords), np.array(cores), np.array(radius))
 
 
 def measure_distances(one: Array, other: Array) -> Array:
-    """Return the distance (N, M) of every piece (N, 2, 2) from every other one (M, 2, 2), 0 where they cross."""
+    """Return the distances (N, M) of segments (N, 2, 2) from others (M, 2, 2), each
+    a pair of points; 0 where they cross.
+    """
 
     def from_ends(ends: Array, pieces: Array) -> Array:
+        """Return the distances (N, M) of points (N, 2) from segments (M, 2, 2)."""
         start, way = pieces[None, :, 0], (pieces[:, 1] - pieces[:, 0])[None]
         off = ends[:, None] - start
         length = (way**2).sum(axis=2)
@@ -114,6 +118,9 @@ def measure_distances(one: Array, other: Array) -> Array:
         return np.asarray(np.hypot(*np.moveaxis(off - share[:, :, None] * way, 2, 0)))
 
     def side(pieces: Array, points: Array) -> Array:
+        """Return (N, M) the sign of the side of each segment (N, 2, 2) on which points
+        (M, 2) lie: 1 left, -1 right, 0 on it.
+        """
         way, off = (pieces[:, 1] - pieces[:, 0])[:, None], points[None] - pieces[:, 0][:, None]
         return np.asarray(np.sign(way[:, :, 0] * off[:, :, 1] - way[:, :, 1] * off[:, :, 0]))
 
@@ -124,9 +131,10 @@ def measure_distances(one: Array, other: Array) -> Array:
     return np.where(crossing, 0.0, near)
 
 
-def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
-    """Return whether two copies, one of them moved (2,) in mm, are clear of each other.
+def is_clear(bodies: CopyOutlines, move: Array, gap: float) -> bool:
+    """Return whether a copy and another one, moved by ``move`` (2,) in mm, keep clear of each other.
 
+    Bodies must not overlap; parts must be ``gap`` mm from each other and from the other copy's bodies.
     Comparing boundaries is enough: neither copy fits within the other, so where they overlap, their outlines
     cross.
     """
@@ -145,7 +153,11 @@ def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
 def find_too_near_shifts(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, gap: float, spread: Shift
 ) -> set[Shift]:
-    """Return the shifts, up to ``spread`` columns and rows either way, at which two copies are not clear."""
+    """Return all shifts, up to ``spread`` columns and rows in each direction,
+    at which two copies are not clear.
+
+    The set contains (0, 0), and with each shift its negative.
+    """
     bodies, pitch = collect_bodies(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
     points = np.concatenate([bodies.outline.reshape(-1, 2), bodies.cores.reshape(-1, 2)])
     reach = np.ptp(points, axis=0) + 2 * bodies.radius.max() + gap + 2 * SAGITTA
@@ -161,10 +173,12 @@ def find_too_near_shifts(
 
 
 def list_places_on_plate(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
-    """Return the shifts at which a fixture stands on a plate of ``columns`` columns and ``rows`` rows, row by
-    row.
+    """Return the shifts at which a fixture stands on a plate with this many columns and rows, row by row.
 
-    Refuses a plate on which one alone does not stand.
+    Raises
+    ------
+    InputError
+        For a plate on which the fixture does not stand at all.
     """
     used_columns, used_rows = [], []
     for peg in fixture.pegs:
@@ -189,8 +203,10 @@ def pack_copies(
     rows: int,
     gap: float = 1.0,
     seconds: float | None = None,
-) -> Packing:
-    """Return the most copies of a fixture that a plate holds.
+) -> PackedCopies:
+    """Return the largest number of copies of a fixture that a plate holds, with their shifts.
+
+    A plate with more than ``MOST_PLACES`` places is packed greedily, without a proof.
 
     Parameters
     ----------
@@ -221,13 +237,13 @@ def pack_copies(
     near = find_too_near_shifts(fixture, workpiece, toolkit, gap, spread)
     known = max((place_first_fit(order, near) for order in (places, sorted(places))), key=len)
     if len(places) > MOST_PLACES:
-        return Packing(sort_by_rows(known), len(places))
+        return PackedCopies(sort_by_rows(known), len(places))
     load_solver()
     return solve_packing(places, near, known, seconds)
 
 
 def place_first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
-    """Return the places taken one after the other where there is room."""
+    """Return the places that remain when each is taken in turn unless it is too near to one taken before."""
     taken: list[Shift] = []
     for i, j in places:
         if all((i - a, j - b) not in near for a, b in taken):
@@ -236,12 +252,15 @@ def place_first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
 
 
 def sort_by_rows(places: list[Shift]) -> tuple[Shift, ...]:
-    """Return the places from the lowest row on, from left to right."""
+    """Return the places (column, row) sorted from the lowest row up, and from left to right."""
     return tuple(sorted(places, key=lambda place: (place[1], place[0])))
 
 
 def find_crowds(near: set[Shift]) -> list[list[Shift]]:
-    """Set of shifts that are pairwise too near; every shift that is too near is between two of one set."""
+    """Return sets of shifts that are pairwise too near, each set beginning with (0, 0).
+
+    Every shift that is too near is the difference of two members of some set.
+    """
     left, out = near - {(0, 0)}, []
     ordered = sorted(left, key=lambda shift: (abs(shift[0]) + abs(shift[1]), shift))
     for one in ordered:
@@ -259,8 +278,11 @@ def find_crowds(near: set[Shift]) -> list[list[Shift]]:
 
 def solve_packing(
     places: list[Shift], near: set[Shift], known: list[Shift], seconds: float | None
-) -> Packing:
-    """Return the most places no two of which are too near."""
+) -> PackedCopies:
+    """Return the largest set of places no two of which are too near, found by integer programming.
+
+    ``known`` is a packing to fall back on, ``seconds`` the time limit (None: until proven).
+    """
     from scipy.optimize import LinearConstraint
     from scipy.sparse import csr_array
 
@@ -276,7 +298,7 @@ def solve_packing(
                 if len(members) > 1:
                     rows.add(members)
     if not rows:
-        return Packing(sort_by_rows(places), len(places))
+        return PackedCopies(sort_by_rows(places), len(places))
     ordered = sorted(rows)
     index = np.concatenate([[0], np.cumsum([len(members) for members in ordered])])
     inside = np.concatenate([np.array(members) for members in ordered])
@@ -288,7 +310,7 @@ def solve_packing(
     if len(chosen) < len(known) or not is_packing:
         chosen = known
     at_most = count if bound is None else floor(-bound + ROUNDING)
-    return Packing(sort_by_rows(chosen), max(at_most, len(chosen)))
+    return PackedCopies(sort_by_rows(chosen), max(at_most, len(chosen)))
 
 
 EDGE, HEADER, FOOTER, NAMES = 32.0, 74.0, 34.0, 34.0
@@ -296,8 +318,10 @@ EDGE, HEADER, FOOTER, NAMES = 32.0, 74.0, 34.0, 34.0
 WEIGHT = 0.6
 
 
-def make_copies(row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: Packing) -> list[Fixture]:
-    """Return every copy of a fixture, a table of one row, where it stands."""
+def make_copies(
+    row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: PackedCopies
+) -> list[Fixture]:
+    """Return a fixture, given as a table of one row, at each shift of a packing."""
     moved = (shift_fixture(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
     return [make_fixture_of_row(one, toolkit, 0, workpiece) for one in moved]
 
@@ -310,14 +334,16 @@ def draw_copies(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draw copies on a plate of so many columns and rows, on A4, as SVG text."""
+    """Return copies on a plate of ``size`` (columns, rows), drawn on A4, as SVG text."""
     plate, (columns, rows) = toolkit.carriers[0], size
     benches = [make_bench(fixture, workpiece, toolkit) for fixture in copies]
-    holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)
+    holes = Box(*plate.compute_hole_center(0, 0), *plate.compute_hole_center(columns - 1, rows - 1)).grow(
+        max(plate.pitch) / 2
+    )
     clamps = [clamp.room for bench in benches for clamp in bench.shown.clamps]
-    extent = reduce(Box.union, [*(bench.shown.part for bench in benches), *clamps], holes)
+    extent = reduce(Box.unite, [*(bench.shown.part for bench in benches), *clamps], holes)
     walls = [Box(holes.x0, wall.bar.y0, holes.x1, wall.bar.y1) for wall in benches[0].shown.walls]
-    extent = reduce(Box.union, walls, extent)
+    extent = reduce(Box.unite, walls, extent)
     page = LANDSCAPE if extent.width >= 0.8 * extent.height else PORTRAIT
     count = "1 copy" if len(copies) == 1 else f"{len(copies)} copies"
     heading = shorten_text(f"{workpiece.name}: {count}", 26, page[0] - 2 * EDGE, bold=True)
@@ -343,13 +369,14 @@ def draw_copies(
         group.add_text(
             view(bench.fixture.pose.apply(*workpiece.center)), str(number), 16, "middle", bold=True, halo=3
         )
-    scale_bar(
+    draw_scale_bar(
         scene, (EDGE, page[1] - EDGE), view.scale, LengthUnit.from_typical_length(unit, min(plate.pitch))
     )
     return scene.to_svg()
 
 
 def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, int], view: View) -> None:
+    """Draw the plate with all its holes and their column letters and row numbers."""
     box, (columns, rows) = view.map_box(holes), size
     fill, edge = STILL
     scene.group("plate").add_rectangle(box, fill, edge, 2.0)
@@ -359,10 +386,12 @@ def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, 
     )
     for column in range(columns):
         for row in range(rows):
-            group.add_circle(view(plate.place(column, row)), radius, "#ffffff", GREY, min(0.7, 0.3 * radius))
+            group.add_circle(
+                view(plate.compute_hole_center(column, row)), radius, "#ffffff", GREY, min(0.7, 0.3 * radius)
+            )
     names = scene.group("hole-names")
-    across = [(column, view(plate.place(column, 0))[0]) for column in range(columns)]
-    along = [(row, view(plate.place(0, row))[1]) for row in range(rows)]
+    across = [(column, view(plate.compute_hole_center(column, 0))[0]) for column in range(columns)]
+    along = [(row, view(plate.compute_hole_center(0, row))[1]) for row in range(rows)]
     for column, x, _ in choose_labelled(across, set(), 22.0):
         names.add_text((x, box.y1 + 14), make_column_letters(column), 12, "middle", fill=GREY)
     for row, y, _ in choose_labelled(along, set(), 15.0):

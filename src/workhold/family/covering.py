@@ -67,9 +67,10 @@ class Cover:
 
 
 def find_maximal_sets(masks: WordArray) -> NDArray[np.int64]:
-    """Return the sets (K,) of some (S, W), given as bits, that are in no other one, larger ones first.
+    """Return the indices (K,) of the sets (S, W), given as bits, that are
+    contained in no other set, largest first.
 
-    Of equal sets it is the first.
+    Of equal sets the first is kept.
     """
     words = list(masks.T)
     by_mask = np.lexsort(words)
@@ -87,9 +88,10 @@ def find_maximal_sets(masks: WordArray) -> NDArray[np.int64]:
 
 
 def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
-    """Return a cover by the greedy algorithm: each time the set (of S, M) that holds most of what is left.
+    """Return the sorted indices of a cover by the greedy algorithm; sets (S,
+    M) say which members each set holds.
 
-    Every member has to be in some set.
+    Each step takes the set that holds most members not held yet. Every member must be in some set.
     """
     left, chosen = np.ones(sets.shape[1], np.bool_), []
     while left.any():
@@ -99,10 +101,11 @@ def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
 
 
 def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
-    """Return the fewest of some sets (S, M) of members that hold them all; every member is in some set.
+    """Return the fewest of some sets (S, M) that together hold all M
+    members; every member must be in some set.
 
-    At the deadline, of the clock ``time.monotonic``, it is the best cover known so far, with what is proven
-    of the least.
+    After ``deadline``, on the clock ``time.monotonic``, it is the best cover known, with the lower bound
+    proven so far.
     """
     from scipy.optimize import LinearConstraint
 
@@ -123,7 +126,9 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
 
 
 def bound_cover_size(sets: BoolArray) -> int:
-    """Return a lower bound of covers: a number of members no two of which are in one set, found greedily."""
+    """Return a lower bound of the size of any cover: a number of members no two
+    of which share a set, found greedily.
+    """
     beside = sets.T.astype(np.int64) @ sets.astype(np.int64) > 0
     left, count = np.ones(len(beside), np.bool_), 0
     while left.any():
@@ -137,10 +142,9 @@ def bound_cover_size(sets: BoolArray) -> int:
 def find_first_cover(
     sets: BoolArray, count: int, known: tuple[int, ...], deadline: float | None = None
 ) -> tuple[int, ...]:
-    """Return the first cover of some number of sets (of S, M) in lexicographic order; ``known`` is one of
-    that many.
+    """Return the lexicographically first cover of ``count`` of the sets (S, M), as sorted indices.
 
-    After the deadline it is the first that is known then.
+    ``known`` is such a cover, sorted. After the deadline it is the first one known.
     """
     chosen: list[int] = []
     left = np.ones(sets.shape[1], np.bool_)
@@ -162,7 +166,9 @@ def find_first_cover(
 def complete_cover(
     sets: BoolArray, left: BoolArray, first: int, count: int, deadline: float | None
 ) -> tuple[int, ...] | None:
-    """Choose up to ``count`` sets, from the ``first`` on, that hold what is left; None if there are none."""
+    """Return at most ``count`` indices of sets, from ``first`` on, that hold the
+    members ``left`` (M,); None if not found.
+    """
     if not left.any():
         return ()
     some = sets[first:, left]
@@ -173,7 +179,7 @@ def complete_cover(
 
 
 def convert_bits_to_sets(masks: WordArray, members: int) -> BoolArray:
-    """Set (S, W) of bits as (S, M)."""
+    """Return sets given as bits in words (S, W) as booleans (S, M)."""
     bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")
     return bits[:, :members].astype(np.bool_)
 
@@ -203,14 +209,14 @@ class Point:
 
 @frozen(eq=False)
 class LossTable:
-    """Which pattern holds which member with what loss, the smallest loss first.
+    """The loss of each pattern on each member that it holds, sorted by loss.
 
     Parameters
     ----------
     members : how many there are.
     words : (P, W) of the patterns, in lexicographic order.
-    number : (P,) of the patterns, those of all of them from 0 in that order.
-    pattern, member : (E,) places of patterns, and numbers of members.
+    number : (P,) of the patterns among all patterns of the family, from 0 in that order.
+    pattern, member : (E,) rows of ``words``, and numbers of members.
     loss : (E,) not less than the one before.
     """
 
@@ -222,7 +228,7 @@ class LossTable:
     loss: NDArray[np.float64]
 
     def make_masks(self, bound: float) -> NDArray[np.uint64]:
-        """Return the sets (P, K) of members that patterns hold within a bound, as bits."""
+        """Return for each pattern the set of members that it holds within ``bound``, as bits (P, K)."""
         end = int(np.searchsorted(self.loss, bound, side="right"))
         out = np.zeros((len(self.words), -(-self.members // WORD)), np.uint64)
         member = self.member[:end].astype(np.uint64)
@@ -231,6 +237,7 @@ class LossTable:
         return out
 
     def select_patterns(self, chosen: IntArray) -> LossTable:
+        """Return the table of the patterns at these rows only, rows renumbered in the given order."""
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0
@@ -238,7 +245,9 @@ class LossTable:
         return LossTable(self.members, self.words[chosen], self.number[chosen], *entries)
 
     def list_losses(self, patterns: Sequence[int]) -> NDArray[np.float64]:
-        """Return the loss (K, M) of the patterns at some places on each member, NaN where one does not hold it."""
+        """Return the losses (K, M) of the patterns at some rows on each member;
+        NaN where a pattern does not hold it.
+        """
         out = np.full((len(patterns), self.members), np.nan)
         for row, place in enumerate(patterns):
             entries = np.flatnonzero(self.pattern == place)
@@ -247,7 +256,7 @@ class LossTable:
 
 
 def make_loss_table(members: Sequence[Member]) -> LossTable:
-    """Return the table of some members, at least one, each of which some pattern holds."""
+    """Return the loss table of members; there is at least one, and each is held by some pattern."""
     words = np.concatenate([one.words for one in members])
     owner = np.repeat(np.arange(len(members)), [len(one.words) for one in members])
     loss = np.concatenate([one.loss for one in members])
@@ -269,10 +278,10 @@ class Search:
     Parameters
     ----------
     table : what is searched.
-    bounds : (B,) the losses that matter, each once, from the least bound at which every member is held.
-    deadline : see ``family.covering.cover``.
+    bounds : (B,) the distinct losses that matter, ascending from the least bound at which every member is held.
+    deadline : see ``family.choose_covering_spans.cover``.
     progress : called with the fraction done.
-    covers : what was found at bounds, by their places: numbers of patterns, and the least number of them.
+    covers : found so far: by index into ``bounds``, the numbers of patterns and the proven least number of them.
     """
 
     table: LossTable
@@ -283,7 +292,9 @@ class Search:
     done: float = 0.0
 
     def search_at_bound(self, place: int, table: LossTable) -> None:
-        """Find the fewest patterns of a table that are a cover at a bound."""
+        """Find the fewest patterns of ``table`` that cover all members within
+        ``bounds[place]``; store them in ``covers``.
+        """
         masks = table.make_masks(float(self.bounds[place]))
         kept = find_maximal_sets(masks)
         found = cover(convert_bits_to_sets(masks[kept], table.members), self.deadline)
@@ -291,7 +302,11 @@ class Search:
         self.covers[place] = Cover(numbers, found.at_least)
 
     def search_between(self, low: int, high: int, table: LossTable, share: float) -> None:
-        """Find covers at the bounds between two at which they are known, wherever they may differ."""
+        """Find covers at bounds between two indices with known covers, wherever
+        their sizes may differ, by bisection.
+
+        ``share`` is the fraction of the work that this call stands for.
+        """
         if high - low < 2 or len(self.covers[low].sets) == len(self.covers[high].sets):
             self.done += share
             self.progress(self.done)
@@ -303,7 +318,11 @@ class Search:
         self.search_between(middle, high, table, share / 2)
 
     def list_worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
-        """Return the places of patterns that between two bounds may hold what no other one does."""
+        """Return the rows of patterns that a cover between two bounds may need.
+
+        A pattern is left out if the members it holds at the upper bound are all held by another one at the
+        lower bound.
+        """
         least, most = (table.make_masks(float(self.bounds[place])) for place in (low, high))
         largest = find_maximal_sets(least)
         inside = np.zeros(len(least), np.bool_)
@@ -319,11 +338,11 @@ def compute_curve(
     deadline: float | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> tuple[Point, ...]:
-    """Return the curve, from the fewest set-ups to the least loss, without numbers that gain nothing over
-    fewer.
+    """Return the points of the curve, fewest set-ups and largest loss first.
 
-    Losses larger than ``most_loss``, within which every member can be held, are not accepted. Points after
-    the deadline, of the clock ``time.monotonic``, are what was known then.
+    Numbers of set-ups that lose no less than a smaller number are left out. Losses above ``most_loss``,
+    within which every member can be held, are not accepted. After ``deadline``, on the clock
+    ``time.monotonic``, points are what is known by then.
     """
     least = float(np.max([table.loss[table.member == one].min() for one in range(table.members)]))
     bounds = np.unique(table.loss[(table.loss >= least) & (table.loss <= most_loss)])
@@ -349,9 +368,9 @@ def list_curve_points(search: Search) -> Iterator[Point]:
 
 
 def name_patterns(search: Search, place: int) -> tuple[int, ...]:
-    """Return the numbers of the patterns at a point: the lexicographically first cover.
+    """Return the numbers of the patterns at index ``place`` of the bounds: the lexicographically first cover.
 
-    Covers are of sets that are in no other one, each named by the first pattern that has it.
+    Only sets that no other set contains are used, each named by the first pattern that has it.
     """
     table = search.table
     masks = table.make_masks(float(search.bounds[place]))

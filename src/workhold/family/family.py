@@ -22,13 +22,13 @@ from workhold.errors import join_words as words_listed
 from workhold.family.covering import LossTable, Point, compute_curve, make_loss_table
 from workhold.family.members import (
     OTHER_SIDE,
+    FigureThreshold,
     Member,
-    Threshold,
     make_member,
     make_other_side_query,
     mirror_zero,
 )
-from workhold.family.plan import Holding, Plan, SetUp, make_plan
+from workhold.family.plan import FamilyPlan, Holding, SetUp, make_plan
 from workhold.family.solver import load_solver
 from workhold.files.result.fixture_text import LENGTH_STEPS, round_degrees, round_to_steps
 from workhold.files.result.writer import make_toolkit_fields
@@ -37,27 +37,27 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.quality import FIGURES, Figure, find_figure_number
 from workhold.model.query import Query
-from workhold.model.setup import PartZero, list_length_settings, part_zero
+from workhold.model.setup import PartZero, choose_part_zero, list_length_settings
 from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
 from workhold.version import __version__
 
-__all__ = ["FORMAT", "Asked", "Family", "LeftOut", "make_family", "write_family_json"]
+__all__ = ["FORMAT", "MemberRequest", "Family", "ExcludedPart", "make_family", "write_family_json"]
 
 # The share of the searches in the work, for the progress.
 SEARCHES = 0.95
 
 
 @frozen
-class Asked:
+class MemberRequest:
     """A part that is to be a member.
 
     Parameters
     ----------
     name : what it is called among the others.
     query : what is asked for it: the whole list of its fixtures.
-    path, digest : its file and the SHA-256 of that, "" where there is none.
-    zero : its zero; the usual one of its part if None.
+    path, digest : its file and the file's SHA-256, "" where there is none.
+    zero : its zero; None for the usual one of its part.
     """
 
     name: str
@@ -66,26 +66,28 @@ class Asked:
     digest: str = ""
     zero: PartZero | None = None
 
-    def turn_over(self, read: Workpiece | None) -> Asked:
-        """Return the other side of the part, of a solid as its file was read for it; None of a drawing.
+    def turn_over(self, read: Workpiece | None) -> MemberRequest:
+        """Return the request for the other side of the part.
+
+        ``read`` is a solid's other side as its file was read for it; None for a drawing.
 
         Raises
         ------
         InputError
             See :func:`workhold.family.members.make_other_side_query`.
         """
-        zero = part_zero(self.query.workpiece) if self.zero is None else self.zero
+        zero = choose_part_zero(self.query.workpiece) if self.zero is None else self.zero
         name = f"{self.name}, {OTHER_SIDE}"
         return evolve(self, name=name, query=make_other_side_query(self.query, read), zero=mirror_zero(zero))
 
 
 @frozen
-class LeftOut:
+class ExcludedPart:
     """A part that is no member.
 
     Parameters
     ----------
-    name, path : which.
+    name, path : of the part.
     reason : why, one sentence.
     """
 
@@ -104,6 +106,15 @@ class Family:
     figure : of which losses are computed.
     members : the parts that some pattern holds.
     left_out : the others.
+    points : of the curve, fewest set-ups first; empty without a member.
+    table : which pattern holds which member; None without a member.
+
+    Parameters
+    ----------
+    toolkit : in which all members are held.
+    figure : of which losses are computed.
+    members : the parts that some pattern holds.
+    left_out : the others.
     points : of the curve, fewest set-ups first; none without a member.
     table : which pattern holds which member, None without a member.
     """
@@ -111,20 +122,20 @@ class Family:
     toolkit: Toolkit
     figure: Figure
     members: tuple[Member, ...]
-    left_out: tuple[LeftOut, ...]
+    left_out: tuple[ExcludedPart, ...]
     points: tuple[Point, ...]
     table: LossTable | None
 
     @cached_property
-    def plans(self) -> tuple[Plan, ...]:
-        """The plan at each point of the curve."""
+    def plans(self) -> tuple[FamilyPlan, ...]:
+        """The plan at each point of the curve, fewest set-ups first."""
         if self.table is None:
             return ()
         return tuple(make_plan(point, self.table, self.members) for point in self.points)
 
-    def plan(self, setups: int | None = None) -> Plan:
-        """Return the plan with the least loss and at most ``setups`` set-ups; None asks for the fewest
-        set-ups.
+    def plan(self, setups: int | None = None) -> FamilyPlan:
+        """Return the plan with the least loss and at most ``setups`` set-ups; None
+        for the plan with the fewest set-ups.
 
         Raises
         ------
@@ -142,18 +153,18 @@ class Family:
 
 
 def make_family(
-    asked: Sequence[Asked],
+    asked: Sequence[MemberRequest],
     *,
-    thresholds: Sequence[Threshold] = (),
+    thresholds: Sequence[FigureThreshold] = (),
     unfit: bool = False,
     most_loss: float | None = None,
     seconds: float | None = None,
     same_zero: bool = False,
     threads: int | None = None,
-    left_out: Sequence[LeftOut] = (),
+    left_out: Sequence[ExcludedPart] = (),
     progress: Callable[[float, int], None] = lambda fraction, found: None,
 ) -> Family:
-    """Return the family of some parts.
+    """Return the family of some parts: all are designed for, then the curve is computed.
 
     Parameters
     ----------
@@ -212,6 +223,7 @@ def make_family(
     for place, one in enumerate(asked):
 
         def share(fraction: float, count: int, place: int = place, found: int = found) -> None:
+            """Report the progress of the search for one part."""
             progress(SEARCHES * (place + fraction) / len(asked), found + count)
 
         # A plan is made of all fixtures: of two clamps every pair counts.
@@ -222,7 +234,9 @@ def make_family(
         if len(member.words) and (most_loss is None or member.loss.min() <= most_loss):
             members.append(member)
         else:
-            out.append(LeftOut(one.name, one.path, explain_missing_member(member, bool(len(member.words)))))
+            out.append(
+                ExcludedPart(one.name, one.path, explain_missing_member(member, bool(len(member.words))))
+            )
     figure = FIGURES[find_figure_number(first.rank_by[0]) or 0]
     if not members:
         return Family(first.toolkit, figure, (), tuple(out), (), None)
@@ -230,6 +244,7 @@ def make_family(
     deadline = None if seconds is None else monotonic() + seconds
 
     def later(fraction: float) -> None:
+        """Report the progress of the curve."""
         progress(SEARCHES + (1.0 - SEARCHES) * fraction, found)
 
     points = compute_curve(table, float("inf") if most_loss is None else most_loss, deadline, later)
@@ -237,6 +252,9 @@ def make_family(
 
 
 def explain_missing_member(member: Member, has_patterns: bool) -> str:
+    """Return the reason why a part is no member; ``has_patterns`` says
+    whether some fixture of it may be used.
+    """
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
         asked = member.query.asked
@@ -252,6 +270,7 @@ FORMAT = "workhold-family/1"
 
 
 def write_family_json(family: Family) -> str:
+    """Return the family's file as JSON text."""
     toolkit = family.toolkit
     head = {
         "toolkit": {"kind": toolkit.kind, **make_toolkit_fields(toolkit)},
@@ -282,10 +301,12 @@ def write_family_json(family: Family) -> str:
 
 
 def write_list_json(entries: list[dict[str, Any]]) -> str:
+    """Return a JSON list with one entry on each line."""
     return "[\n" + ",\n".join(json.dumps(entry) for entry in entries) + "\n]" if entries else "[]"
 
 
-def write_plan_json(plan: Plan, family: Family) -> str:
+def write_plan_json(plan: FamilyPlan, family: Family) -> str:
+    """Return a plan as JSON text with one set-up on each line."""
     numbers = {id(member): number for number, member in enumerate(family.members)}
     point = {
         "setups": plan.point.setups,
@@ -299,7 +320,7 @@ def write_plan_json(plan: Plan, family: Family) -> str:
 
 
 def make_setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict[str, Any]:
-    """Return a set-up as it is written; ``numbers`` are those of members."""
+    """Return a set-up as a JSON object; ``numbers`` are the members' numbers by their ``id()``."""
     fixture = setup.standing.fixture
     return {
         "pattern": {
@@ -313,9 +334,11 @@ def make_setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) ->
 
 
 def make_peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
-    """Return where a peg of a pattern stands: its hole, or the line of a clamp of which no more is known."""
+    """Return a peg's place as a JSON object: its hole, or for an unbolted clamp
+    its row or column and "hole": null.
+    """
     carrier, place = toolkit.find_carrier(peg.carrier), {"column": peg.column, "row": peg.row}
-    key, name = carrier.written_as
+    key, name = carrier.file_entry
     if carrier.contact is not CLAMP_TIP:
         return {key: name, **place}
     hole = [*place.values()] if carrier.measure == "stroke" else None
@@ -323,6 +346,9 @@ def make_peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
+    """Return how a member, with this number, lies in a set-up, as a JSON object:
+    mm, degrees, numbers from the lists.
+    """
     fixture = one.fixture
     entry = {
         "part": number,
@@ -344,15 +370,18 @@ def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str,
 
 
 def make_opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
-    """Return what is set for a part: the opening of a vise, or the strokes or places of clamps."""
+    """Return {"opening": ...} with the length in mm to set for a part, or a
+    list of the lengths of two clamps.
+    """
     lengths = [round_length_for_file(setting.length) for setting in list_length_settings(fixture, toolkit)]
     return {"opening": lengths[0] if len(lengths) == 1 else lengths}
 
 
 def round_length_for_file(value: float) -> float:
+    """Return a length in mm rounded as it is written to the file, to 1e-9 mm."""
     return float(round_to_steps(np.array([value]), LENGTH_STEPS)[0])
 
 
 def round_figure_for_file(value: float) -> float | None:
-    """Return a figure as it is written; None where it is not finite."""
+    """Return a figure rounded to twelve significant digits; None where it is not finite."""
     return float(f"{value:.12g}") if isfinite(value) else None

@@ -46,16 +46,16 @@ from workhold.model.requirements import (
     make_zone,
 )
 from workhold.model.result import Result
-from workhold.model.setup import PartZero, part_zero
+from workhold.model.setup import PartZero, choose_part_zero
 from workhold.model.workpiece import Workpiece
 from workhold.statics.effective_error import EffectiveErrors
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
 __all__ = [
     "OTHER_SIDE",
     "RANKINGS",
     "Member",
-    "Threshold",
+    "FigureThreshold",
     "describe_loss_figure",
     "format_loss",
     "compute_losses",
@@ -75,20 +75,20 @@ LOSS_DECIMALS = 9
 
 
 @frozen
-class Threshold:
-    """What a figure of every fixture used must reach.
+class FigureThreshold:
+    """The value of a figure that every fixture used must reach.
 
     Parameters
     ----------
     figure : which figure.
-    value : the largest it may be, or the smallest where more is better; in the figure's unit.
+    value : the largest allowed value, or the smallest where more is better; in the figure's unit.
     """
 
     figure: Figure
     value: float
 
 
-def make_threshold(name: str, value: float) -> Threshold:
+def make_threshold(name: str, value: float) -> FigureThreshold:
     """Return the threshold of a figure named as a user writes it.
 
     Raises
@@ -101,17 +101,19 @@ def make_threshold(name: str, value: float) -> Threshold:
         raise InputError(
             f"{name!r} is no figure: choose among {', '.join(figure.option for figure in FIGURES)}."
         )
-    return Threshold(FIGURES[number], value)
+    return FigureThreshold(FIGURES[number], value)
 
 
 def describe_loss_figure(figure: Figure) -> str:
+    """Return the name of the figure of losses; for the location error, "effective location error"."""
     return f"effective {figure.words}" if figure.key == LOCATION else figure.words
 
 
 def compute_losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
-    """Return the losses (N,) of fixtures with values (N,) of a figure: over the best of them, 1 or more.
+    """Return the losses (N,) of values (N,) of a figure: their ratio to the best value, 1 or more.
 
-    Beside a best of zero everything else is infinitely worse; what is no number is so, too.
+    Values equal to the best have a loss of 1. The loss is inf for NaN, and where the ratio is not finite and
+    positive.
     """
     values = np.round(values, FIGURE_DECIMALS)
     known = values[~np.isnan(values)]
@@ -127,7 +129,7 @@ def compute_losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.fl
 
 
 def format_loss(loss: float) -> str:
-    """Return a loss as it is shown, rounded up, so that what is shown is one within which it is.
+    """Return a loss with three decimals, rounded up so that the true loss is never larger; "any" if infinite.
 
     >>> format_loss(1.0), format_loss(1.1871), format_loss(float("inf"))
     ('1.000', '1.188', 'any')
@@ -136,13 +138,13 @@ def format_loss(loss: float) -> str:
 
 
 def may_be_used(
-    table: FixtureTable, thresholds: Sequence[Threshold], tolerance: Tolerance, with_unfit: bool
+    table: FixtureTable, thresholds: Sequence[FigureThreshold], tolerance: Tolerance, with_unfit: bool
 ) -> NDArray[np.bool_]:
-    """Return whether each fixture (N,) may be used: it reaches every threshold, and is fit for a workshop.
+    """Return (N,) whether each fixture reaches every threshold and is fit for a workshop.
 
-    ``with_unfit`` asks for no fitness.
+    ``with_unfit`` skips the test of fitness.
     """
-    good = np.ones(len(table), np.bool_) if with_unfit else ~unfit(table.quality, tolerance)
+    good = np.ones(len(table), np.bool_) if with_unfit else ~are_unfit(table.quality, tolerance)
     for one in thresholds:
         values = np.round(select_figure_column(table.quality, one.figure), FIGURE_DECIMALS)
         good &= values >= one.value if one.figure.more_is_better else values <= one.value
@@ -154,12 +156,12 @@ OTHER_SIDE = "side 2"
 
 
 def mirror_loop(loop: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the vertices (N, 3) of x, y and bulge with x the other way round."""
+    """Return vertices (N, 3) of x, y and bulge mirrored at x = 0, in the same order."""
     return np.asarray(loop * np.array([-1.0, 1.0, -1.0]) + 0.0)
 
 
 def mirror_load(load: Load) -> Load:
-    """Return a load on the part as it acts when the part is turned over."""
+    """Return a load on the part in the frame of the part turned over about y."""
     low, high = load.directions
     directions = ANY_DIRECTION if (low, high) == ANY_DIRECTION else (180.0 - high, 180.0 - low)
     return evolve(
@@ -168,7 +170,9 @@ def mirror_load(load: Load) -> Load:
 
 
 def renumber_segments(workpiece: Workpiece) -> dict[int, int]:
-    """Return the number of each segment in the part turned over, whose loops run the other way round."""
+    """Return a mapping from each segment's number to its number in the part
+    turned over, whose loops run in reverse.
+    """
     out, first = dict[int, int](), 0
     for loop in workpiece.loops:
         out |= {first + k: first + len(loop) - 1 - k for k in range(len(loop))}
@@ -177,7 +181,7 @@ def renumber_segments(workpiece: Workpiece) -> dict[int, int]:
 
 
 def make_other_side_query(query: Query, read: Workpiece | None = None) -> Query:
-    """Return the query for the part turned over; angles in the vise stay as they are.
+    """Return the query for the part turned over about y; angles in the vise stay as they are.
 
     Parameters
     ----------
@@ -201,7 +205,7 @@ def make_other_side_query(query: Query, read: Workpiece | None = None) -> Query:
     if read is not None:
         workpiece = evolve(read, name=called)
         avoid, touch = (
-            read.numbered.segments_under(part.numbered.faces_over(faces))
+            read.numbered.list_segments_under(part.numbered.list_faces_over(faces))
             for faces in (asked.avoid, asked.touch)
         )
     elif part.solid is not None:
@@ -231,7 +235,7 @@ def make_other_side_query(query: Query, read: Workpiece | None = None) -> Query:
 
 
 def mirror_zero(zero: PartZero) -> PartZero:
-    """Return a part's zero in the coordinates of the part turned over: the same point of the part."""
+    """Return part zero in the frame of the part turned over: the same point of the part."""
     x, y = zero.point
     return PartZero((0.0 - x, y), zero.words)
 
@@ -281,18 +285,25 @@ class Member:
 def make_member(
     name: str,
     result: Result,
-    thresholds: Sequence[Threshold] = (),
+    thresholds: Sequence[FigureThreshold] = (),
     unfit: bool = False,
     path: str = "",
     digest: str = "",
     zero: PartZero | None = None,
     same_zero: bool = False,
 ) -> Member:
-    """Return the member that a part is, from all its fixtures; refuse a disk without room for them.
+    """Return the member for a part, from the complete result of its query.
 
-    The fixtures are ranked, and the first figure of the ranking is that of losses. For ``thresholds`` and
-    ``unfit`` see ``family.members.may_be_used``. The part's zero is the usual one if None. ``same_zero`` says
-    whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
+    Parameters
+    ----------
+    thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
+    zero : part zero; None for the usual one.
+    same_zero : whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
+
+    Raises
+    ------
+    InputError
+        When the disk has no room for its fixtures.
     """
     query = result.query
     figure = FIGURES[find_figure_number(query.rank_by[0]) or 0]
@@ -300,7 +311,7 @@ def make_member(
     values = select_figure_column(table.quality, figure)
     if figure.key == LOCATION:
         # A part that is held to a hundredth, but aslant, is not held well.
-        values = EffectiveErrors.of(query).errors(table)
+        values = EffectiveErrors.from_query(query).compute_errors(table)
     good = may_be_used(table, (), query.tolerance, unfit)
     loss = np.full(len(table), np.inf)
     loss[good] = compute_losses(values[good], figure)
@@ -308,7 +319,7 @@ def make_member(
     used = np.flatnonzero(good & may_be_used(table, thresholds, query.tolerance, unfit))
     words, cost, turn = encode_patterns(table.take(used), query.toolkit), loss[used], used >= len(result)
     count = count_distinct_patterns(words, number[used], turn)
-    zero = part_zero(query.workpiece) if zero is None else zero
+    zero = choose_part_zero(query.workpiece) if zero is None else zero
     if same_zero:
         words = np.concatenate([words, encode_zeros(table.take(used), query.toolkit, zero)], axis=1)
     # Rows are ranked, and sorting keeps that order: of equal losses the first is the best.
@@ -320,9 +331,9 @@ def make_member(
 
 
 def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:
-    """Return the number of patterns (N, W) when one and its half turn count once.
+    """Return the number of distinct patterns among rows (N, W), a pattern and its half turn counted once.
 
-    ``number`` (N,) are the numbers of the fixtures, and ``turn`` (N,) whether they are after the half turn.
+    ``number`` (N,) is each row's fixture, and ``turn`` (N,) whether the row is the half turn of it.
     """
     ahead = np.full((int(number.max(initial=-1)) + 1, words.shape[1]), np.iinfo(np.int64).max)
     # What comes first is the smaller of the two of each fixture, whatever the order in which they are given.
@@ -337,11 +348,11 @@ def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.
 
 
 def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, IntArray]:
-    """Return the fixtures, and after them their images under half a turn of everything; and the place (N,) of
-    each in the list.
+    """Return the fixtures followed by their images under half a turn of everything,
+    and each row's index (N,) in the list.
 
-    There is an image where the arrangement stays as it is, and neither a range of angles nor blocked holes
-    forbid it.
+    A fixture has an image where the half turn leaves its arrangement as it is, no hole is blocked, and the
+    image's angle is allowed.
     """
     toolkit = query.toolkit
     tables, numbers = [table], [np.arange(len(table))]
@@ -356,18 +367,26 @@ def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, Int
             after = turn_fixtures_over(table.take(number), toolkit)
             # Where another jaw stands still the location error changes; the locators of a plate stay what
             # they are.
-            tables.append(after if places[0] == 0 else measure_table(after, Problem.of(query)))
+            tables.append(after if places[0] == 0 else measure_table(after, Problem.from_query(query)))
             numbers.append(number)
-    return FixtureTable.joined(tables), np.concatenate(numbers)
+    return FixtureTable.concatenate(tables), np.concatenate(numbers)
 
 
 def are_at_allowed_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
-    """Return whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
+    """Return (N,) whether angles in degrees lie in an allowed range of the
+    query; all do where there are no ranges.
+    """
     return np.asarray(lie_in_angle_ranges(degrees, query.restrictions.angles))
 
 
 def spill_to_disk(table: FixtureTable) -> FixtureTable:
-    """Return a table that takes little memory, however long it is; refuse a disk without room for temporary files."""
+    """Return the table, or if it is large an equal one whose columns are mapped from a temporary file.
+
+    Raises
+    ------
+    InputError
+        When the disk has no room for temporary files.
+    """
     if sum(column.nbytes for column in table.columns) < IN_MEMORY:
         return table
     names = [one.name for one in fields(FixtureTable)]

@@ -16,8 +16,8 @@ from math import ceil, floor, isfinite, log10
 
 from attrs import frozen
 
-from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, draw_bench, draw_zero, make_bench
+from workhold.drawing.annotation import draw_scale_bar
+from workhold.drawing.bench import BenchDrawing, draw_bench, draw_zero, make_bench
 from workhold.drawing.panel import format_count
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.scene import (
@@ -35,7 +35,7 @@ from workhold.drawing.scene import (
 from workhold.family.covering import Point
 from workhold.family.family import Family
 from workhold.family.members import describe_loss_figure, format_loss
-from workhold.family.plan import Holding, Plan, SetUp
+from workhold.family.plan import FamilyPlan, Holding, SetUp
 from workhold.model.quality import Figure
 from workhold.model.setup import list_length_settings
 from workhold.units import MILLIMETRE, Unit
@@ -52,7 +52,7 @@ MOST_LINES = 9
 
 
 def draw_curve(family: Family, chosen: Point | None = None) -> str:
-    """Draw the curve of a family on A4, as SVG text.
+    """Return the curve of a family drawn on A4, as SVG text.
 
     Parameters
     ----------
@@ -78,12 +78,14 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
 
 
 def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
+    """Draw axes, steps and points of the curve into a page box; points that are not proven are hollow."""
     last, most = points[-1].setups, points[0].loss
     step = choose_axis_step(max(most - 1.0, 0.02) / MOST_LINES)
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
     first = points[0].setups
 
     def at(setups: float, loss: float) -> tuple[float, float]:
+        """Return the page point of a number of set-ups and a loss."""
         across = (setups - first + 0.5) / (last - first + 1)
         return room.x0 + across * room.width, room.y1 - (loss - 1.0) / (top - 1.0) * (room.height - 30)
 
@@ -122,13 +124,13 @@ def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: P
         box = Box(
             here[0] + 6, here[1] - 24, here[0] + 10 + measure_text(words, 13, bold=is_chosen), here[1] - 8
         )
-        if is_chosen or all(box.overlap(other) == 0 for other in taken):
+        if is_chosen or all(box.compute_overlap_area(other) == 0 for other in taken):
             taken.append(box)
             curve.add_text((box.x0, here[1] - 16), words, 13, bold=is_chosen, halo=2.5)
 
 
 def choose_axis_step(least: float) -> float:
-    """Return the smallest of 1, 2 or 5 times a power of ten that is not below ``least``.
+    """Return the smallest of 1, 2 or 5 times a power of ten that is at least ``least``.
 
     >>> choose_axis_step(0.07), choose_axis_step(0.2), choose_axis_step(3)
     (0.1, 0.2, 5.0)
@@ -152,7 +154,7 @@ RULE = "#dfe3e8"
 
 
 @frozen
-class Titles:
+class PageTitles:
     """What stands on every page of a plan."""
 
     count: int
@@ -161,8 +163,8 @@ class Titles:
     day: date
 
 
-def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) -> tuple[str, ...]:
-    """Draw the sheets of a plan, as SVG text of every page.
+def draw_setups(plan: FamilyPlan, figure: Figure, day: date, unit: Unit = MILLIMETRE) -> tuple[str, ...]:
+    """Return the sheets of a plan, as SVG text of every page.
 
     Parameters
     ----------
@@ -170,7 +172,7 @@ def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) 
     day : the date written on the sheets.
     """
     first = plan.setups[0].holdings[0].member.query.toolkit.carriers[0]
-    titles = Titles(len(plan.setups), figure, LengthUnit.from_typical_length(unit, min(first.pitch)), day)
+    titles = PageTitles(len(plan.setups), figure, LengthUnit.from_typical_length(unit, min(first.pitch)), day)
     pages: list[Scene] = []
     before: SetUp | None = None
     for number, setup in enumerate(plan.setups, 1):
@@ -181,8 +183,10 @@ def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) 
     return tuple(page.to_svg() for page in pages)
 
 
-def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Iterator[Scene]:
-    """Yield the pages of a set-up without their feet."""
+def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: PageTitles) -> Iterator[Scene]:
+    """Yield the pages of a set-up without their feet; ``before`` is the set-up before it, None for the
+    first.
+    """
     benches = [
         (one, make_bench(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
         for one in setup.holdings
@@ -201,8 +205,10 @@ def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Ti
         yield scene
 
 
-def begin_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Scene:
-    """Return a page with its heading: which set-up, where its pegs stand, and what is moved for it."""
+def begin_page(setup: SetUp, before: SetUp | None, number: int, titles: PageTitles) -> Scene:
+    """Return a page with its heading: the set-up's number, where its pegs stand, and which are moved for
+    it.
+    """
     heading = f"Set-up {number} of {titles.count}: {format_count(len(setup.holdings), 'part')}"
     scene = Scene.make_page(LANDSCAPE, heading)
     group = scene.group("heading")
@@ -215,22 +221,28 @@ def begin_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) 
 
 
 def list_holes(setup: SetUp) -> list[str]:
+    """Return the names of the holes in which the pegs of a set-up stand."""
     return [peg.hole for peg in setup.standing.fixture.placed]
 
 
 def describe_heights(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
-    """Say at which heights carriers with heights of their own touch, where the parts are solids."""
+    """Yield sentences on the heights at which carriers with heights of their own
+    touch; none where no part is a solid.
+    """
     toolkit = setup.standing.member.query.toolkit
     if all(one.member.query.workpiece.solid is None for one in setup.holdings):
         return
     for elements, (low, high) in {
         one.elements: one.heights for one in toolkit.carriers if one.heights
     }.items():
-        heights = f"{lengths.number(low)} and {lengths.format_length(high)}"
+        heights = f"{lengths.format_number(low)} and {lengths.format_length(high)}"
         yield f"{elements.capitalize()}: touch between {heights} above the plane on which the parts lie."
 
 
 def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
+    """Yield a sentence on the pegs to take out and to place after the set-up
+    before; nothing for the first set-up.
+    """
     if before is None:
         return
     here, there = Counter(list_holes(setup)), Counter(list_holes(before))
@@ -245,6 +257,7 @@ def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
 
 
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
+    """Draw the plan of a set-up, with its standing part, into a page box."""
     one = setup.standing
     workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
     bench = make_bench(one.fixture, workpiece, toolkit)
@@ -255,7 +268,12 @@ def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -
     scene.add_text((room.x0, room.y1 - 4), shorten_text(words, 12, room.width), 12, fill=GREY)
 
 
-def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box, titles: Titles) -> None:
+def draw_parts(
+    scene: Scene, benches: Sequence[tuple[Holding, BenchDrawing]], room: Box, titles: PageTitles
+) -> None:
+    """Draw parts as they lie, each in a cell and all to one scale, above the table of what to set for
+    each.
+    """
     rows = [make_table_row(one, titles) for one, _ in benches]
     notes = [
         line
@@ -281,21 +299,24 @@ def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box
         view = View.fit_box(bench.extent, inner, scale)
         draw_bench(group, bench, view, weight=0.55, longest=24.0, axes=False)
         zero = view(bench.fixture.pose.apply(*one.member.zero.point))
-        if inner.grown(4).contains(Box(*zero, *zero)):
+        if inner.grow(4).contains(Box(*zero, *zero)):
             draw_zero(group, zero, 4.0)
         name = shorten_text(one.member.name, NAME, cell.width - 12, bold=True)
         group.add_text((cell.x0 + 6, cell.y1 - CAPTION / 2), name, NAME, bold=True)
     bottom = room.y1 - high - FOOTER + 20
-    scale_bar(
+    draw_scale_bar(
         scene, (room.x0, bottom), scale, titles.lengths, more=", all parts to this scale; the disc is X0 Y0"
     )
 
 
 def make_grid(count: int, room: Box) -> list[Box]:
-    """Return ``count`` equal cells in a room, row by row, as nearly square as there can be."""
+    """Return ``count`` equal cells of a page box, row by row, with the number
+    of columns that makes them largest.
+    """
     ways = [(across, -(-count // across)) for across in range(1, count + 1)]
 
     def size(way: tuple[int, int]) -> float:
+        """Return the size of a cell for a number of columns and rows."""
         return min(room.width / way[0], 1.2 * room.height / way[1])
 
     across, down = max(ways, key=lambda way: (size(way), -way[0]))
@@ -307,7 +328,8 @@ def make_grid(count: int, room: Box) -> list[Box]:
     return [Box(x, y, x + width, y + height) for x, y in corners]
 
 
-def make_table_head(one: Holding, titles: Titles) -> list[str]:
+def make_table_head(one: Holding, titles: PageTitles) -> list[str]:
+    """Return the headings of the table of parts."""
     sign, of = titles.lengths.sign, titles.figure.unit
     settings = list_length_settings(one.fixture, one.member.query.toolkit)
     unit = sign if of == "mm" else of
@@ -318,8 +340,9 @@ def make_table_head(one: Holding, titles: Titles) -> list[str]:
     return ["part", *lengths, "turned θ", f"{titles.figure.words} {unit}".strip(), "loss", "fixture"]
 
 
-def make_table_row(one: Holding, titles: Titles) -> list[str]:
-    fixture, number = one.fixture, titles.lengths.number
+def make_table_row(one: Holding, titles: PageTitles) -> list[str]:
+    """Return the row of a part: what to set, its zero, its angle, its figure, its loss and its fixture."""
+    fixture, number = one.fixture, titles.lengths.format_number
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [
         one.member.name,
@@ -334,7 +357,9 @@ def make_table_row(one: Holding, titles: Titles) -> list[str]:
 
 
 def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
-    """Yield the notes below the table: the signs, the zero, and the parts whose pegs stand in other columns."""
+    """Yield the notes below the table: on the zero and the signs, and on parts
+    whose pegs stand in other columns.
+    """
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
@@ -351,7 +376,9 @@ def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
 
 
 def compute_column_widths(head: list[str], rows: list[list[str]], width: float) -> list[float]:
-    """Return the widths of the columns of the table of parts; the names have what the others leave."""
+    """Return the widths of the table's columns in page units; the names get
+    what the others leave of ``width``.
+    """
     heads = [split_heading(words) for words in head]
     widths = [
         max(
@@ -367,7 +394,9 @@ def compute_column_widths(head: list[str], rows: list[list[str]], width: float) 
 
 
 def name_lines(name: str, width: float, most: int) -> list[str]:
-    """Return a part's name in as many lines as it takes in its column, the last cut off where these are too many."""
+    """Return a part's name wrapped to at most ``most`` lines, the last one shortened if the name is
+    longer.
+    """
     room = width - 8
     lines = wrap_text(name, WORDS, room, bold=True) or [""]
     if len(lines) > most:
@@ -378,9 +407,8 @@ def name_lines(name: str, width: float, most: int) -> list[str]:
 def draw_table(
     scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str], most: int
 ) -> None:
-    """Draw the table of parts, numbers on the right of their columns, and the notes below it.
-
-    Names have ``most`` lines at most.
+    """Draw the table of parts, numbers right-aligned, and the notes below it;
+    names have ``most`` lines at most.
     """
     widths = compute_column_widths(head, rows, room.width)
     heads = [split_heading(words) for words in head]
@@ -405,7 +433,7 @@ def draw_table(
 
 
 def split_heading(words: str) -> tuple[str, str]:
-    """Return a heading in two lines as short as they can be, the first of them empty where there is one word.
+    """Return a heading as two lines, the longer as short as possible; the first is "" for a single word.
 
     >>> split_heading("part"), split_heading("location error mm")
     (('', 'part'), ('location', 'error mm'))
@@ -415,7 +443,8 @@ def split_heading(words: str) -> tuple[str, str]:
     return min(ways, key=lambda way: max(map(len, way)))
 
 
-def draw_foot(scene: Scene, titles: Titles, page: str) -> None:
+def draw_foot(scene: Scene, titles: PageTitles, page: str) -> None:
+    """Write the date, the program's version and the page's number at a page's foot."""
     width, height = LANDSCAPE
     words = f"{titles.day.isoformat()} · workhold {__version__} · {page}"
     scene.add_text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)

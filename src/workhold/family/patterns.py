@@ -44,15 +44,17 @@ NO_PLACE = 1 << 40
 
 
 def group_carriers_by_columns(toolkit: Toolkit) -> list[int]:
-    """Return the group of carriers that share their columns, for each carrier: a jaw that slides has its own."""
+    """Return a number for each carrier, equal for carriers that shift by columns
+    together: 0, or its own for a sliding jaw.
+    """
     slides = [carrier.has_lattice and carrier.travel is not None for carrier in toolkit.carriers]
     return [number if own else 0 for number, own in enumerate(slides)]
 
 
 def map_carriers_by_half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
-    """Return the carrier whose place each carrier takes after half a turn of everything.
+    """Return for each carrier the carrier whose place it takes after half a turn of everything.
 
-    It is None where the turn does not leave the arrangement as it is.
+    Returns None where the half turn changes the arrangement.
     """
     places, one = toolkit.half_turned, toolkit.arrangements[arrangement]
     if places is None:
@@ -66,7 +68,10 @@ def map_carriers_by_half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, 
 
 
 def encode_patterns(table: FixtureTable, toolkit: Toolkit) -> IntArray:
-    """Return the patterns (N, W) of fixtures as they stand; their lexicographic order is that of identities."""
+    """Return the patterns (N, W) of fixtures as rows of packed integers, equal for equal patterns.
+
+    Their lexicographic order is that of the patterns' identities.
+    """
     carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
     counts = np.array([one.counted for one in toolkit.carriers])[carriers]
     groups = np.array(group_carriers_by_columns(toolkit))[carriers]
@@ -84,15 +89,16 @@ def encode_patterns(table: FixtureTable, toolkit: Toolkit) -> IntArray:
 
 
 def find_least_counted(values: IntArray, inside: BoolArray) -> IntArray:
-    """Return the smallest (N, 1) of the values (N, P) that count, 0 where none does."""
+    """Return the smallest (N, 1) of the values (N, P) where ``inside`` is true, 0 where it is nowhere."""
     found = np.where(inside, values, NO_PLACE).min(axis=1, keepdims=True, initial=NO_PLACE)
     return np.where(found == NO_PLACE, 0, found)
 
 
 def encode_zeros(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArray:
-    """Return the part zero relative to the pegs of fixtures, and the turn of the part, (N, 3) in whole steps.
+    """Return part zero relative to the pegs, and the turn of the part, as whole steps (N, 3).
 
-    Fixtures of one pattern have the same steps where the parts' zeros are at one place and their turns equal.
+    Fixtures of one pattern have equal steps where the parts' zeros are at one place and their turns are
+    equal.
     """
     carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
     counts = np.array([one.counted for one in toolkit.carriers])[carriers]
@@ -122,9 +128,10 @@ NOTHING = 1 << 40
 
 
 def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
-    """Return a fixture moved by whole columns and rows; the part moves with the first carrier.
+    """Return a fixture, a table of one row, moved by whole columns and rows;
+    the part moves with carrier group 0.
 
-    ``columns`` are by group of carriers, see :func:`group_carriers_by_columns`.
+    ``columns`` are by group of carriers, see :func:`group_carriers_by_columns`; ``rows`` apply to all.
     """
     carriers = toolkit.find_peg_carriers(one.arrangement)[0]
     groups, pitch = group_carriers_by_columns(toolkit), toolkit.carriers[0].pitch
@@ -142,10 +149,10 @@ def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], 
 
 
 def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
-    """Return the fixtures of one arrangement, which half a turn of everything leaves as it is, after that
-    turn.
+    """Return the fixtures after half a turn of everything about z.
 
-    They are in the same rows and in the mirrored columns; their figures are those before it.
+    All must be of one arrangement that the half turn leaves as it is. They are in the same rows and in
+    mirrored columns. Figures stay those before the turn.
     """
     if not len(table):
         return table
@@ -187,27 +194,30 @@ def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
 
 
 def find_tips(table: FixtureTable, toolkit: Toolkit) -> NDArray[np.float64]:
-    """Return the places (N, K, 2) in mm of the tips of fixtures' clamps."""
+    """Return the places (N, K, 2) in mm of the tips of the fixtures' K clamps."""
     x, y = toolkit.compute_hole_places(table.arrangement, table.column, table.row, table.jaw_separation)
     count = 1 if table.jaw_separation.ndim == 1 else table.jaw_separation.shape[1]
     return np.stack([x[:, -count:], y[:, -count:]], axis=2)
 
 
 def move_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) -> FixtureTable:
-    """Return the fixtures of one arrangement whose clamps have travelled to some places (N, K, 2) in mm."""
+    """Return fixtures of one arrangement with their clamps' tips at these places (N, K, 2) in mm."""
     carriers = toolkit.arrangements[int(table.arrangement[0])].carriers
     travelled = np.zeros(tips.shape[:2])
     for clamp, peg in enumerate(range(len(carriers) - tips.shape[1], len(carriers))):
         carrier = toolkit.carriers[carriers[peg]]
         assert carrier.travel is not None
-        x, y = carrier.place(table.column[:, peg], table.row[:, peg])
+        x, y = carrier.compute_hole_center(table.column[:, peg], table.row[:, peg])
         along, across = carrier.travel.unit
         travelled[:, clamp] = (tips[:, clamp, 0] - x) * along + (tips[:, clamp, 1] - y) * across
     return evolve(table, jaw_separation=travelled.reshape(table.jaw_separation.shape))
 
 
 def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
-    """Return where every peg of a fixture stands, in order; the ends of a wall are left out."""
+    """Return the sorted (carrier number, column, row) of a fixture's pegs, without the ends of a wall.
+
+    A column or row without a meaning is ``NOTHING``.
+    """
     out = []
     carriers = toolkit.find_peg_carriers(one.arrangement)
     places = (rows[0].tolist() for rows in (carriers, one.column, one.row))
@@ -219,7 +229,10 @@ def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
 
 
 def move_onto_pattern(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
-    """Return a fixture moved into the holes of another of its pattern; None where the jaws cannot stand so."""
+    """Return a fixture moved into the holes of another fixture of its pattern.
+
+    Returns None where the holes cannot be met, or the opening of the jaws would be out of range.
+    """
     mine, theirs, groups = (
         list_holes(one, toolkit),
         list_holes(target, toolkit),

@@ -27,11 +27,11 @@ from workhold.model.quality import find_figure_number
 
 __all__ = [
     "MOST_EXACT",
-    "Freedom",
+    "SetUpFreedom",
     "Holding",
-    "Plan",
+    "FamilyPlan",
     "SetUp",
-    "Step",
+    "PlanStep",
     "find_best_order",
     "find_freedom",
     "make_plan",
@@ -45,7 +45,7 @@ Holes = Sequence[tuple[int, int, int]]
 
 
 @frozen
-class Freedom:
+class SetUpFreedom:
     """Whether a set-up may be moved by columns, and by rows."""
 
     columns: bool
@@ -53,7 +53,7 @@ class Freedom:
 
 
 @frozen
-class Step:
+class PlanStep:
     """A set-up in its place in the order.
 
     Parameters
@@ -69,33 +69,39 @@ class Step:
     moved: int
 
 
-def find_freedom(toolkit: Toolkit) -> Freedom:
-    """Return which ways set-ups of a toolkit may be moved: where it has no end."""
+def find_freedom(toolkit: Toolkit) -> SetUpFreedom:
+    """Return in which directions set-ups of a toolkit may be moved: those in which its plates have no end."""
     plates, is_counted = toolkit.plates, toolkit.datum.fixes_rows
-    return Freedom(
+    return SetUpFreedom(
         columns=all(plate.columns is None for plate in plates),
         rows=not is_counted and all(plate.rows is None and not plate.blocked for plate in plates),
     )
 
 
 def move_holes(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, int]]:
-    """Return the holes after a move; a column or row without a meaning stays."""
+    """Return the holes moved by columns and rows; a column or row equal to ``NOTHING`` stays."""
     return [
         (one, column if column == NOTHING else column + columns, row if row == NOTHING else row + rows)
         for one, column, row in holes
     ]
 
 
-def list_moves(before: Holes, after: Holes, freedom: Freedom) -> Iterator[tuple[int, int]]:
-    """Yield the moves that bring a peg of one set-up onto a peg of another, and none."""
+def list_moves(before: Holes, after: Holes, freedom: SetUpFreedom) -> Iterator[tuple[int, int]]:
+    """Yield (columns, rows) of no move, and of each move that brings a peg of
+    ``after`` onto a peg of ``before``.
+    """
     yield 0, 0
     for (one, column, row), (other, x, y) in product(before, after):
         if one == other:
             yield (column - x if freedom.columns else 0), (row - y if freedom.rows else 0)
 
 
-def find_cheapest_move(before: Holes, after: Holes, freedom: Freedom) -> tuple[int, int, int]:
-    """Return the fewest pegs to place for a set-up after another one, and the first move that needs so few."""
+def find_cheapest_move(before: Holes, after: Holes, freedom: SetUpFreedom) -> tuple[int, int, int]:
+    """Return (pegs to place, columns, rows) of the move of ``after`` that leaves
+    fewest pegs to place after ``before``.
+
+    Among equal moves it is the shortest, then the first.
+    """
     there = Counter(before)
     best = min(
         (sum((Counter(move_holes(after, *move)) - there).values()), abs(move[0]) + abs(move[1]), move)
@@ -104,20 +110,21 @@ def find_cheapest_move(before: Holes, after: Holes, freedom: Freedom) -> tuple[i
     return best[0], *best[2]
 
 
-def find_best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
-    """Return the best order of set-ups, from the holes of each; of equal orders the first by numbers.
+def find_best_order(setups: Sequence[Holes], freedom: SetUpFreedom) -> list[PlanStep]:
+    """Return the steps through all set-ups, given by their holes, in the order that places fewest pegs.
 
-    All are moved so that the lowest column and row that may be moved are 0.
+    Of equal orders it is the first by numbers. All set-ups are moved so that the lowest column and row, where
+    they may be moved, are 0.
     """
     cost = np.array([[find_cheapest_move(one, other, freedom)[0] for other in setups] for one in setups])
     path = find_shortest_path(cost) if len(setups) <= MOST_EXACT else find_greedy_path(cost)
-    stood: list[tuple[Step, Holes]] = []
+    stood: list[tuple[PlanStep, Holes]] = []
     for number in path:
         holes = setups[number]
         pegs, columns, rows = (
             find_cheapest_move(stood[-1][1], holes, freedom) if stood else (len(holes), 0, 0)
         )
-        stood.append((Step(number, columns, rows, pegs), move_holes(holes, columns, rows)))
+        stood.append((PlanStep(number, columns, rows, pegs), move_holes(holes, columns, rows)))
     first_column, first_row = (
         min((hole[axis] for _, holes in stood for hole in holes if hole[axis] != NOTHING), default=0)
         if free
@@ -130,7 +137,9 @@ def find_best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
 
 
 def find_shortest_path(cost: NDArray[np.int64]) -> list[int]:
-    """Return the first shortest path through all places, from the costs (S, S) of the ways between them."""
+    """Return the first shortest path through all S places, as indices, from
+    the costs (S, S) from row to column.
+    """
     count = len(cost)
     bit, every = 1 << np.arange(count), np.arange(count)
     # length[v, s]: of the shortest way from place s through all that are not among the bits of v.
@@ -149,7 +158,7 @@ def find_shortest_path(cost: NDArray[np.int64]) -> list[int]:
 
 
 def find_greedy_path(cost: NDArray[np.int64]) -> list[int]:
-    """Return a path from the first place to the nearest that is left, and so on."""
+    """Return a path through all places from place 0, going each time to the cheapest place left."""
     path, left = [0], np.arange(len(cost)) != 0
     while left.any():
         path.append(int(np.argmin(np.where(left, cost[path[-1]], FAR))))
@@ -159,18 +168,18 @@ def find_greedy_path(cost: NDArray[np.int64]) -> list[int]:
 
 @frozen(eq=False)
 class Holding:
-    """How a member lies in a set-up.
+    """A member as it lies in a set-up.
 
     Parameters
     ----------
     member : the part.
     number : of the fixture in the list of all of the part's fixtures, best first, from 1.
     loss : of the fixture.
-    turned : whether it is listed as it is half a turn of everything before, so that the other jaw stands
+    turned : whether the listed fixture is this one before half a turn of everything, after which the other jaw stands
         still.
     row : the fixture as it stands in the set-up, a table of one row.
-    in_place : whether its pegs stand in the holes of the set-up; not so of a vise whose largest opening, or
-        smallest gap, asks for other columns.
+    in_place : whether its pegs stand in the holes of the set-up; False in a vise whose largest opening, or smallest
+        gap, needs other columns.
     """
 
     member: Member
@@ -187,6 +196,7 @@ class Holding:
 
     @property
     def figure(self) -> float:
+        """The value of the figure of losses."""
         return float(self.row.quality[0, find_figure_number(self.member.query.rank_by[0]) or 0])
 
 
@@ -213,7 +223,7 @@ class SetUp:
 
 
 @frozen(eq=False)
-class Plan:
+class FamilyPlan:
     """A plan.
 
     Parameters
@@ -227,11 +237,14 @@ class Plan:
 
     @property
     def moved(self) -> int:
-        """How many pegs are moved between the set-ups in all."""
+        """The number of pegs placed between the set-ups in all; those of the first set-up are not counted."""
         return sum(setup.moved for setup in self.setups[1:])
 
 
-def make_plan(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
+def make_plan(point: Point, table: LossTable, members: Sequence[Member]) -> FamilyPlan:
+    """Return the plan of a point of the curve: each member in the set-up
+    that suits it best, in the best order.
+    """
     losses = table.list_losses(point.patterns)
     # Where two patterns suit a member alike, the one with the smaller identity has it.
     suits = np.argmin(np.where(np.isnan(losses), np.inf, losses), axis=0)
@@ -242,10 +255,11 @@ def make_plan(point: Point, table: LossTable, members: Sequence[Member]) -> Plan
             setups.append(
                 SetUp(pattern, align_holdings([make_holding(one, table.words[pattern]) for one in held]), 0)
             )
-    return Plan(point, sort_in_best_order(setups))
+    return FamilyPlan(point, sort_in_best_order(setups))
 
 
 def make_holding(member: Member, words: NDArray[np.int64]) -> Holding:
+    """Return the best fixture of a member that has the pattern ``words`` (W,)."""
     place = int(np.flatnonzero((member.words == words).all(axis=1))[0])
     row = member.table.take(slice(place, place + 1))
     return Holding(
@@ -254,7 +268,10 @@ def make_holding(member: Member, words: NDArray[np.int64]) -> Holding:
 
 
 def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
-    """Return the members of one pattern moved into the same holes, those of the member whose holes suit most others."""
+    """Return the holdings of one pattern moved into the holes of the one that most of them can share.
+
+    Those that cannot be moved there stay, with ``in_place`` False.
+    """
     best: list[Holding] = []
     for target in holdings:
         toolkit = target.member.query.toolkit
@@ -271,7 +288,7 @@ def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
 
 
 def sort_in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
-    """Return the set-ups in the order in which the fewest pegs are moved, each where that asks for it to stand."""
+    """Return the set-ups in the order that places fewest pegs, each moved to where that order needs it."""
     toolkit = setups[0].holdings[0].member.query.toolkit
     holes = [list_holes(setup.standing.row, toolkit) for setup in setups]
     out = []

@@ -23,7 +23,7 @@ ROUNDING = 1e-6
 
 
 def load_solver() -> None:
-    """Load HiGHS.
+    """Check that HiGHS can be imported.
 
     Raises
     ------
@@ -41,11 +41,11 @@ def load_solver() -> None:
 def find_best_choice(
     costs: NDArray[np.float64], constraint: Any, seconds: float | None
 ) -> tuple[list[int] | None, float | None]:
-    """Return the numbers of the things to choose so that their costs (N,) are least, and a lower bound of the
-    cost.
+    """Return the indices of the things to choose for least total cost, and a lower bound of that cost.
 
-    The constraint is one of SciPy on whether each of the things is chosen, 0 or 1. After ``seconds``, None
-    for no limit, it is the best choice known. Each of the two is None where it is not known.
+    ``costs`` (N,) are those of the things, ``constraint`` is one of SciPy on the 0 or 1 of each. After
+    ``seconds`` (None: no limit) the choice is the best one known. Either result is None where it is not
+    known.
     """
     from scipy.optimize import Bounds, milp
 

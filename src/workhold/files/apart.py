@@ -1,10 +1,10 @@
-"""Work on foreign data in a process of its own, for libraries that a damaged file brings down.
+"""Reading of foreign data in a child process, for libraries that a damaged file can crash.
 
-Whatever happens to the process, its starter goes on: a crash, a time-out and a lack of memory each become one
+Whatever happens to the child, the parent goes on: a crash, a time-out and a lack of memory each become one
 sentence. The process is started through pipes rather than by ``multiprocessing``, so that it works from any
-script, and its answer is JSON, which cannot do anything. It ends with its starter, also where that is killed,
-and where a library is deaf to signals. Where processes can be forked, one that has loaded the library is kept
-ready (``files.fork_server``), since that takes longer than to read most files.
+script, and its answer is JSON, which cannot execute anything. It ends with its parent, also where that is
+killed, and where a library ignores signals. Where processes can be forked, one that has loaded the library is
+kept ready (``files.fork_server``), since that takes longer than to read most files.
 """
 
 from __future__ import annotations
@@ -44,20 +44,23 @@ ANSWER, SERVE = "apart.answer()", "fork_server.serve(apart.load_prepared_module,
 
 
 def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:
-    """Run ``module.read_as_plain_data(content, **options)`` in a process of its own and return its plain
-    data.
+    """Return ``module.read_as_plain_data(content, **options)``, called in a child process.
+
+    The module's ``prepare`` is called there first.
 
     Parameters
     ----------
     module : its full name; ``prepare`` loads what the work needs and has no limit of time.
     content : foreign data.
-    options : plain data.
+    options : plain data, as is the result.
     what : the data, in words that begin a sentence.
 
     Raises
     ------
     InputError
-        What the work raises, or a sentence that the process crashed, took too long or took too much memory.
+        That of the work, or a sentence that the process crashed, took too long or took too much memory.
+    RuntimeError
+        For any other error of the work, with its traceback.
     """
     seconds = LIMITS["step"].allow_seconds_for(len(content))
     assert seconds is not None
@@ -74,6 +77,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
         late = Event()
 
         def give_up() -> None:
+            """Kill the process because time is up."""
             late.set()
             process.kill()
 
@@ -97,7 +101,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
 
 
 def start_process(module: str) -> ForkedProcess | subprocess.Popen[bytes]:
-    """Return a process that answers one order for a module's work."""
+    """Return a child process that answers one order for a module's work."""
     process = fork_from_server(module, make_python_command(SERVE)) if CAN_FORK else None
     return process or subprocess.Popen(
         make_python_command(ANSWER), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
@@ -105,13 +109,19 @@ def start_process(module: str) -> ForkedProcess | subprocess.Popen[bytes]:
 
 
 def make_python_command(doing: str) -> list[str]:
-    """Return the command that starts Python with the modules of this process, to do something."""
+    """Return the command that starts Python with the module path of this process and executes ``doing``."""
     return [sys.executable, "-P", "-c", START + doing, *sys.path]
 
 
 def read_outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
-    """Return what a process that has ended answered, or its refusal as in :func:`run_apart`; limits are
-    seconds and bytes.
+    """Return the result that an ended child has written; raise an error as :func:`run_apart` does.
+
+    Parameters
+    ----------
+    answered : bytes written by the child.
+    code : its exit code.
+    given_up : whether it was ended because time was up.
+    limits : its seconds and bytes of memory, for messages.
     """
     kind, value = "", ""
     seconds, memory = limits
@@ -141,7 +151,9 @@ def read_outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float
 
 
 def answer() -> None:
-    """Do the work on standard input and write its outcome to standard output; the process's main."""
+    """Run the main program of a child: do the work ordered on
+    standard input, write its outcome to standard output, exit.
+    """
     # Libraries write what they like to the usual output, which nobody reads from now on.
     out = os.dup(1)
     os.dup2(2, 1)
@@ -164,7 +176,9 @@ def answer() -> None:
 
 
 def answer_order(order: Mapping[str, Any], content: bytes, out: int) -> Any:
-    """Return the result of an order's work; once it is prepared that is written to ``out``."""
+    """Return the result of an order's work; ``PREPARED`` is
+    written to the file descriptor ``out`` when it begins.
+    """
     module = load_prepared_module(order["module"])
     os.write(out, PREPARED)
     limit_processor(order["seconds"])
@@ -172,7 +186,7 @@ def answer_order(order: Mapping[str, Any], content: bytes, out: int) -> Any:
 
 
 def load_prepared_module(name: str) -> ModuleType:
-    """Return the module of a name, prepared."""
+    """Import a module, call its ``prepare`` and return it."""
     module = import_module(name)
     prepare: Callable[[], None] = module.prepare
     prepare()
@@ -180,7 +194,7 @@ def load_prepared_module(name: str) -> ModuleType:
 
 
 def end_with_starter() -> None:
-    """Let the system end this process when its starter has closed the pipe to it."""
+    """Make the system end this process when its parent has closed the pipe to it; nothing on Windows."""
     if sys.platform == "win32":
         return
     import fcntl
@@ -191,7 +205,9 @@ def end_with_starter() -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Let the process take no more address space than this, where the system can see to it."""
+    """Limit the process's address space to ``size`` bytes,
+    and write no core dumps; nothing where the system cannot.
+    """
     try:
         import resource
     except ImportError:
@@ -203,7 +219,9 @@ def limit_memory(size: int) -> None:
 
 
 def limit_processor(seconds: float) -> None:
-    """Let the system end the process once it has taken this many more seconds of processor time."""
+    """Make the system end the process after this many more
+    seconds of processor time; nothing where it cannot.
+    """
     try:
         import resource
     except ImportError:

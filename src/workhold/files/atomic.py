@@ -1,8 +1,8 @@
 """Output files that appear whole or not at all.
 
-Content is written under a temporary name in the same folder and renamed at the end. So an error, a full
-disk or an interruption leaves an earlier file as it was. Devices and pipes have nothing to protect and are
-written directly.
+Content is written under a temporary name in the same folder and renamed at the end. So an error, a full disk
+or an interruption leaves an earlier file as it was. Devices and pipes hold no earlier content and are written
+directly.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ unfinished: set[Path] = set()
 
 
 def refuse_unwritable(path: str | Path) -> None:
-    """Refuse an output file that could not be written in the end, before any work is done for it."""
+    """Raise InputError for an output file that could not
+    be written in the end, before any work is done for it.
+    """
     path = Path(path)
     target = resolve_file_path(path)
     with explain_system_errors(path):
@@ -46,7 +48,9 @@ def refuse_unwritable(path: str | Path) -> None:
 
 
 def refuse_unwritable_folder(path: str | Path) -> None:
-    """Refuse an output folder that could not be created or written in the end; create nothing."""
+    """Raise InputError for an output folder that could
+    not be created or written in the end; create nothing.
+    """
     path = Path(path)
     with explain_system_errors(path):
         existing = resolve_path(path)
@@ -59,7 +63,11 @@ def refuse_unwritable_folder(path: str | Path) -> None:
 
 @contextmanager
 def write_text_file(path: str | Path) -> Iterator[IO[str]]:
-    """Yield a text file (UTF-8, ``\\n`` line ends) that takes its name only when the block ends without an error."""
+    """Yield a text file (UTF-8, ``\\n`` line ends) that
+    takes its name only when the block ends without an error.
+
+    Raises InputError when the file cannot be written.
+    """
     with (
         replace_file(Path(path)) as descriptor,
         os.fdopen(descriptor, "w", encoding="utf-8", newline="\n") as stream,
@@ -69,13 +77,13 @@ def write_text_file(path: str | Path) -> Iterator[IO[str]]:
 
 @contextmanager
 def write_binary_file(path: str | Path) -> Iterator[BinaryIO]:
-    """Yield a file of bytes, written in any order, that takes its name only when the block ends without an
-    error.
+    """Yield a binary file, opened for writing with seek, that
+    takes its name only when the block ends without an error.
 
     Raises
     ------
     InputError
-        When the file cannot be written, or is a pipe, in which nobody can go back.
+        When the file cannot be written, or is a pipe, which cannot seek.
     """
     with replace_file(Path(path)) as descriptor, os.fdopen(descriptor, "wb") as stream:
         if not stream.seekable():
@@ -84,14 +92,17 @@ def write_binary_file(path: str | Path) -> Iterator[BinaryIO]:
 
 
 def write_bytes(path: str | Path, content: bytes) -> None:
-    """Write a whole file of bytes, or leave an earlier one as it was."""
+    """Write a whole binary file; raise InputError, and leave an earlier file as it was, when that fails."""
     with replace_file(Path(path)) as descriptor, os.fdopen(descriptor, "wb") as stream:
         stream.write(content)
 
 
 @contextmanager
 def replace_file(path: Path) -> Iterator[int]:
-    """Yield a file descriptor whose content replaces the path when the block ends without an error."""
+    """Yield a file descriptor whose content replaces the path when the block ends without an error.
+
+    A device or a pipe is opened itself. Raises InputError when the file cannot be written.
+    """
     target = resolve_file_path(path)
     with explain_system_errors(path):
         if is_special(target):
@@ -114,14 +125,18 @@ def replace_file(path: Path) -> Iterator[int]:
 
 
 def remove_unfinished() -> None:
-    """Remove what is not to stay, when the process ends out of turn; callable from any thread."""
+    """Remove all temporary files of this module, for when
+    the process is ended early; callable from any thread.
+    """
     for path in tuple(unfinished):
         with suppress(OSError):
             path.unlink()
 
 
 def resolve_path(path: Path) -> Path:
-    """Return the path without symbolic links; refuse names that no file can have, and links in a circle."""
+    """Return the path without symbolic links; raise InputError
+    for impossible names, and for links in a circle.
+    """
     try:
         return path.resolve()
     except (OSError, RuntimeError, ValueError) as error:
@@ -129,7 +144,9 @@ def resolve_path(path: Path) -> Path:
 
 
 def resolve_file_path(path: Path) -> Path:
-    """Return the path without symbolic links, after checking that a file can be there."""
+    """Return the path without symbolic links; raise InputError
+    if it is a folder, or there is no folder for it.
+    """
     target = resolve_path(path)
     with explain_system_errors(path):
         if target.is_dir():
@@ -142,7 +159,9 @@ def resolve_file_path(path: Path) -> Path:
 
 @contextmanager
 def explain_system_errors(path: Path) -> Iterator[None]:
-    """Turn the operating system's refusals into a sentence that names the file."""
+    """Turn an OSError in the block into an InputError
+    that names the file; BrokenPipeError passes unchanged.
+    """
     try:
         yield
     except BrokenPipeError:
@@ -152,7 +171,9 @@ def explain_system_errors(path: Path) -> Iterator[None]:
 
 
 def probe_folder(folder: Path) -> None:
-    """Create a file in a folder and remove it, the only sure way to know whether that is allowed."""
+    """Create a file in a folder and remove it, the only sure
+    test of whether that is allowed; raise OSError if not.
+    """
     temporary = make_temporary_name(folder / "probe")
     os.close(os.open(temporary, NEW_FILE, 0o666))
     temporary.unlink()
@@ -164,5 +185,5 @@ def is_special(target: Path) -> bool:
 
 
 def make_temporary_name(target: Path) -> Path:
-    """Return a name beside the target that no other file has; cut short so that the file system accepts it."""
+    """Return a random hidden name in the target's folder, short enough for the file system."""
     return target.with_name(f".{target.name[:40]}.{token_hex(6)}.part")

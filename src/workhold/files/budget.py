@@ -1,14 +1,14 @@
-"""Limits of what a file may ask of its reader: bytes, elements, depth and processor time, for every kind.
+"""Limits of the work that a file may cause its reader: bytes, elements, depth and processor time, for every
+kind.
 
-A file comes from anywhere, and what it costs to read must not depend on how it is written. Every reader takes
-its limits from the table here, spends from a :class:`Budget`, and refuses a file that asks for more. The
-manual's page of limits lists the same table.
+A file comes from anywhere, and the cost of reading it must not depend on how it is written. Every reader
+takes its limits from the table here, spends from a :class:`Budget`, and refuses a file that asks for more.
+The manual's page of limits lists the same table.
 
 Glossary
 --------
-element : what a reader goes through one by one: an element of a drawing, a row of a table, a move of a
-    program.
-depth : how many elements lie inside each other.
+element : a unit of a reader's work: an element of a drawing, a row of a table, a move of a program.
+depth : number of elements that lie inside each other.
 """
 
 from __future__ import annotations
@@ -31,28 +31,29 @@ STEP_SECONDS, STEP_SECONDS_PER_MILLION = 12.0, 2.0
 
 
 class OverBudgetError(InputError):
-    """A file asks for more than its reader may take; only level faces of solids go on, without the rest."""
+    """A file asks for more than its reader may spend; only level faces of solids go on, without the rest."""
 
     @staticmethod
     def is_behind(error: BaseException | None) -> bool:
-        """Return whether such an error is what another was raised from, with its place."""
+        """Return whether an error is an OverBudgetError, or was raised from one."""
         return any(isinstance(one, OverBudgetError) for one in list_causes(error))
 
 
 @frozen
 class FileLimits:
-    """How much a file of one kind may ask for.
+    """Limits for a file of one kind.
 
     Parameters
     ----------
     what : such a file, in words that follow "more than a ... may".
     most_bytes : None where a file is read in blocks and may have any size.
-    most_elements : how many elements the reader goes through, repeated ones counted each time.
+    most_elements : number of elements the reader may visit, repeated ones counted each time; None for no
+        limit.
     elements : what these are called.
-    deepest : how many elements may lie inside each other.
+    deepest : number of elements that may lie inside each other; None for no limit.
     seconds, seconds_per_million : processor time for any such file, and for every million bytes of it; None
         where the work follows the bytes alone.
-    remedy : what helps a file that asks for more.
+    remedy : advice for a file that asks for more.
     """
 
     what: str
@@ -65,6 +66,7 @@ class FileLimits:
     remedy: str = "save less in it"
 
     def allow_seconds_for(self, size: int) -> float | None:
+        """Return the processor seconds for a file of ``size`` bytes; None for no limit."""
         return None if self.seconds is None else self.seconds + self.seconds_per_million * size / 1e6
 
 
@@ -150,7 +152,7 @@ UNLIMITED = FileLimits("data in memory", None)
 
 
 class Budget:
-    """What reading one file may still take.
+    """The work that may still be spent on reading one file.
 
     Parameters
     ----------
@@ -181,19 +183,19 @@ class Budget:
         self.depth = 0
 
     def spend(self, elements: int = 1) -> None:
-        """Count elements that the reader goes through.
+        """Count elements that the reader visits.
 
         Raises
         ------
-        InputError
-            Where there are more than the limit, or time is up.
+        OverBudgetError
+            When there are more than the limit, or time is up.
         """
         self.elements += elements
         self.refuse_too_many_ahead(0)
         self.count_steps(elements)
 
     def refuse_too_many_ahead(self, elements: int) -> None:
-        """Refuse elements that the reader is about to go through, where they are more than it may."""
+        """Raise OverBudgetError if this many more elements would exceed the limit; nothing is counted."""
         most = self.limits.most_elements
         if most is not None and self.elements + elements > most:
             raise OverBudgetError(
@@ -202,9 +204,10 @@ class Budget:
             )
 
     def count_letters(self, letters: int, label: str) -> None:
-        """Count letters of a text that is part of a file; refuse more than such a file may have bytes.
+        """Count characters of a text that is part of a file; raise
+        OverBudgetError for more than such a file may have bytes.
 
-        ``label`` is the text, in words that begin a sentence.
+        ``label`` names the text at the beginning of the message.
         """
         self.letters += letters
         most = self.limits.most_bytes
@@ -219,8 +222,8 @@ class Budget:
 
         Raises
         ------
-        InputError
-            Where time is up.
+        OverBudgetError
+            When time is up; it is checked every ``PERIOD`` steps.
         """
         before = self.steps // self.PERIOD
         self.steps += steps
@@ -228,7 +231,7 @@ class Budget:
             self.check_time()
 
     def check_time(self) -> None:
-        """Refuse the file if the reader has worked on it for longer than it may."""
+        """Raise OverBudgetError if the reader has worked on the file for longer than it may."""
         if self.seconds is not None and time.thread_time() - self.started > self.seconds:
             raise OverBudgetError(
                 f"reading it was given up after {self.seconds:.0f} s, the most for {self.limits.what} of its "
@@ -237,9 +240,9 @@ class Budget:
 
     @contextmanager
     def count_nesting(self, label: str) -> Iterator[None]:
-        """Count what is read inside as one level deeper; refuse what is deeper than the limit.
+        """Count the block as one level deeper; raise OverBudgetError if that is deeper than the limit.
 
-        ``label`` is the element, in words that begin a sentence.
+        ``label`` names the element at the beginning of the message.
         """
         try:
             self.enter(lambda: label)
@@ -248,16 +251,16 @@ class Budget:
             self.leave()
 
     def enter(self, label: Callable[[], str]) -> None:
-        """Count what is read from now on as one level deeper, until :meth:`leave`.
+        """Count everything until :meth:`leave` as one level deeper.
 
         Parameters
         ----------
-        label : as in :meth:`count_nesting`, made where it is needed.
+        label : returns the name of the element for the beginning of the message.
 
         Raises
         ------
-        InputError
-            Where it is deeper than the limit.
+        OverBudgetError
+            When it is deeper than the limit.
         """
         self.depth += 1
         if self.limits.deepest is not None and self.depth > self.limits.deepest:
@@ -266,5 +269,5 @@ class Budget:
             )
 
     def leave(self) -> None:
-        """Count what is read from now on as one level less deep."""
+        """Undo one :meth:`enter`."""
         self.depth -= 1

@@ -1,4 +1,4 @@
-"""Forms of pydantic for declared fields: those of requests, of agents and of files.
+"""Pydantic forms for declared fields: those of requests, of agents and of files.
 
 They are a module of their own because pydantic takes long to import.
 """
@@ -38,15 +38,17 @@ LIMITS = {"above 0": {"gt": 0}, "0": {"ge": 0}, "any": {}}
 def add_declared_fields(
     rows: Iterable[Declaration], largest: float | None = None, *, bounded: bool = True
 ) -> Callable[[type[Kind]], type[Kind]]:
-    """Make a decorator that gives a form the declared fields, which its own entries of the same name replace.
+    """Return a decorator that adds the declared fields to a
+    form, except those for which it has a field of its own.
 
     Parameters
     ----------
-    largest : of numbers, for a server; None for no limit of its own.
+    largest : limit of numbers, for a server; None for no limit of its own.
     bounded : whether the form refuses what the constructor would; a file leaves that to the constructor.
     """
 
     def made(form: type[Kind]) -> type[Kind]:
+        """Return the form with the declared fields added."""
         entries: dict[str, Any] = {
             row.name: make_form_field(row, largest, bounded)
             for row in rows
@@ -60,7 +62,7 @@ def add_declared_fields(
 
 
 def make_form_field(row: Declaration, largest: float | None, bounded: bool) -> tuple[Any, Any]:
-    """Return the type and default of a field, with what it means."""
+    """Return the type and the pydantic field, with default and description, of a declared field."""
     kind: Any = str
     if row.form == "choice" and bounded:
         kind = Literal[row.choices]
@@ -75,6 +77,7 @@ def make_form_field(row: Declaration, largest: float | None, bounded: bool) -> t
 
 
 def list_field_limits(row: Declaration, largest: float | None) -> dict[str, Any]:
+    """Return the bounds of a declared number as keyword arguments of pydantic's ``Field``."""
     if row.form == "count":
         return {"ge": 1} | ({} if largest is None or row.most is None else {"le": row.most})
     ends = {} if largest is None else {"le": largest} | ({"ge": -largest} if row.least == "any" else {})

@@ -1,12 +1,13 @@
-"""A process kept ready that forks one for each piece of work, because to load a large library takes longest.
+"""A server process that forks one process for each piece of work, because loading a large library takes
+longest.
 
-It is one for all work of the process that starts it, and loads what a piece of work needs before it forks. It
-ends with its starter, and when nothing was asked of it for a while. There is one on Linux alone: elsewhere a
-library may not work in a process that was forked.
+There is one server for all work of the process that starts it; it loads what a piece of work needs before it
+forks. It ends with its starter, and when nothing was asked of it for a while. It exists on Linux only:
+elsewhere a library may not work in a process that was forked.
 
 Each piece of work has a process of its own, as with :class:`subprocess.Popen`, and a second one that waits
-for its end and says how it ended. Unlike ``multiprocessing``'s fork server it never runs the main module of
-its starter, so that it works from any script.
+for its end and reports its exit code. Unlike ``multiprocessing``'s fork server it never runs the main module
+of its starter, so that it works from any script.
 """
 
 from __future__ import annotations
@@ -36,14 +37,14 @@ LONGEST_NAME = 1 << 12
 
 @define(eq=False)
 class ForkedProcess:
-    """A process of a fork server: its streams, and its end.
+    """A process forked by the server: its streams, and its end. As a context manager it waits for the end.
 
     Parameters
     ----------
-    stdin, stdout : its streams at this end.
-    status : where its number comes from first and its exit code at its end, each on a line.
+    stdin, stdout : this end of the pipes to its standard streams.
+    status : pipe that gives its process number at its start and its exit code at its end, each on a line.
     number : its process number; 0 until it is read.
-    returncode : its exit code, negative the signal that ended it; None while it runs.
+    returncode : its exit code, or minus the number of the signal that ended it; None while it runs.
     """
 
     stdin: BinaryIO
@@ -53,13 +54,15 @@ class ForkedProcess:
     returncode: int | None = None
 
     def wait(self) -> int:
-        """Wait until it has ended, and return its exit code; the code of SIGKILL if the real one is not known."""
+        """Wait until the process has ended, and return its
+        exit code; minus SIGKILL if the real one is not known.
+        """
         if self.returncode is None:
             self.returncode = int(self.status.readline() or -signal.SIGKILL)
         return self.returncode
 
     def kill(self) -> None:
-        """End it at once, unless it has ended."""
+        """Kill the process, unless it has ended."""
         if self.returncode is None:
             with suppress(ProcessLookupError):
                 os.kill(self.number, signal.SIGKILL)
@@ -76,13 +79,13 @@ class ForkedProcess:
 
 @frozen(eq=False)
 class ForkServer:
-    """A server that runs, and what it was started with.
+    """A running server, and the circumstances in which it was started.
 
     Parameters
     ----------
     process : the server.
-    line : where it takes orders from.
-    surroundings : the number of its starter, and what of its surroundings its work depends on.
+    line : socket through which it takes orders.
+    surroundings : process number of its starter, the command, and the environment variables at the start.
     """
 
     process: subprocess.Popen[bytes]
@@ -91,7 +94,7 @@ class ForkServer:
 
     @classmethod
     def start(cls, command: Sequence[str]) -> ForkServer:
-        """Start a server by a command whose process calls :func:`serve`."""
+        """Start a server by a command whose process calls :func:`serve`, and return it."""
         ours, its = socket.socketpair()
         with its:
             process = subprocess.Popen(
@@ -100,7 +103,9 @@ class ForkServer:
         return cls(process, ours, (os.getpid(), tuple(command), dict(os.environ)))
 
     def fork_process(self, module: str) -> ForkedProcess | None:
-        """Have it fork a process for a module's work; None where the server has ended."""
+        """Have the server fork a process for a module's
+        work, and return it; None where the server has ended.
+        """
         pipes = [os.pipe() for _ in range(3)]
         (order, stdin), (stdout, answer), (status, ended) = pipes
         its = [order, answer, ended]
@@ -121,7 +126,9 @@ class ForkServer:
             return None
 
     def end(self) -> None:
-        """End the server, where it is this process's own; what it has forked goes on."""
+        """Close the line to the server, and kill the server if
+        this process started it; processes that it forked go on.
+        """
         self.line.close()
         if self.surroundings[0] == os.getpid():
             self.process.kill()
@@ -134,10 +141,14 @@ ASKING = Lock()
 
 
 def fork_from_server(module: str, command: Sequence[str]) -> ForkedProcess | None:
-    """Return a process for a module's work, forked by the server that a command starts, or has started
-    before.
+    """Return a process for a module's work, forked by the running server or by a new one.
 
-    None where even a new server ends before it has forked.
+    The server is replaced where process, command or environment have changed. None where even a new server
+    ends before it has forked.
+
+    Parameters
+    ----------
+    command : starts a server; its process calls :func:`serve`.
     """
     with ASKING:
         for _ in range(2):
@@ -155,15 +166,20 @@ def fork_from_server(module: str, command: Sequence[str]) -> ForkedProcess | Non
 
 @atexit.register
 def end_servers() -> None:
+    """End the servers of this process; called when it exits."""
     while SERVERS:
         SERVERS.pop().end()
 
 
 def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
-    """Fork a process for each order, until standard input is closed or nothing is asked; the server's main.
+    """Fork a process for each order from standard input, a
+    socket, until it is closed or idle; then end this process.
 
-    ``load`` loads what the work of a module needs. ``work`` is what each process does, with streams of its
-    own; it never returns.
+    Parameters
+    ----------
+    load : loads what the work of the module with this name needs, before the fork.
+    work : does the work in the forked process, with standard input and output from the order; it must not
+        return.
     """
     line = socket.socket(fileno=0)
     # Nobody waits for the processes that wait for others.
@@ -183,7 +199,13 @@ def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
 
 
 def watch(work: Callable[[], None], order: int, answer: int, status: int) -> None:
-    """Fork the process that does the work, and say its number and how it ended; never returns."""
+    """Fork the process that does the work, and write its
+    number and then its exit code to ``status``; never return.
+
+    Parameters
+    ----------
+    order, answer, status : file descriptors: input and output of the work, and where to report.
+    """
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     number = os.fork()
     if number == 0:

@@ -47,10 +47,10 @@ class Mesh:
     ----------
     positions : (N, 3) float32 vertices in metres, y up, as glTF has them.
     normals : (N, 3) float32 unit vectors outward.
-    triangles : (M, 3) uint32 numbers of vertices, counter-clockwise from outside.
-    colours : (N, 3) float32 linear red, green and blue from 0 to 1, over a white material; None for the colour of the
-        body's kind.
-    about : what else its node says, as plain data; None for nothing.
+    triangles : (M, 3) uint32 indices of vertices, counter-clockwise from outside.
+    colours : (N, 3) float32 linear red, green and blue from 0 to 1, over a white material; None for the
+        colour of the body's kind.
+    about : further ``extras`` of its node, as plain data; None for none.
     """
 
     positions: NDArray[np.float32]
@@ -61,6 +61,7 @@ class Mesh:
 
 
 def make_body_mesh(body: FixtureBody) -> Mesh:
+    """Return the mesh of a body from its slabs (outlines with holes between two heights)."""
     parts = [part for slab in body.slabs for part in mesh_slab(slab)]
     points, outward, triangles = zip(*parts, strict=True)
     first = np.cumsum([0, *map(len, points[:-1])])
@@ -71,13 +72,13 @@ def make_body_mesh(body: FixtureBody) -> Mesh:
 def make_surface_mesh(
     positions: Array, normals: Array, triangles: Triangles, colours: Array | None = None
 ) -> Mesh:
-    """Return the mesh of a surface with z up.
+    """Return the mesh, in glTF's axes and metres, of a surface with z up.
 
     Parameters
     ----------
     positions, normals : (N, 3) vertices in mm and unit vectors outward.
-    triangles : (M, 3) numbers of vertices.
-    colours : (N, 3) red, green and blue from 0 to 1 as on a screen; None for that of the body's kind.
+    triangles : (M, 3) indices of vertices.
+    colours : (N, 3) red, green and blue from 0 to 1 as on a screen (sRGB); None for that of the body's kind.
     """
     light = None
     if colours is not None:
@@ -92,13 +93,17 @@ def make_surface_mesh(
 
 
 def convert_to_gltf_axes(vectors: Array) -> NDArray[np.float32]:
-    """Return the vectors (N, 3) with z up as glTF has them: y up, and what was y to the back."""
+    """Return vectors (N, 3) with z up as float32 vectors with y up: (x, z, -y)."""
     turned = np.stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]], axis=1).astype(np.float32)
     return turned + np.float32(0.0)
 
 
 def mesh_slab(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
-    """Return the positions in mm, normals and triangles of the caps and the walls of a slab."""
+    """Return (positions, normals, triangles) of the lower
+    cap, the upper cap and the wall of each loop of a slab.
+
+    Positions (N, 3) are in mm, z up; triangles (M, 3) are indices into the positions of their own piece.
+    """
     loops = [split_loop_into_chords(loop) for loop in (slab.outer, *slab.holes)]
     flat = np.array([piece.start for loop in loops for piece in loop])
     caps = np.array(triangulate([[piece.start for piece in loop] for loop in loops]), dtype=np.int64)
@@ -112,7 +117,7 @@ def mesh_slab(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
 
 @frozen
 class WallPiece:
-    """A flat piece of a wall seen from above, in mm, with its segment's outward normals at its ends."""
+    """A flat piece of a wall seen from above, in mm, with its segment's outward unit normals at its ends."""
 
     start: Point
     end: Point
@@ -120,11 +125,13 @@ class WallPiece:
 
 
 def split_loop_into_chords(loop: Sequence[Segment]) -> list[WallPiece]:
-    """Return a closed loop of pieces over the chords of a loop's segments; those too short are left out."""
+    """Return a closed loop of wall pieces over the chords
+    of a loop's segments; chords too short are left out.
+    """
     places: list[tuple[Point, int, float]] = []
     for number, segment in enumerate(loop):
         for parameter in list_chord_parameters(segment)[:-1]:
-            point = segment.at(parameter)
+            point = segment.compute_point(parameter)
             if not places or dist(point, places[-1][0]) > SAME:
                 places.append((point, number, parameter))
     while dist(places[-1][0], places[0][0]) <= SAME:
@@ -135,12 +142,14 @@ def split_loop_into_chords(loop: Sequence[Segment]) -> list[WallPiece]:
         segment = loop[number]
         if following != number:
             last = list_chord_parameters(segment)[-1]
-        out.append(WallPiece(start, end, (segment.normal(first), segment.normal(last))))
+        out.append(WallPiece(start, end, (segment.compute_normal(first), segment.compute_normal(last))))
     return out
 
 
 def list_chord_parameters(segment: Segment) -> list[float]:
-    """Return the parameters of the ends of a segment's chords in running order."""
+    """Return the parameters of the ends of a segment's chords
+    in running order, both ends of the segment included.
+    """
     if isinstance(segment, Line):
         return [-segment.half_extent, segment.half_extent]
     widest = min(2 * acos(max(0.0, 1.0 - SAGITTA / segment.radius)), LARGEST_TURN)
@@ -150,7 +159,9 @@ def list_chord_parameters(segment: Segment) -> list[float]:
 
 
 def mesh_wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array, Array, Triangles]:
-    """Return the positions in mm, normals and triangles of the wall over a loop: two triangles over each piece."""
+    """Return positions (4 N, 3) in mm, normals (4 N, 3) and
+    triangles (2 N, 3) of the wall over a loop of N pieces.
+    """
     points = np.array(
         [(*place, z) for piece in loop for place in (piece.start, piece.end) for z in (low, high)]
     )
@@ -161,7 +172,7 @@ def mesh_wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array
 
 
 def make_bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:
-    """Return the GLB file of bodies below one node of a name.
+    """Return the bytes of a GLB file of bodies below one node called ``name``.
 
     Parameters
     ----------
@@ -200,13 +211,15 @@ def make_bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None 
 
 
 def make_chunk(kind: int, content: bytes, filling: bytes) -> bytes:
-    """Return a chunk with its length and kind, filled up to a multiple of four bytes."""
+    """Return a chunk with its length and kind, padded to
+    a multiple of four bytes with ``filling``, one byte.
+    """
     content += filling * (-len(content) % 4)
     return struct.pack("<II", len(content), kind) + content
 
 
 def make_material(kind: BodyKind) -> dict[str, Any]:
-    """Return the material of a kind of body; glTF asks for linear light."""
+    """Return glTF's material for a kind of body, its colour in linear light."""
     factor = [*(convert_to_linear_light(value) for value in COLOURS[kind]), 1.0]
     return {
         "name": str(kind),
@@ -226,20 +239,20 @@ COLOURED = {
 
 
 def convert_to_linear_light(value: float) -> float:
-    """Return the light from a value on a screen, both from 0 to 1, to six places (IEC 61966-2-1, sRGB)."""
+    """Return the linear light of an sRGB value, both from 0 to 1, rounded to six decimals (IEC 61966-2-1)."""
     return round(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4, 6)
 
 
 @define
 class GlbBuffer:
-    """The buffer of a file, and what says where in it things are."""
+    """The binary buffer of a file, with its views and accessors."""
 
     content: bytearray = field(factory=bytearray)
     views: list[dict[str, Any]] = field(factory=list)
     accessors: list[dict[str, Any]] = field(factory=list)
 
     def add(self, mesh: Mesh, material: int) -> dict[str, Any]:
-        """Add a mesh, and return its primitive."""
+        """Add a mesh, and return its glTF primitive; ``material`` is the index of its material."""
         ends = {"min": mesh.positions.min(axis=0).tolist(), "max": mesh.positions.max(axis=0).tolist()}
         attributes = {
             "POSITION": self.add_accessor(mesh.positions, VERTICES, **ends),
@@ -251,7 +264,9 @@ class GlbBuffer:
         return {"attributes": attributes, "indices": indices, "material": material}
 
     def add_accessor(self, values: NDArray[Any], target: int, **more: list[float]) -> int:
-        """Add an array, and return the number of its accessor."""
+        """Add an array of vectors (N, 3) or indices (N,), and
+        return the index of its accessor; ``more`` are further keys.
+        """
         is_vector = values.ndim == 2
         content = values.astype("<f4" if is_vector else "<u4").tobytes()
         self.views.append(

@@ -1,7 +1,7 @@
-"""The shapes of files that users write, toolkits, workpieces and loads, as forms of pydantic.
+"""The forms of files that users write, toolkits, workpieces and loads, as models of pydantic.
 
-They are a module of their own because pydantic takes long to import. What a loads file means is read by
-``files.loads_file``; its form serves its JSON Schema. Forms of toolkits are made from the tables of
+They are a module of their own because pydantic takes long to import. Loads files are read by
+``files.loads_file``; their form serves its JSON Schema. Forms of toolkits are made from the tables of
 ``fixels.fields``, one for each table, and distinguished by the toolkit's kind.
 """
 
@@ -61,16 +61,16 @@ def make_forms_by_noun(
     summary: str = "{}.",
     hardware: Mapping[str, Any] | None = None,
 ) -> Mapping[str, Any]:
-    """Make a form for each table, by the table's noun.
+    """Return a pydantic model for each table of toolkits, by the table's noun.
 
     Parameters
     ----------
-    base : what all of them have in common.
+    base : base class of all of them.
     name : of the forms; "{}" in it stands for the table's noun.
-    entry : type and default of a field, as pydantic's ``create_model`` takes them.
-    kind : type and default of the key ``kind`` for the kinds of a table; None where no form has one of its
-        own.
-    summary : of the forms, in which "{}" stands for what the table describes.
+    entry : returns type and default of a field, as pydantic's ``create_model`` takes them.
+    kind : returns type and default of the key ``kind`` for the kinds of a table; None if the forms have none
+        of their own.
+    summary : docstring of the forms, in which "{}" stands for what the table describes.
     hardware : type and default of supports and a clamp on top, by their names; the usual ones if None.
     """
     forms: dict[str, Any] = {}
@@ -90,7 +90,9 @@ def make_forms_by_noun(
 
 
 def make_optional_entry(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
-    """Return the type and default of a field of which None means that it is left out, unless it has another default."""
+    """Return (type, default) of a form's field: required,
+    or with the field's default, or None to leave it out.
+    """
     if row.is_required:
         return kind, ...
     default = list(row.default) if isinstance(row.default, tuple) else row.default
@@ -98,11 +100,13 @@ def make_optional_entry(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
 
 
 def join_forms(forms: Mapping[str, Any]) -> Any:
+    """Return the union of forms as a type, discriminated by the toolkit's kind."""
     several = [Annotated[form, Tag(f"<{noun}>")] for noun, form in forms.items()]
     return Annotated[reduce(or_, several), Discriminator(find_form_tag)]
 
 
 def find_form_tag(value: Any) -> str:
+    """Return the tag of the form for a toolkit given as a dict or a model, by its kind."""
     return (
         f"<{find_table(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
     )
@@ -127,7 +131,7 @@ TYPES: Mapping[Form, Any] = {
 
 
 class ToolkitForm(BaseModel):
-    """What the file of any toolkit may say; what the numbers mean is checked by the toolkit and the dowel."""
+    """The entries that the file of any toolkit may have; values are checked by the toolkit and the dowel."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
 
@@ -145,7 +149,7 @@ class ToolkitForm(BaseModel):
 
 
 def make_toolkit_entry(row: ToolkitField) -> tuple[Any, Any]:
-    """Return the type and default of a field in a file, in which what is left out keeps its default."""
+    """Return (type, default) of a field in a file: required, or None to keep the field's default."""
     return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
 
 
@@ -173,7 +177,10 @@ WANTED = {
 
 
 def check_toolkit_entries(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entries of a toolkit's file that are given, each of the type it should have."""
+    """Return the entries given in a toolkit's file, checked to be known and of the right type.
+
+    Raises InputError for the first that is not.
+    """
     kind = content.get("kind", USUAL)
     noun = find_table(resolve_kind(kind)[0] if isinstance(kind, str) else None).noun
     try:
@@ -184,7 +191,7 @@ def check_toolkit_entries(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def describe_toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) -> str:
-    """Return the first thing wrong with the shape, as one sentence."""
+    """Return a sentence on the first error of a toolkit's form, with a remedy."""
     first = error.errors(include_url=False, include_context=False)[0]
     name, kind = str(first["loc"][0]), first["type"]
     if kind == "extra_forbidden":
@@ -210,7 +217,7 @@ COLUMNS = ("x", "y", "bulge")
 
 
 class WorkpieceFile(BaseModel):
-    """The shape of the file; what the loops mean is checked by the workpiece."""
+    """The form of a workpiece in JSON; the loops themselves are checked by the workpiece."""
 
     model_config = ConfigDict(strict=True)
 
@@ -221,7 +228,10 @@ class WorkpieceFile(BaseModel):
 
 
 def check_workpiece_entries(content: dict[str, Any]) -> dict[str, Any]:
-    """Return name (None if it has no name), units and loops of a workpiece, each of the type it should have."""
+    """Return name (or None), units, departure and loops of a workpiece, checked to be of the right type.
+
+    Raises InputError for the first that is not.
+    """
     try:
         return WorkpieceFile.model_validate(content).model_dump()
     except ValidationError as error:
@@ -229,7 +239,7 @@ def check_workpiece_entries(content: dict[str, Any]) -> dict[str, Any]:
 
 
 def describe_workpiece_fault(error: ValidationError) -> str:
-    """Return the first thing wrong with the shape, as one sentence."""
+    """Return a sentence on the first error of a workpiece's form, with a remedy."""
     first = error.errors(include_url=False, include_context=False)[0]
     place, kind = list(first["loc"]), first["type"]
     if place == ["units"]:

@@ -2,7 +2,7 @@
 
 A file is TOML, or JSON if its name ends in .json, with a table for each load. Without units, forces are in N,
 and moments, positive counter-clockwise, in N mm. Other units are kN, lbf, N.m and lbf.in. Directions are in
-degrees in the part's frame, and any if not given::
+degrees in the part's frame; a force without a direction may act in any::
 
     unit = "mm"                 # of at and path: mm, cm, m or inch; if not given, what the caller says
 
@@ -52,7 +52,7 @@ QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-
 
 
 def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
-    """Read a loads file.
+    """Return the loads of a file, in its order.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
 
 
 def parse_loads_file(path: Path) -> dict[str, Any]:
-    """Return the content of a TOML or JSON file; refuse one that cannot be read."""
+    """Return the content of a TOML or JSON file; raise InputError for one that cannot be read."""
     try:
         text = read_text(path, LIMITS["loads"])
         content = parse_json(text) if path.suffix.lower() == ".json" else parse_toml(text)
@@ -103,8 +103,8 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     ----------
     words : values of name, force, at, path, z, direction and moment, as text (as in ``--load``), numbers or
         lists.
-    place : where they come from, for messages.
-    unit_scale : millimetres in one unit of ``at`` and ``path``.
+    place : name of their source, for messages.
+    unit_scale : millimetres in one unit of ``at``, ``path`` and ``z``.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     points: list[tuple[float, float]] = []
     height = None
     if "z" in words:
-        height = number(words["z"])
+        height = read_number(words["z"])
         if height is None:
             raise InputError(
                 f"{place}: z {quote_value(words['z'])} is not a height: give a number, such as 12."
@@ -165,8 +165,9 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
 
 
 def read_force_components(words: Mapping[str, Any], place: str) -> tuple[float, float, float] | None:
-    """Return a force along x, y and z in N; None of one that is its size alone. Refuses other lists, and a
-    direction beside one.
+    """Return a force along x, y and z in N; None if only its size is given.
+
+    Raises InputError for a list of other than three numbers, and for a direction beside one.
     """
     given = words.get("force")
     parts = given.split(",") if isinstance(given, str) and "," in given else given
@@ -188,12 +189,16 @@ def read_force_components(words: Mapping[str, Any], place: str) -> tuple[float, 
 
 
 def is_number(value: Any) -> bool:
-    """Return whether a value is a finite number, and no truth value."""
+    """Return whether a value is a finite int or float, and not a bool."""
     return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
 
 
 def read_quantity(value: Any, place: str, units: Mapping[str, float], such_as: str) -> float:
-    """Return a number with or without a unit, in N or N mm; refuse anything else."""
+    """Return a number with or without a unit, multiplied by its
+    factor in ``units``; raise InputError for anything else.
+
+    ``such_as`` has examples for the message.
+    """
     if is_number(value):
         return float(value)
     found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
@@ -203,8 +208,8 @@ def read_quantity(value: Any, place: str, units: Mapping[str, float], such_as: s
     return float(found[1]) * units[unit]
 
 
-def number(value: Any) -> float | None:
-    """Return a plain finite number, from a number or from text; None for anything else."""
+def read_number(value: Any) -> float | None:
+    """Return a finite number, given as a number or as text without a unit; None for anything else."""
     if isinstance(value, str):
         found = QUANTITY.fullmatch(value)
         value = float(found[1]) if found and not found[2] else None
@@ -212,17 +217,21 @@ def number(value: Any) -> float | None:
 
 
 def read_point(value: Any, place: str) -> tuple[float, float]:
-    """Return a point from ``X,Y`` or [x, y]; refuse anything else."""
+    """Return the two numbers of a point given as ``X,Y`` or [x, y]; raise InputError for anything else."""
     parts = value.split(",") if isinstance(value, str) else value
     if isinstance(parts, list | tuple) and len(parts) == 2:
-        x, y = number(parts[0]), number(parts[1])
+        x, y = read_number(parts[0]), read_number(parts[1])
         if x is not None and y is not None:
             return x, y
     raise InputError(f"{place} {quote_value(value)} is not a point: give two numbers, such as 10,5.")
 
 
 def read_path_points(value: Any, place: str) -> list[tuple[float, float]]:
-    """Return the corners of a path from ``X,Y;X,Y`` or a list of points; refuse anything else."""
+    """Return the corners of a path given as ``X,Y;X,Y`` or
+    a list of points, numbers as they are; at least two.
+
+    Raises InputError for anything else.
+    """
     parts = value.split(";") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple) or len(parts) < 2:
         raise InputError(
@@ -232,15 +241,17 @@ def read_path_points(value: Any, place: str) -> list[tuple[float, float]]:
 
 
 def read_direction_range(value: Any, place: str) -> tuple[float, float]:
-    """Return a range of directions in degrees from an angle, ``LOW..HIGH``, [low, high] or ``any``; refuse
-    anything else.
+    """Return a range (low, high) of directions in degrees
+    from an angle, ``LOW..HIGH``, [low, high] or ``any``.
+
+    A single angle gives a range from it to itself. Raises InputError for anything else.
     """
     if isinstance(value, str) and value.strip().lower() == "any":
         return ANY_DIRECTION
     parts = value.split("..") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple):
         parts = [parts]
-    angles = [number(part) for part in parts]
+    angles = [read_number(part) for part in parts]
     low, high = angles[0] if angles else None, angles[-1] if angles else None
     if len(angles) > 2 or low is None or high is None:
         raise InputError(
@@ -251,5 +262,6 @@ def read_direction_range(value: Any, place: str) -> tuple[float, float]:
 
 
 def quote_value(value: Any) -> str:
+    """Return a value for a message, text in quotes, cut to 60 characters."""
     text = f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

@@ -1,9 +1,9 @@
-"""Many parts at once: files, folders with drawings, and built-in names become a list in a settled order.
+"""Many parts at once: files, folders with drawings, and built-in names become a list in a fixed order.
 
 Glossary
 --------
-listed part : a file with a drawing, and what it is called among the others.
-drawing : a file whose name ends as one of a part does; what workhold wrote itself is none.
+listed part : a file with a drawing, and its name in the list.
+drawing : a file with the ending of a part file; JSON that workhold wrote itself does not count.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from attrs import frozen
 
 from workhold.errors import InputError, lacks_memory, make_encodable
 from workhold.files.part.finding import find_part_file
-from workhold.files.part.load import Loaded, read_workpiece
+from workhold.files.part.load import LoadedPart, read_workpiece
 
 __all__ = ["ListedPart", "ReadPart", "list_parts", "read_listed"]
 
@@ -36,8 +36,8 @@ class ListedPart:
 
     Parameters
     ----------
-    name : what it is called among the others: a built-in name, the file as it was typed, or its place in the
-        folder that was. Names in a list differ.
+    name : its name in the list: a built-in name, the file as it was typed, or its path within the folder that
+        was typed. Names in a list differ.
     path : its file.
     """
 
@@ -47,17 +47,17 @@ class ListedPart:
 
 @frozen
 class ReadPart:
-    """A part of a list after reading: loaded, or refused in a sentence.
+    """A part of a list after reading: loaded, or refused.
 
     Parameters
     ----------
-    listed : which one.
-    loaded : what was read; None where it was refused.
-    refusal : why; empty where it was not.
+    listed : the entry of the list.
+    loaded : the part; None where it was refused.
+    refusal : the error message; empty where it was not refused.
     """
 
     listed: ListedPart
-    loaded: Loaded | None
+    loaded: LoadedPart | None
     refusal: str = ""
 
 
@@ -112,7 +112,7 @@ def list_parts(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()
 
 
 def is_folder(path: Path) -> bool:
-    """Return whether a path is a folder; False for a name that no file can have."""
+    """Return whether a path is a folder; False also for a name that no file can have."""
     try:
         return path.is_dir()
     except OSError:
@@ -120,10 +120,15 @@ def is_folder(path: Path) -> bool:
 
 
 def list_drawings_in_folder(folder: Path, apart: set[str]) -> Iterator[Path]:
-    """Yield the drawings in a folder: its own first, then those of each folder in it.
+    """Yield the paths of the drawings in a folder: first its
+    own, then those of each folder in it; names in natural order.
 
-    Links that lead nowhere, pipes and inner folders that cannot be looked into stand among them: reading them
-    says what they are. Refuses a folder that cannot itself be looked into.
+    Dead links, pipes and inner folders that cannot be read are among them: reading them gives the error.
+    Raises InputError when the folder itself cannot be read.
+
+    Parameters
+    ----------
+    apart : real paths of inner folders to leave out.
     """
     # Each with where it really lies: asking for that anew would look at all folders above it every time.
     waiting = [(folder, Path(os.path.realpath(folder)))]
@@ -147,7 +152,7 @@ def list_drawings_in_folder(folder: Path, apart: set[str]) -> Iterator[Path]:
 
 
 def make_natural_sort_key(name: str) -> tuple[list[tuple[bool, int, str]], str]:
-    """Return a key by which names stand as people count: figures as numbers, capitals like small letters."""
+    """Return a sort key in which digits count as numbers and capitals as small letters."""
     pieces = re.findall(r"[0-9]{1,18}|[^0-9]+", name)
     return [
         (piece[0] > "9", int(piece) if "0" <= piece[0] <= "9" else 0, piece.lower()) for piece in pieces
@@ -155,7 +160,7 @@ def make_natural_sort_key(name: str) -> tuple[list[tuple[bool, int, str]], str]:
 
 
 def is_own(path: Path) -> bool:
-    """Return whether a file is JSON that workhold wrote and no part; False where it cannot be opened."""
+    """Return whether a file is JSON that workhold wrote, such as results; False where it cannot be opened."""
     if path.suffix.lower() != ".json" or not path.is_file():
         return False
     try:
@@ -166,7 +171,8 @@ def is_own(path: Path) -> bool:
 
 
 def read_listed(part: ListedPart, **options: Any) -> ReadPart:
-    """Read a part of a list; whatever is wrong with its file is a sentence, so that the others go on.
+    """Return a part of a list after reading it; any error
+    becomes its refusal, so that the others can be read.
 
     Parameters
     ----------

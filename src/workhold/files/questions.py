@@ -1,8 +1,9 @@
-"""Questions that the readers of a part and of a program leave to the user, in words that any surface can fill in.
+"""Questions that the readers of a part and of a program leave to the user, named the same for every
+interface.
 
-A sentence names a question by its mark, such as ``<axis>``. Where a part comes in
-(``files.part.load.read_workpiece``) the mark becomes what the question is called there: an option of the
-command line, a field of the page, an argument in Python.
+A sentence names a question by its mark, such as ``<axis>``. Where a part is read
+(``files.part.load.read_workpiece``) the mark is replaced by the caller's name of the question: an option of
+the command line, a field of the page, an argument in Python.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ __all__ = [
     "UnitAskedError",
     "is_read_by_height",
     "check_layer_names",
-    "number_or_name",
+    "read_number_or_name",
     "refuse_axis",
     "refuse_fit",
     "refuse_layers",
@@ -59,11 +60,17 @@ IN_PYTHON = {"drawing_unit": "unit", "start": "start=(x, y, z)"}
 
 
 class UnitAskedError(InputError):
-    """A drawing whose unit is not known: whoever can ask for it may read the drawing again."""
+    """A drawing whose unit is not known; an interface that
+    can ask for the unit may read the drawing again with it.
+    """
 
 
 def name_questions(sentence: str, called: Mapping[str, str] | None) -> str:
-    """Return a sentence with the names of questions in place of their marks; Python's where none are given.
+    """Return a sentence with marks such as ``<axis>`` replaced by the caller's names of the questions.
+
+    Parameters
+    ----------
+    called : names by mark without brackets; a question that is not in it, and None, gives Python's argument.
 
     Examples
     --------
@@ -80,8 +87,9 @@ def name_questions(sentence: str, called: Mapping[str, str] | None) -> str:
     return MARK.sub(lambda mark: names.get(mark[0][1:-1], mark[0][1:-1]), sentence)
 
 
-def number_or_name(part: int | str | None) -> int | str | None:
-    """Return a part's number where it is written in figures, else its name as it was given.
+def read_number_or_name(part: int | str | None) -> int | str | None:
+    """Return a part's number as an int where it is written
+    in digits, else its name, number or None as it was given.
 
     Examples
     --------
@@ -93,7 +101,9 @@ def number_or_name(part: int | str | None) -> int | str | None:
 
 
 def check_layer_names(layers: Sequence[str] | str | None) -> Sequence[str] | None:
-    """Return the names of layers, given as one name or several; refuse anything else."""
+    """Return the names of layers, one or several, as a
+    list; None for None. Raise InputError for anything else.
+    """
     names = [layers] if isinstance(layers, str) else layers
     if names is not None and not (isinstance(names, Iterable) and all(isinstance(one, str) for one in names)):
         raise InputError(f"layers cannot be {quote_value(layers)}: give their names in a list.")
@@ -101,26 +111,31 @@ def check_layer_names(layers: Sequence[str] | str | None) -> Sequence[str] | Non
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:
-    """Refuse a choice of layers for a file that has none."""
+    """Raise InputError unless ``layers`` is None: the file is of a kind without layers."""
     if layers is not None:
         raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Refuse a fit for a built-in part, and for the outline of a solid in a result file."""
+    """Raise InputError unless ``fit`` is None: the outline
+    is a built-in part's, or a solid's in a result file.
+    """
     if fit is not None:
         raise InputError(f"its outline has no chords for arcs: leave {FIT} out.")
 
 
 def refuse_axis(options: Mapping[str, object]) -> None:
-    """Refuse an axis, a section or a height of a solid for a file that holds a flat drawing."""
+    """Raise InputError if an option for solids, such as an axis or a section, is given for a flat drawing."""
     for question in OF_SOLIDS:
         if options.get(question[1:-1]) is not None:
             raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
 
 
 def is_read_by_height(options: Mapping[str, object], fit: float | None) -> bool:
-    """Return whether a solid is to be looked at by the height of the pegs; refuse a section or a fit besides."""
+    """Return whether the options ask for a solid's outline at the height of the pegs.
+
+    Raises InputError if they ask for a section or a fit besides.
+    """
     usual: tuple[object, ...] = (None, {})
     asked = [
         mark for mark in (PEG_HEIGHT, HEAD_ROOM, LEAST_BAND, HEIGHTS) if options.get(mark[1:-1]) not in usual

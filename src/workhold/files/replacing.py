@@ -1,7 +1,7 @@
-"""Which files may be written over: workhold's own earlier outputs, and nothing that is read.
+"""Rules for replacing files: workhold's own earlier outputs may be replaced, nothing that is read.
 
 One rule for the command, for Python and for programs that call either. A file that workhold has written is
-known by a mark in it and may be replaced; any other only where that is asked for. What is read for an output
+recognized by a mark in it and may be replaced; any other only where that is asked for. An input of an output
 is never replaced by it, under its own name or through links.
 """
 
@@ -54,13 +54,13 @@ def refuse_output(
     force: bool = False,
     called: str = IN_PYTHON,
 ) -> None:
-    """Refuse an output file before any work is done for it.
+    """Raise InputError for an output file that must not or cannot be written, before any work is done for it.
 
     Parameters
     ----------
-    inputs : what is read: files, names of other things, and None for what is not given.
+    inputs : the inputs: files, names of other things, and None for what is not given.
     force : whether a file that workhold has not written may be replaced.
-    called : what that is called where it is asked for.
+    called : name of ``force`` at the caller, for the message.
 
     Raises
     ------
@@ -80,12 +80,10 @@ def refuse_output_folder(
     force: bool,
     called: str = IN_PYTHON,
 ) -> None:
-    """Refuse an output folder, or the files of some names that would be written into it.
+    """Raise InputError for an output folder, or files with
+    these names in it, that must not or cannot be written.
 
-    Raises
-    ------
-    InputError
-        See :func:`refuse_output`.
+    The other parameters are those of :func:`refuse_output`.
     """
     from workhold.files.atomic import refuse_unwritable_folder
 
@@ -96,7 +94,9 @@ def refuse_output_folder(
 
 
 def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool, called: str) -> None:
-    """Refuse to write over an input, and over a foreign file unless that is asked for."""
+    """Raise InputError if a path is an input, or a foreign file
+    and not ``force``; nothing for a file that does not exist.
+    """
     if not path.is_file():
         return
     if any(is_same(path, given) for given in inputs if given is not None):
@@ -106,11 +106,11 @@ def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: boo
 
 
 def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None:
-    """Refuse an output whose name says that it is a file of another kind.
+    """Raise InputError for an output whose name ends like a file of another kind.
 
     Parameters
     ----------
-    own : endings of such files, in small letters.
+    own : endings of such files, in small letters with the point.
     what : such a file, in words.
     """
     ending = Path(path).suffix.lower()
@@ -119,6 +119,7 @@ def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None
 
 
 def is_same(path: Path, given: str | Path) -> bool:
+    """Return whether two paths are the same existing file; False where one cannot be read."""
     try:
         return path.samefile(given)
     except (OSError, ValueError):
@@ -126,7 +127,7 @@ def is_same(path: Path, given: str | Path) -> bool:
 
 
 def is_own(path: Path) -> bool:
-    """Return whether workhold has written a file, or the file is empty."""
+    """Return whether workhold has written a file, or the file is empty; False where it cannot be read."""
     with suppress(OSError), path.open("rb") as stream:
         first = stream.read(ENDS)
         stream.seek(-min(ENDS, os.fstat(stream.fileno()).st_size), os.SEEK_END)

@@ -1,4 +1,4 @@
-"""Files of supports, ``workhold-supports/1``: written whole or not at all, and read, whoever wrote them."""
+"""Files of supports, ``workhold-supports/1``: read, whoever wrote them, and written whole or not at all."""
 
 from __future__ import annotations
 
@@ -39,6 +39,9 @@ __all__ = ["make_query", "read_supports", "make_supports_entry", "write_supports
 
 
 def make_query(part: SupportsPart, path: Path) -> Query:
+    """Return the query of a file of supports; ``path`` is for
+    messages. Raise InputError for an unusable part or toolkit.
+    """
     try:
         return check_head(part.to_head(), path).to_query()
     except InputError as error:
@@ -46,7 +49,7 @@ def make_query(part: SupportsPart, path: Path) -> Query:
 
 
 def read_supports(path: str | Path) -> Supports:
-    """Read a file of supports.
+    """Return the supports in a file.
 
     Raises
     ------
@@ -67,7 +70,7 @@ def read_supports(path: str | Path) -> Supports:
     fixture = Result(query, table, found=counts, distinct=counts)[0]
     try:
         request = part.to_request()
-        loads = tuple(load.load(request.thickness) for load in part.loads)
+        loads = tuple(load.to_load(request.thickness) for load in part.loads)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     pads: dict[tuple[str, int, int], SupportPad] = {}
@@ -93,19 +96,25 @@ def read_supports(path: str | Path) -> Supports:
 
 
 def make_support_pad(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Path) -> SupportPad:
-    """Return the support in a hole of a file; refuse one that is on no plate of the toolkit."""
+    """Return the support in a hole (carrier, column, row), with its place in the part's frame.
+
+    Raises InputError for a carrier that is no plate of the toolkit; ``path`` is for the message.
+    """
     name, column, row = hole
     plates = {plate.name: plate for plate in query.toolkit.plates}
     if name not in plates:
         raise InputError(f"{path}: a support stands on {name!r}: give {' or '.join(plates)}.")
-    x, y = fixture.pose.inverse.apply(*plates[name].place(column, row, fixture.travel))
+    x, y = fixture.pose.inverse.apply(*plates[name].compute_hole_center(column, row, fixture.travel))
     return SupportPad(name, column, row, float(x), float(y))
 
 
 def make_triple(
     part: ReadTriple, supports: tuple[SupportPad, ...], point: tuple[float, float] | None
 ) -> Triple:
-    """Return a triple of a file with its supports; the clamp of its own stands at the point asked for."""
+    """Return a triple of a file with its three supports.
+
+    ``point`` is the clamp's point that was asked for, for the figures of ``given``.
+    """
     return Triple(
         supports=supports,
         travel=part.jaw_separation,
@@ -114,12 +123,16 @@ def make_triple(
         overhang=part.overhang,
         arm=part.arm,
         arm_at=part.arm_at,
-        best=clamp_of(part.best, None),
-        given=None if part.given is None else clamp_of(part.given, point),
+        best=make_clamp_figures(part.best, None),
+        given=None if part.given is None else make_clamp_figures(part.given, point),
     )
 
 
-def clamp_of(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
+def make_clamp_figures(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
+    """Return the forces and lengths at one point of the clamp, from the file's form.
+
+    The point is the one in the form, else ``point``, else (0, 0).
+    """
     at = part.at or point or (0.0, 0.0)
     forces = part.clamp_needed, part.support_force
     return ClampFigures(at, *forces, part.arm, part.share, part.lift, part.hangs)
@@ -148,7 +161,9 @@ def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = Fa
 
 
 def make_supports_entry(supports: Supports) -> dict[str, Any]:
-    """Return the supports as they are written; refuse a fixture that is not one of a result."""
+    """Return the supports as the file's JSON object; raise
+    InputError for a fixture that is not one of a result.
+    """
     query, request = supports.query, supports.request
     band = (0.0, request.thickness) if request.band is None else request.band
     return {
@@ -184,7 +199,9 @@ def make_supports_entry(supports: Supports) -> dict[str, Any]:
 
 
 def make_tip_surroundings_entry(request: SupportRequest) -> dict[str, Any]:
-    """Return what is asked around the tip, where that is not as usual, and what of the part is beside its faces."""
+    """Return the entries of the clamp's tip margin and head,
+    where unusual, and of the part's material around its faces.
+    """
     entry: dict[str, Any] = {}
     if request.tip_margin != 0.0:
         entry["tip_margin"] = request.tip_margin
@@ -200,7 +217,9 @@ def make_tip_surroundings_entry(request: SupportRequest) -> dict[str, Any]:
 
 
 def make_fixture_entry(supports: Supports) -> dict[str, Any]:
-    """Return the planar fixture as a result file has it, with the bands of its pegs."""
+    """Return the JSON object of the planar fixture as in a
+    result file, with the heights at which its pegs may press.
+    """
     listing = supports.fixture.listing
     table = listing.result.table.take(slice(listing.row, listing.row + 1))
     ((line,),) = write_fixture_lines(table, supports.query.toolkit, supports.query.workpiece)
@@ -220,14 +239,17 @@ def make_fixture_entry(supports: Supports) -> dict[str, Any]:
 
 
 def make_loops_entry(loops: Loops | None) -> Any:
-    """Return the loops of a face, or None; of no face one loop around nothing, as no list could be read as
-    all of it.
+    """Return the loops of a face as nested lists; None for None, and [[]] for no loops.
+
+    An empty list could be read as a face without limits.
     """
     return None if loops is None else [(loop + 0.0).tolist() for loop in loops] or [[]]
 
 
 def make_zone_entry(zone: Zone) -> dict[str, Any]:
-    """Return a zone as a circle where it is one, as a polygon where its sides are straight, else as a loop."""
+    """Return a zone as a circle where it is one, as a
+    polygon where its sides are straight, else as a loop.
+    """
     loop = np.asarray(zone.loop)
     if len(loop) == 2 and (loop[:, 2] == 1.0).all():
         (x0, y0), (x1, y1) = loop[:, :2].tolist()
@@ -238,6 +260,7 @@ def make_zone_entry(zone: Zone) -> dict[str, Any]:
 
 
 def make_triple_entry(triple: Triple) -> dict[str, Any]:
+    """Return a triple as the file's JSON object; lengths are in mm, forces in N."""
     given = None if triple.given is None else drop_unknown_figures(triple.given)
     if given is not None:
         # It is at the point that the request names.
@@ -256,4 +279,5 @@ def make_triple_entry(triple: Triple) -> dict[str, Any]:
 
 
 def drop_unknown_figures(figures: ClampFigures) -> dict[str, Any]:
+    """Return the fields of some figures by name, without those that are None or False."""
     return asdict(figures, filter=lambda _, value: value is not None and value is not False)

@@ -1,4 +1,4 @@
-"""The shape of a file of supports, checked by pydantic, and what its parts are in the model."""
+"""The form of a file of supports, checked by pydantic, and its parts as objects of the model."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ Hole = Annotated[tuple[str, int, int], Field(strict=False)]
 
 
 class ZonePart(FormPart):
-    """A keep-out zone: a circle, a polygon, or a loop with arcs."""
+    """A keep-out zone: a circle (x, y, radius), a polygon, or a loop with arcs; lengths in mm."""
 
     circle: Annotated[list[float], Field(min_length=3, max_length=3)] | None = None
     polygon: list[Two] | None = None
     loop: Loop | None = None
 
     def to_zone(self) -> Zone:
-        """Return the zone; refuse what is not a zone."""
+        """Return the zone; raise InputError for what is not one."""
         if self.circle is not None:
             return circle_zone(*self.circle)
         if self.polygon is not None:
@@ -45,14 +45,14 @@ class ZonePart(FormPart):
 
 
 class HeightsPart(FormPart):
-    """Thickness and band."""
+    """Thickness of the part and band of the pegs, in mm."""
 
     thickness: float
     band: Two
 
 
 class PadsPart(FormPart):
-    """The supports' pads."""
+    """The supports' pads, and where they may stand."""
 
     pad_radius: float
     pad_margin: float = 0.0
@@ -61,7 +61,7 @@ class PadsPart(FormPart):
 
 
 class TipPart(FormPart):
-    """The clamp on top."""
+    """The clamp on top, and where it may stand."""
 
     tip_radius: float
     inside: float | None = None
@@ -79,7 +79,7 @@ class TipPart(FormPart):
 
 
 class SpatialLoadPart(FormPart):
-    """A load in space."""
+    """A load in space, as :class:`SpatialLoad`."""
 
     name: str = Field("", max_length=LONGEST_NAME)
     points: list[Two] = Field(default_factory=list)
@@ -90,9 +90,11 @@ class SpatialLoadPart(FormPart):
     moment: float = 0.0
     tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
 
-    def load(self, thickness: float) -> SpatialLoad:
-        """Return the load with its heights written out; refuse what is not a load."""
-        return SpatialLoad(**dict(self)).at_height(thickness)
+    def to_load(self, thickness: float) -> SpatialLoad:
+        """Return the load with its heights filled in for a
+        thickness in mm; raise InputError for what is not one.
+        """
+        return SpatialLoad(**dict(self)).with_height(thickness)
 
 
 class ClampFiguresPart(FormPart):
@@ -123,7 +125,7 @@ class TriplePart(FormPart):
 
 @frozen
 class ReadTriple:
-    """Three supports of a file, in a fourth of the memory that their checked form takes; see ``TriplePart``."""
+    """Three supports of a file, as ``TriplePart`` but in a fourth of its memory."""
 
     holes: tuple[tuple[str, int, int], ...]
     jaw_separation: float | None
@@ -138,7 +140,7 @@ class ReadTriple:
 
 @frozen
 class ReadFigures:
-    """The figures at one point of the clamp; see ``ClampFiguresPart``."""
+    """The figures at one point of the clamp, as ``ClampFiguresPart``."""
 
     at: tuple[float, float] | None
     clamp_needed: float
@@ -150,29 +152,30 @@ class ReadFigures:
 
     @classmethod
     def from_part(cls, part: ClampFiguresPart) -> ReadFigures:
+        """Make the figures at one point of the clamp from their checked form."""
         at = None if part.at is None else (part.at[0], part.at[1])
         return cls(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift, part.hangs)
 
 
 @define(eq=False)
 class TripleReader:
-    """Checks triples and makes them small one by one, while the file is read.
+    """A hook that checks triples and makes them small one by one, while the JSON is parsed.
 
     Parameters
     ----------
-    count : how many were read.
-    holes : those that triples stand in; few are there often.
+    count : number of triples read.
+    holes : cache of holes, because many triples share them.
     """
 
     count: int = 0
     holes: dict[tuple[str, int, int], tuple[str, int, int]] = field(factory=dict)
 
     def read(self, entry: dict[str, Any]) -> Any:
-        """Return the triple that an object of the file is; any other object as it is."""
+        """Return the triple that an object of the file is; any other object unchanged."""
         return self.read_triple(entry) if entry.keys() >= {"holes", "standing"} else entry
 
     def read_triple(self, entry: Any) -> ReadTriple:
-        """Return a triple; raise ValidationError for what is not a triple."""
+        """Return a triple from its JSON object; raise pydantic's ValidationError for what is not one."""
         part = TriplePart.model_validate(entry)
         self.count += 1
         return ReadTriple(
@@ -189,7 +192,7 @@ class TripleReader:
 
 
 class CountsPart(FormPart):
-    """How many holes and triples there are."""
+    """Number of holes and of triples."""
 
     positions: Annotated[int, Field(ge=0)]
     triples: Annotated[int, Field(ge=0)] | None = None
@@ -216,7 +219,7 @@ class SupportsPart(FormPart):
     triples: list[Any]
 
     def to_head(self) -> dict[str, Any]:
-        """Return the head of a result file about the same part and toolkit."""
+        """Return the JSON object of a result file without fixtures for the same part and toolkit."""
         toolkit = {"vise": self.vise} if self.vise is not None else {"toolkit": self.toolkit}
         space = {"solid": self.solid, "outlines": self.outlines}
         known = {name: value for name, value in space.items() if value is not None}
@@ -229,12 +232,12 @@ class SupportsPart(FormPart):
         }
 
     def to_request(self) -> SupportRequest:
-        """Return what was asked.
+        """Return the request for supports.
 
         Raises
         ------
         InputError
-            When a part of it cannot be.
+            When one of its values is impossible.
         """
         pads, tip = self.supports, self.clamp
         walls = self.fixture.get("wall", {}).get("bands", []) if "wall" in self.fixture else []
@@ -269,7 +272,9 @@ class SupportsPart(FormPart):
 
 
 def read_face_loops(loops: list[Loop] | None) -> list[Loop] | None:
-    """Return the loops of a face: an empty list for a face that is not there, None if the file does not say."""
+    """Return the loops of a face: an empty list for a
+    face that is not there, None if the file does not say.
+    """
     return None if loops is None else [loop for loop in loops if loop]
 
 

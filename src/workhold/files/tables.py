@@ -1,13 +1,13 @@
 """Tables in CSV, as spreadsheets and other programs write them.
 
-RFC 4180 describes the usual form. Read is what differs from it in practice as well: lines that end in CR alone
-or in any mixture, a byte order mark, semicolons and tabs instead of commas, the line ``sep=;`` of Excel, empty
-columns and rows. What could be read in two ways is refused with its line, row and column.
+RFC 4180 describes the usual form. Deviations that are common in practice are read as well: lines that end in
+CR alone or in any mixture, a byte order mark, semicolons and tabs instead of commas, the line ``sep=;`` of
+Excel, empty columns and rows. What could be read in two ways is refused with its line, row and column.
 
 Glossary
 --------
-names : the cells of the first row, which say what stands in the columns.
-row : what stands below the names, counted from 1; rows without any cell do not count.
+names : the cells of the first row, which are the names of the columns.
+row : the cells in a line below the names, counted from 1; rows without any cell do not count.
 line : of the text, as an editor counts. A cell in quotes may hold several.
 """
 
@@ -49,9 +49,9 @@ class CsvRow:
 
     Parameters
     ----------
-    row, line : of the row, and of the line where it begins, both from 1.
-    cells : the given ones, by the names of their columns, without spaces around them.
-    mark : what separates the cells.
+    row, line : number of the row, and of the line where it begins, both from 1.
+    cells : the cells that are not empty, by the names of their columns, without spaces around them.
+    mark : the separator of cells.
     """
 
     row: int
@@ -63,22 +63,23 @@ class CsvRow:
         return f"line {self.line}, row {self.row}"
 
     def read_number_cell(self, name: str) -> Any:
-        """Return the cell of a column for a number, with a point for a comma where commas separate no cells.
+        """Return the text of a cell for a number; None where it is not given.
 
-        None where it is not given. A cell that is no number stays as it is, for a sentence about it.
+        A comma is replaced by a point unless commas separate the cells. Whether the text is a number is not
+        checked.
         """
         cell = self.cells.get(name)
         if cell is None or cell.lower() in NOT_GIVEN:
             return None
         return cell if self.mark == "," else cell.replace(",", ".")
 
-    def number(self, name: str) -> float:
+    def read_number(self, name: str) -> float:
         """Return the number in a column that each row must have.
 
         Raises
         ------
         InputError
-            With line, row and column, where there is none.
+            With line, row and column, where there is no finite number.
         """
         value = self.read_number_cell(name)
         number = nan if value is None else read_number(value)
@@ -95,10 +96,11 @@ class CsvTable:
     Parameters
     ----------
     text : whose lines end in "\\n".
-    mark : what separates the cells.
+    mark : the separator of cells.
     remark : matches a line that is a remark; None where there are none.
-    budget : from which each row is taken.
-    at, line, number : where it is read on, the line of that, and how many rows were read.
+    budget : spent for each row.
+    at, line, number : offset in the text at which reading goes on, the line there, and the number of rows
+        read.
     names : of the columns, "" for a column without a name and without cells.
     """
 
@@ -111,8 +113,11 @@ class CsvTable:
     number: int = field(default=0, init=False)
     names: tuple[str, ...] = field(default=(), init=False)
 
-    def place(self, column: int | None = None, line: int | None = None) -> str:
-        """Return where in the table a cell stands, its column counted from 0, or the row that is read."""
+    def describe_place(self, column: int | None = None, line: int | None = None) -> str:
+        """Return line, row and column of a cell in words; the column is counted from 0, and left out if None.
+
+        ``line`` is the current one if None.
+        """
         words = f"line {self.line if line is None else line}"
         words += f", row {self.number}" if self.names else ""
         if column is None:
@@ -121,7 +126,7 @@ class CsvTable:
         return f"{words}, column {column + 1}" + (f" ({name[:40]})" if name else "")
 
     def iterate_rows(self) -> Iterator[CsvRow]:
-        """Yield the rows that have a cell, once.
+        """Yield the rows that have a cell; a second call goes on after the last row read.
 
         Raises
         ------
@@ -134,12 +139,14 @@ class CsvTable:
             last = max(given)
             if last >= len(self.names):
                 raise InputError(
-                    f"{self.place(line=line)} has {last + 1} cells under {len(self.names)} names: put a cell "
+                    f"{self.describe_place(line=line)} has {last + 1} cells under {len(self.names)} names: put a cell "
                     f"with {name_separator(self.mark)} in double quotes, or leave out the cells that are too many."
                 )
             for k in given:
                 if not self.names[k]:
-                    raise InputError(f"{self.place(k, line)} has a cell and no name: name the column.")
+                    raise InputError(
+                        f"{self.describe_place(k, line)} has a cell and no name: name the column."
+                    )
             self.budget.spend()
             yield CsvRow(self.number, line, {self.names[k]: cell for k, cell in given.items()}, self.mark)
 
@@ -157,12 +164,14 @@ class CsvTable:
         return None
 
     def read_cells(self) -> list[str]:
-        """Return the cells to the end of the line, without spaces around them."""
+        """Return the cells up to the end of the line, "" for empty ones, without spaces around them."""
         cells = list[str]()
         while True:
             cells.append(self.read_next_cell(len(cells)))
             if len(cells) > MOST_COLUMNS:
-                raise InputError(f"{self.place()} has more than {MOST_COLUMNS:,} cells: leave some out.")
+                raise InputError(
+                    f"{self.describe_place()} has more than {MOST_COLUMNS:,} cells: leave some out."
+                )
             end = self.text[self.at : self.at + 1]
             self.at += 1
             if end != self.mark:
@@ -170,13 +179,16 @@ class CsvTable:
                 return cells
 
     def read_next_cell(self, column: int) -> str:
-        """Return the next cell, up to what separates it from the one after it."""
+        """Return the next cell, and leave the position at the separator or line end after it.
+
+        ``column`` is its number from 0, for messages.
+        """
         found = QUOTED.match(self.text, self.at)
         if found is not None:
             cell, end = found[1].replace('""', '"'), found.end()
             if self.text[end : end + 1] not in ("", "\n", self.mark):
                 raise InputError(
-                    f"{self.place(column)} goes on after its closing quote: write a quote inside a cell twice, "
+                    f"{self.describe_place(column)} goes on after its closing quote: write a quote inside a cell twice, "
                     "and the cell in quotes."
                 )
         else:
@@ -184,20 +196,24 @@ class CsvTable:
             assert found is not None
             cell, end = found[0], found.end()
             if cell.lstrip().startswith('"'):
-                raise InputError(f"{self.place(column)} begins with a quote that is not closed: close it.")
+                raise InputError(
+                    f"{self.describe_place(column)} begins with a quote that is not closed: close it."
+                )
         if len(cell) > MOST_LETTERS:
             raise InputError(
-                f"{self.place(column)} has {len(cell):,} letters, more than the {MOST_LETTERS:,} of a cell: "
+                f"{self.describe_place(column)} has {len(cell):,} letters, more than the {MOST_LETTERS:,} of a cell: "
                 "shorten it, or close a quote before it."
             )
         if "\0" in cell:
-            raise InputError(f"{self.place(column)} has a NUL byte: save the table as text in UTF-8.")
+            raise InputError(
+                f"{self.describe_place(column)} has a NUL byte: save the table as text in UTF-8."
+            )
         self.at, self.line = end, self.line + found[0].count("\n")
         return cell.strip()
 
 
 def name_separator(mark: str) -> str:
-    """Return the letters that separate cells, in words."""
+    """Return the name of a separator: "commas", "semicolons" or "tabs"."""
     return {",": "commas", ";": "semicolons"}.get(mark, "tabs")
 
 
@@ -206,7 +222,8 @@ def read_table(text: str, budget: Budget, remarks: str = "") -> CsvTable:
 
     Parameters
     ----------
-    remarks : how lines begin that are remarks; none are if empty.
+    budget : spent for each row.
+    remarks : the beginning of lines that are remarks; none are if empty.
 
     Raises
     ------
@@ -224,7 +241,7 @@ def read_table(text: str, budget: Budget, remarks: str = "") -> CsvTable:
     remark = re.compile(rf"[ \t]*{re.escape(remarks)}[^\n]*\n?") if remarks else None
     first = SEPARATOR.match(text)
     table = CsvTable(text, ",", remark, budget, *((0, 1) if first is None else (first.end(), 2)))
-    table.mark = first[1] if first and first[1] in MARKS else mark_of(table)
+    table.mark = first[1] if first and first[1] in MARKS else find_separator(table)
     _, cells = table.read_next_row() or (0, [])
     names = [name.lower() for name in cells]
     while names and not names[-1]:
@@ -238,8 +255,10 @@ def read_table(text: str, budget: Budget, remarks: str = "") -> CsvTable:
     return table
 
 
-def mark_of(table: CsvTable) -> str:
-    """Return what separates the cells: that of the usual three which stands most often between the names."""
+def find_separator(table: CsvTable) -> str:
+    """Return the separator of cells: of comma, semicolon and
+    tab the one most frequent in the first line with names.
+    """
     at = table.at
     while (found := BLANK.match(table.text, at)) or (
         table.remark and (found := table.remark.match(table.text, at))

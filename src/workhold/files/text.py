@@ -1,7 +1,7 @@
 """Text files of a user's, JSON and TOML, read whole within a limit of size.
 
-Two things that Python's readers let pass are refused. One is a key that is given twice, of which the last
-would count. The other is a whole number too large for a float.
+Two things that Python's readers accept are refused. One is a key that is given twice, of which the last would
+count. The other is a whole number too large for a float.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -
     Parameters
     ----------
     limits : of this kind of file.
-    saved : what helps where it is written otherwise.
+    saved : advice for a file in another encoding.
 
     Raises
     ------
     InputError
-        Without the file's name: when it cannot be read, is too large, or is no text.
+        Without the file's name: when it cannot be read, is too large, or is not text.
     """
     content = read_limited(path, limits)
     try:
@@ -85,7 +85,10 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
 
 
 def read_at_most(path: Path, most: int | None) -> bytes:
-    """Return the bytes of a regular file; of one with more than ``most``, at least one more than that."""
+    """Return the bytes of a regular file, or more than ``most`` of them if it has more than ``most``.
+
+    The caller recognizes a file that is too large by the length; None is no limit.
+    """
     size = path.stat().st_size
     with path.open("rb") as stream:
         # As many bytes as are asked for are set aside before any is read.
@@ -100,8 +103,8 @@ def parse_json(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, t
 
     Parameters
     ----------
-    hook : makes something else of each object as soon as it is read.
-    times : how many times as much as a usual file it may hold.
+    hook : called for each object as soon as it is read; its result replaces the object.
+    times : factor on the number of lists, objects and values that a file may hold.
 
     Raises
     ------
@@ -147,19 +150,19 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def refuse_constant(name: str) -> NoReturn:
-    """Refuse the NaN and the infinities that JSON does not have."""
+    """Raise InputError for NaN and infinities, which JSON does not have."""
     raise InputError(f"{name} is not a number: correct it.")
 
 
 def parse_whole_number(digits: str) -> int:
-    """Return a whole number; refuse one that a float cannot hold."""
+    """Return a whole number from its digits; raise InputError for one too large for a float."""
     if len(digits) > MOST_DIGITS:
         raise InputError(f"the file holds a number with {len(digits)} digits: correct it.")
     return int(digits)
 
 
 def refuse_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return a JSON object; refuse one with a key that is given twice."""
+    """Return the pairs of a JSON object as a dict; raise InputError for a key that is given twice."""
     content = dict(pairs)
     if len(content) < len(pairs):
         keys = [key for key, _ in pairs]
@@ -169,7 +172,7 @@ def refuse_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def refuse_long_numbers(value: Any) -> None:
-    """Refuse a whole number too large for a float, wherever in tables and list it stands."""
+    """Raise InputError for a whole number too large for a float, anywhere in nested dicts and lists."""
     if isinstance(value, dict):
         value = list(value.values())
     if isinstance(value, list):
@@ -181,6 +184,9 @@ def refuse_long_numbers(value: Any) -> None:
 
 @lru_cache(maxsize=16)
 def make_json_decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
+    """Return a decoder that refuses constants, long numbers
+    and repeated keys, and applies ``hook`` to objects.
+    """
     return json.JSONDecoder(
         parse_constant=refuse_constant,
         parse_int=parse_whole_number,

@@ -1,4 +1,4 @@
-"""A toolkit described in TOML: a preset of the program's own, or a file of the user's.
+"""Toolkits described in TOML: presets of the program's own, and files of the user's.
 
 All lengths come out in mm.
 
@@ -36,7 +36,7 @@ from workhold.fixels.kinds import KINDS, USUAL, make_toolkit, resolve_kind
 from workhold.fixels.support_hardware import HARDWARE, TOP_CLAMP, TopClamp, convert_hardware
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.dowels import DowelSize, Fit, Limits, compute_peg_error, refuse_limits
+from workhold.model.dowels import DowelFit, DowelSize, Limits, compute_peg_error, refuse_limits
 from workhold.model.requirements import Tolerance
 from workhold.units import Unit, find_unit
 
@@ -77,7 +77,7 @@ class DowelSeries:
 
 @cache
 def load_dowel_series() -> tuple[DowelSeries, ...]:
-    """Return the standards whose pins are known.
+    """Return the dowel pin standards that the program knows, each with its pins; lengths in mm.
 
     Examples
     --------
@@ -135,8 +135,8 @@ class LoadedToolkit:
     Parameters
     ----------
     name : the preset's name, or the file's.
-    title : what it is, in a line; empty where the file gives none.
-    source : where the figures are from; empty where the file does not say.
+    title : description in a line; empty where the file gives none.
+    source : source of the figures; empty where the file does not say.
     unit : in which the file gives its lengths.
     kind : of toolkit, see ``fixels.kinds``.
     fields : keyword arguments of its class, in mm; those not in the file are left out.
@@ -155,11 +155,12 @@ class LoadedToolkit:
 
     @property
     def toolkit(self) -> Toolkit:
-        """The toolkit with nothing changed."""
+        """The toolkit with exactly these fields and tolerance."""
         return make_toolkit(self.kind, {**self.fields, "tolerance": self.tolerance})
 
 
 def read_toolkit_file(path: Path) -> LoadedToolkit:
+    """Return the toolkit in a TOML file; raise InputError for a file that cannot be used."""
     from workhold.files.input_forms import check_toolkit_entries
 
     try:
@@ -171,7 +172,10 @@ def read_toolkit_file(path: Path) -> LoadedToolkit:
 
 
 def make_described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
-    """Return the toolkit of a file's entries, which are of the right types; refuse values that no toolkit can have."""
+    """Return the toolkit of a file's entries, which have passed :func:`check_toolkit_entries`.
+
+    Raises InputError for values that no toolkit can have.
+    """
     unit = find_unit(entries["unit"])
     if unit.name not in ("mm", "inch"):
         raise InputError('the unit of a toolkit is "mm" or "inch".')
@@ -202,7 +206,7 @@ def make_described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolk
 
 
 def convert_to_mm(form: Form, value: Any, unit: Unit) -> Any:
-    """Convert what an entry gives for a field to the constructor's argument, with lengths in mm."""
+    """Return the constructor's argument for a field of a form from its entry, with lengths in mm."""
     if form in ("count", "directions", "choice", "force"):
         return value
     if form == "holes":
@@ -221,7 +225,7 @@ def convert_lengths_to_mm(value: Any, unit: Unit) -> Any:
 
 
 def refuse_wide_pads(toolkit: Toolkit) -> None:
-    """Refuse pads of supports that would overlap in neighbouring holes."""
+    """Raise InputError for supports whose pads would overlap in neighbouring holes."""
     apart = min((pitch for plate in toolkit.plates for pitch in plate.pitch), default=inf)
     radius = None if toolkit.supports is None else toolkit.supports.pad_radius
     if radius is not None and 2 * radius > apart:
@@ -231,11 +235,11 @@ def refuse_wide_pads(toolkit: Toolkit) -> None:
         )
 
 
-def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:
-    """Return the pin and hole as the file gives them, or as the standard it names does; None when it gives
-    neither.
+def read_fit(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> DowelFit | None:
+    """Return the limits of pin and hole as the file gives
+    them, or as the standard it names does; None without any.
 
-    Refuses one without the other, and limits that are not those of the peg.
+    Raises InputError for one without the other, and for limits that do not fit the peg's radius in mm.
     """
     limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
     if "dowel" in entries:
@@ -263,15 +267,15 @@ def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | N
     if position is not None and position < 0:
         raise InputError(f"hole_position {position:g} is negative: give 0 or more.")
     length = ASSUMED_POSITION if position is None else unit.to_mm(position)
-    return Fit(pin, hole, length, position is None, entries.get("dowel", ""))
+    return DowelFit(pin, hole, length, position is None, entries.get("dowel", ""))
 
 
 def make_tolerance(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Tolerance:
     """Return the tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
 
-    Refuses negative lengths, and what :func:`fit_of` does.
+    Raises InputError for negative lengths, and as :func:`read_fit`.
     """
-    usual, fit = Tolerance(), fit_of(entries, unit, peg_radius)
+    usual, fit = Tolerance(), read_fit(entries, unit, peg_radius)
     # Rounded to where a difference of decimal figures is exact again.
     peg = (
         usual.peg if fit is None else round(compute_peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
@@ -288,8 +292,8 @@ TIP_MARGIN = 1.0
 
 @cache
 def list_preset_names() -> tuple[str, ...]:
-    """Return the names of the presets, what is sold first, of that plates before vises, then by kind and by
-    pitch.
+    """Return the names of the presets: those sold before the
+    others, of these plates before vises, then by kind and pitch.
 
     Examples
     --------
@@ -314,7 +318,7 @@ def list_preset_names() -> tuple[str, ...]:
 
 
 def is_sold(name: str) -> bool:
-    """Return whether what a preset is named after can be bought or drilled; the paper's grippers cannot.
+    """Return whether a preset's equipment can be bought or drilled; the paper's grippers cannot.
 
     >>> is_sold("table-50mm"), is_sold("gripper-one-column, radius 2")
     (True, False)
@@ -323,7 +327,9 @@ def is_sold(name: str) -> bool:
 
 
 def load_preset(name: str) -> LoadedToolkit:
-    """Return the preset of a name that exists."""
+    """Return the preset of a name, which must exist; a
+    clamp on top gets the usual tip margin if it has none.
+    """
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
     found = make_described_toolkit(name, tomllib.loads(text))
     if found.toolkit.holds_by_friction:
@@ -335,7 +341,7 @@ def load_preset(name: str) -> LoadedToolkit:
 
 
 def load_toolkit(name: str | Path) -> LoadedToolkit:
-    """Load a toolkit by the name of a preset or from a TOML file; a file wins.
+    """Return a toolkit by the name of a preset or from a TOML file; a file wins.
 
     Parameters
     ----------
@@ -371,12 +377,13 @@ def load_toolkit(name: str | Path) -> LoadedToolkit:
 
 
 def list_presets_of_kind(kind: type[Toolkit]) -> tuple[str, ...]:
+    """Return the names of the presets whose toolkit is of exactly this class."""
     return tuple(name for name in list_preset_names() if KINDS[load_preset(name).kind] is kind)
 
 
 def load_preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
-    """Return the fields of a preset or of a user's file, for a class of toolkits or one that has all fields
-    of it.
+    """Return the keyword arguments, in mm, of a preset or a
+    user's file for a class of toolkits or a subclass of it.
 
     Raises
     ------
@@ -391,7 +398,7 @@ def load_preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
 
 
 def load_preset_tolerance(name: str) -> Tolerance:
-    """Return how far pegs and faces of a preset or of a user's file may be off.
+    """Return the tolerances of pegs and faces in a preset or a user's file.
 
     Raises
     ------

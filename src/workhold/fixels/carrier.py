@@ -1,8 +1,8 @@
-"""What the contacts of a fixture stand on: a lattice of holes, a clamp, or a straight wall.
+"""Carriers, on which the contacts of a fixture stand: a lattice of holes, a clamp, or a straight wall.
 
-A carrier is data; drawings, files and sheets take names and places from it. Holes have
-names: letter of the carrier, column letters, row from 1, such as ``L-B3``; a name without a row is a whole
-column.
+A carrier is data, from which drawings, files and sheets take names and places. The name of a hole has the
+letter of the carrier, the letters of the column, and the row from 1, such as ``L-B3``; a name without a row
+is a whole column.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_JAW, FLAT_PIN, ROUND_PIN, TOWARDS, WALL_END, ContactKind
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 
 __all__ = [
     "JAWS",
     "WALL",
     "Carrier",
     "Heights",
-    "Holes",
+    "HoleSelection",
     "Measure",
     "Travel",
     "make_column_letters",
@@ -54,7 +54,9 @@ def make_column_letters(column: int) -> str:
 
 
 def make_hole_name(carrier: str, column: int, row: int | None) -> str:
-    """Return the name of a hole, or of a whole column, of a carrier of a name; column and row count from 0.
+    """Return the name of a hole, or with row None of a whole column, on the carrier of this name.
+
+    Column and row count from 0.
 
     >>> make_hole_name("left", 1, 2), make_hole_name("right", 0, None), make_hole_name("plate", 1, 2)
     ('L-B3', 'R-A', 'B3')
@@ -64,19 +66,21 @@ def make_hole_name(carrier: str, column: int, row: int | None) -> str:
 
 
 def find_carrier_letter(carrier: str) -> str:
-    """Return what the names of a carrier's holes begin with; nothing where there is but one lattice."""
+    """Return the letter with which a carrier's hole names
+    begin; empty for the plate, whose holes have none.
+    """
     return "" if carrier == ALONE else carrier[0].upper()
 
 
 @frozen
-class Holes:
-    """A hole of a carrier, or a whole column of them.
+class HoleSelection:
+    """A hole of a carrier, or a whole column of holes.
 
     Parameters
     ----------
-    carrier : its name, such as "left".
+    carrier : name of the carrier, such as "left".
     column : counted from 0.
-    row : counted from 0; None is the whole column.
+    row : counted from 0; None for the whole column.
     """
 
     carrier: str
@@ -85,16 +89,23 @@ class Holes:
 
     @property
     def name(self) -> str:
+        """Name of the hole or column, see :func:`make_hole_name`."""
         return make_hole_name(self.carrier, self.column, self.row)
 
 
-def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> Holes:
+def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> HoleSelection:
     """Return the hole or column of a name, as :func:`make_hole_name` gives it.
 
     Parameters
     ----------
     name : in any mixture of capitals, with or without the hyphen.
-    carriers, noun : the names of the carriers it may be on, and what one of them is called.
+    carriers : names of the carriers that it may be on.
+    noun : what a carrier is called in the error's message.
+
+    Raises
+    ------
+    InputError
+        For anything else.
 
     Examples
     --------
@@ -115,18 +126,18 @@ def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> Holes:
     column = 0
     for letter in match[2]:
         column = 26 * column + ord(letter) - ord("A") + 1
-    return Holes(carrier, column - 1, None if match[3] is None else int(match[3]) - 1)
+    return HoleSelection(carrier, column - 1, None if match[3] is None else int(match[3]) - 1)
 
 
-# From which height in mm up to which.
+# (lower, upper) in mm.
 Heights = tuple[float, float]
 # The name of the carrier that is a wall.
 WALL = "wall"
-# What the carriers of a vise are called.
+# Names of the carriers of a vise.
 JAWS = ("left", "right")
 
-# What is set on a carrier that moves: the opening of jaws, a clamp's stroke from its hole, or the place of
-# its tip.
+# The length that is set on a moving carrier: the opening of jaws, a clamp's stroke from its hole, or the
+# place of its tip.
 Measure = Literal["opening", "stroke", "tip"]
 
 
@@ -136,8 +147,9 @@ class Travel:
 
     Parameters
     ----------
-    direction : angle in radians of the line along which travel is counted, from the x axis.
-    least, most : smallest and largest travel in mm; -inf and None where there is none.
+    direction : angle in radians from the x axis of the direction in which travel is counted.
+    least : smallest travel in mm; -inf where unbounded.
+    most : largest travel in mm; None where unbounded.
     """
 
     direction: float
@@ -146,33 +158,33 @@ class Travel:
 
     @property
     def unit(self) -> tuple[float, float]:
-        """The unit vector of the direction; exact along the axes."""
+        """Unit vector of the direction; exact along the axes."""
         return round(cos(self.direction), 15), round(sin(self.direction), 15)
 
 
 @frozen
 class Carrier:
-    """What contacts stand on: a lattice of holes for pegs, a clamp, or a wall.
+    """An element that contacts stand on: a lattice of holes for pegs, a clamp, or a wall.
 
     Parameters
     ----------
-    name : such as "left"; its first letter names its holes.
-    pitch : distance in mm between neighbouring columns and rows.
-    columns, rows : of holes, or None for as many as needed.
+    name : such as "left"; its first letter begins the names of its holes.
+    pitch : distances in mm between neighbouring columns and rows.
+    columns, rows : numbers of columns and rows of holes; None for as many as needed.
     peg_radius : of its pegs in mm.
     body_radius : of the thickest part of its pegs in mm, below the workpiece.
-    offset : place in mm of the hole in column 0 and row 0 without any travel.
+    offset : place in mm of the hole in column 0 and row 0, at travel 0.
     blocked : holes and columns that no peg can stand in.
     travel : how it slides; None when it stands still.
     noun : what it is called, such as "jaw".
     peg : what each of its pegs is called, such as "locator".
     on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has
         its own holes.
-    is_wall : whether it is a straight wall along x that the part lies flush against, which has no holes.
-    flat : of its pegs, which lies on straight faces; None where they are round.
-    heights : between which what stands on it reaches, in mm above the plane on which the part lies. None
-        where it reaches from below up to the peg height, as all pegs do.
-    width : of a wall in mm, the columns beside it in its middle; None where it is endless.
+    is_wall : whether it is a straight wall along x that the part lies flush against, without holes.
+    flat : the flat of its pegs, which lies on straight faces; None for round pegs.
+    heights : between which what stands on it reaches, in mm above the plane on which the part lies; None for
+        from below up to the peg height, as all pegs do.
+    width : of a wall in mm, centred on its columns; None for an endless one.
     is_jaw : whether it is a flat jaw, which holds by friction and has no holes.
     """
 
@@ -183,20 +195,22 @@ class Carrier:
     peg_radius: float
     body_radius: float
     offset: tuple[float, float] = (0.0, 0.0)
-    blocked: tuple[Holes, ...] = ()
+    blocked: tuple[HoleSelection, ...] = ()
     travel: Travel | None = None
     noun: str = "carrier"
     peg: str = "peg"
     on: str | None = None
     is_wall: bool = False
-    flat: Flat | None = None
+    flat: PegFlat | None = None
     heights: Heights | None = None
     width: float | None = None
     is_jaw: bool = False
 
     @property
     def reach(self) -> tuple[float, float] | None:
-        """The x from which and up to which a wall is there, in mm; None where it is endless."""
+        """x in mm from which and to which a wall extends;
+        None for an endless one, and for anything but a wall.
+        """
         if self.width is None or self.is_jaw:
             return None
         middle = (self.column_count - 1) * self.pitch[0] / 2
@@ -204,36 +218,39 @@ class Carrier:
 
     @property
     def role(self) -> str:
-        """The name that carriers of the same heights share: that of a clamp without its direction."""
+        """Name that carriers of the same heights share: its name up to the first space, such as "clamp"."""
         return self.name.partition(" ")[0]
 
     @property
     def least_standoff(self) -> float:
-        """Distance in mm from a face to the centre of a peg that touches it, at least."""
+        """Smallest distance in mm from a face to the centre of a peg that touches it."""
         return self.peg_radius if self.flat is None else self.flat.distance
 
     @property
     def title(self) -> str:
-        """What it is called, such as "left jaw"; the only lattice there is by its noun alone."""
+        """Title for sentences, such as "left jaw"; its noun alone if its holes' names have no letter."""
         if not self.letter:
             return self.noun
         return self.name if self.noun in self.name else f"{self.name} {self.noun}"
 
     @property
     def elements(self) -> str:
-        """What of it touches the part, such as "locators", "left jaw pegs", "clamp" or "fence"."""
+        """Name of its parts that touch the workpiece, such
+        as "locators", "left jaw pegs", "clamp" or "fence".
+        """
         if not self.has_lattice:
             return self.noun
         return f"{self.title} {self.peg}s" if self.letter and self.name != self.noun else f"{self.peg}s"
 
     @property
     def column_count(self) -> int:
-        """The number of columns, of a carrier that has an end; in the frame of a search every one has."""
+        """Number of columns; the carrier must have one (in the frame of a search every carrier has)."""
         assert self.columns is not None
         return self.columns
 
     @property
     def contact(self) -> ContactKind:
+        """Kind of its contacts."""
         if self.is_jaw:
             return FLAT_JAW
         if self.is_wall:
@@ -244,76 +261,86 @@ class Carrier:
 
     @property
     def stands_on(self) -> str:
-        """The name of the carrier whose holes are used: this one, or the one that this is bolted to."""
+        """Name of the carrier whose holes are used: its own, or that of the carrier it is bolted to."""
         return self.on or self.name
 
     @property
     def has_lattice(self) -> bool:
-        """Whether it is a plate with holes of its own, rather than a wall or a clamp bolted to a plate."""
+        """Whether it has holes of its own, unlike a wall, a flat jaw, or a clamp bolted to a plate."""
         return self.contact in (ROUND_PIN, FLAT_PIN)
 
     @property
     def is_along_x(self) -> bool:
-        """Whether it slides along its rows."""
+        """Whether it slides along x; False if it stands still."""
         return self.travel is not None and self.travel.unit[0] != 0.0
 
     @property
     def line(self) -> Literal["row", "column"]:
-        """What a clamp pushes along."""
+        """Line along which a clamp pushes: "row" if the carrier slides along x, else "column"."""
         return "row" if self.is_along_x else "column"
 
     @property
     def direction(self) -> str:
-        """The direction in which a clamp pushes, as files name it, such as "-x"."""
+        """Direction in which a clamp pushes, such as "-x";
+        for other carriers the last word of their names.
+        """
         return self.name.rpartition(" ")[2]
 
     @property
-    def towards(self) -> str:
-        """The way a clamp pushes in words, on a plan whose y runs up; empty for other carriers."""
+    def direction_words(self) -> str:
+        """Direction in which a clamp pushes, in words on a plan with y up; empty for other carriers."""
         return TOWARDS.get(self.direction, "")
 
     @property
     def pushers(self) -> str:
-        """What pushes the part as it moves: such jaws together, or a clamp."""
+        """Name of what pushes the part as the carrier moves: "jaws" for jaws, "clamp" for a clamp."""
         return f"{self.noun}s" if self.has_lattice else self.noun
 
     @property
     def measure(self) -> Measure:
-        """What is set on it where it moves."""
+        """Name of the length that is set on it: "stroke", "tip" or "opening"."""
         if self.contact is CLAMP_TIP:
             return "stroke" if self.has_a_hole else "tip"
         return "opening"
 
     @property
     def has_a_hole(self) -> bool:
-        """Whether what stands on it is in a hole; a clamp of which only the line is known is in none."""
+        """Whether what stands on it is in a hole; False for a
+        clamp without longest travel, known by its line only.
+        """
         return self.on is None or self.travel is None or self.travel.most is not None
 
     @property
     def has_body_behind(self) -> bool:
-        """Whether what stands on it reaches from its tip back to a hole in which it is bolted."""
+        """Whether it is a clamp with a body from its tip back to the hole in which it is bolted."""
         return self.contact is CLAMP_TIP and self.has_a_hole
 
     @property
     def counted(self) -> tuple[bool, bool]:
-        """Whether the column of what stands on it says where that is, and whether the row does."""
+        """Whether the column, and whether the row, of what stands on it tells its place.
+
+        For a clamp without a hole only that of its line does; for a wall neither.
+        """
         if not self.contact.is_placed:
             return False, False
         return self.has_a_hole or not self.is_along_x, self.has_a_hole or self.is_along_x
 
     @property
-    def written_as(self) -> tuple[str, str]:
-        """The key and the value by which files name what stands on it.
+    def file_entry(self) -> tuple[str, str]:
+        """Key and value by which files say which carrier or role a contact has.
 
-        That is its carrier where there are several lattices, else its role. On the only lattice the role is
-        that of the jaw if it slides.
+        With several lattices it is the carrier's noun and name, else "role" and the role; on a single sliding
+        lattice the role is the noun of the jaw.
         """
         if self.has_lattice and self.letter and self.name != self.noun:
             return self.noun, self.name
         return "role", self.noun if self.has_lattice and self.travel is not None else self.contact.role
 
-    def place_name(self, column: int, row: int) -> str:
-        """Return the name of a hole for its peg, such as "L-B3"; a clamp's noun with its hole or its line.
+    def name_place(self, column: int, row: int) -> str:
+        """Return the name of the hole at column and row, such
+        as "L-B3"; for a clamp its noun with its hole or line.
+
+        A wall has only its noun.
 
         >>> from workhold import Plate
         >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
@@ -334,26 +361,28 @@ class Carrier:
 
     @property
     def letter(self) -> str:
-        """What the names of its holes begin with."""
+        """Letter with which the names of its holes begin; empty for the plate."""
         return find_carrier_letter(self.name)
 
     def is_blocked(self, column: int, row: int) -> bool:
-        """Return whether no peg can stand in a hole."""
-        return not {Holes(self.name, column), Holes(self.name, column, row)}.isdisjoint(self.blocked)
+        """Return whether a hole, or its whole column, is blocked for pegs."""
+        return not {HoleSelection(self.name, column), HoleSelection(self.name, column, row)}.isdisjoint(
+            self.blocked
+        )
 
-    def place(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:
-        """Centre of a hole in mm, or of many: numbers or arrays of them.
+    def compute_hole_center(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:
+        """Return the centre (x, y) of a hole in mm; numbers or arrays.
 
         Parameters
         ----------
         column, row : of the hole, counted from 0.
-        travelled : how far the carrier has slid, in mm; of no account for one that stands still.
+        travelled : travel of the carrier in mm; ignored for one that stands still.
 
         Examples
         --------
         >>> from workhold import Vise
         >>> right = Vise(pitch=10, columns=2, peg_radius=3).carriers[1]
-        >>> right.place(1, 2, travelled=14.5)
+        >>> right.compute_hole_center(1, 2, travelled=14.5)
         (34.5, 20.0)
         """
         x, y = self.offset[0] + column * self.pitch[0], self.offset[1] + row * self.pitch[1]

@@ -1,7 +1,7 @@
-"""The contacts that hold a part: their kinds, how carriers share them, and the symmetries of that.
+"""The contacts that hold a part: their kinds, how they are arranged on carriers, and symmetries.
 
-The kinds are round pins, pins with a flat, a straight wall, and the tips of clamps. Clamps push in directions
-that have names in files.
+The kinds are round pins, pins with a flat, a straight wall, flat jaws, and the tips of clamps. The directions
+in which clamps push have names in files.
 
 Reference: R. C. Brost and K. Y. Goldberg, *A complete algorithm for designing planar fixtures using modular
 components*, IEEE Transactions on Robotics and Automation 12 (1996), who call such elements of a fixture
@@ -31,15 +31,14 @@ __all__ = [
 
 @frozen
 class ContactKind:
-    """What a contact is to whoever draws it, writes it, or sets it up.
+    """A kind of contact, with what drawings, files and set-ups need to know of it.
 
     Parameters
     ----------
     name : in a few words.
-    role : what it does for the part: it locates it, or it clamps it.
-    is_placed : whether it is a thing by itself that somebody puts in a place; the end of a contact with a
-        wall is not.
-    is_turned : whether it matters which way it is turned in its hole.
+    role : whether it locates or clamps the part.
+    is_placed : whether it is an element put in a place of its own; the end of a contact with a wall is not.
+    is_turned : whether its angle in the hole matters.
     """
 
     name: str
@@ -55,22 +54,23 @@ CLAMP_TIP = ContactKind("clamp tip", "clamp")
 FLAT_JAW = ContactKind("flat jaw", "clamp", is_placed=False)
 
 
-# In the order in which fixtures are listed. Each has the angle of the line along which the clamp's travel is
-# counted, which is the other way.
+# Directions of clamping in the order in which fixtures are listed, each with the angle of the opposite
+# direction, in which travel is counted.
 DIRECTIONS = {"-x": 0.0, "+x": pi, "-y": pi / 2, "+y": -pi / 2}
-# In words, on a plan whose y runs up.
+# Directions in words, on a plan with y up.
 TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "upward"}
 
 
 @frozen
 class Arrangement:
-    """How many pegs stand on each carrier.
+    """The number of pegs on each carrier.
 
     Parameters
     ----------
-    name : the paper's, such as "I".
-    pegs : for each carrier, those that stand still first.
-    direction : in which the carrier that moves clamps, such as "-x", where a toolkit has several.
+    name : as in the paper, such as "I".
+    pegs : how many on each carrier, in the order of the carriers.
+    direction : in which the moving carriers clamp, such as "-x" or "-x -y"; None where a toolkit has only one
+        direction.
     """
 
     name: str
@@ -79,25 +79,27 @@ class Arrangement:
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """The direction in which each of its clamps pushes; none where no clamp pushes."""
+        """Direction in which each of its clamps pushes, such
+        as ("-x", "-y"); empty where ``direction`` is None.
+        """
         return tuple((self.direction or "").split())
 
     @property
     def title(self) -> str:
-        """The name, and the directions where there are some."""
+        """Name, followed by the directions if any."""
         return " ".join((self.name, *self.directions))
 
     @property
     def short_title(self) -> str:
-        """What a fixture of it is called on a small picture, such as "Type I"."""
+        """Title of its fixtures on a small picture, such as "Type I"."""
         return self.title.replace("-", "\N{MINUS SIGN}") if self.directions else f"Type {self.name}"
 
     @property
     def heading(self) -> str:
-        """What a fixture of it is called in a line.
+        """Title of its fixtures in a line of text.
 
         >>> Arrangement("II", (3, 1)).heading, Arrangement("clamp", (3, 1), "-x").heading
-        ('Type II', 'Clamp \u2212x')
+        ('Type II', 'Clamp −x')
         """
         if not self.directions:
             return f"Type {self.title}"
@@ -105,13 +107,13 @@ class Arrangement:
         return f"Clamp{'s' * (len(self.directions) > 1)} {clamps}"
 
     @property
-    def towards(self) -> str:
-        """The direction in words, or those of two clamps, on a plan whose y runs up."""
+    def direction_words(self) -> str:
+        """Directions of its clamps in words, on a plan with y up; empty without any."""
         return " and ".join(dict.fromkeys(TOWARDS[name] for name in self.directions))
 
     @property
     def carriers(self) -> tuple[int, ...]:
-        """The number of each peg's carrier, in the order in which pegs are listed.
+        """Index of each peg's carrier, in the order in which pegs are listed.
 
         >>> Arrangement("II", (3, 1)).carriers
         (0, 0, 0, 1)
@@ -121,12 +123,12 @@ class Arrangement:
 
 @frozen
 class Symmetry:
-    """A motion of the plane after which a toolkit is itself again, so that two fixtures are the same.
+    """A motion of the plane that maps a toolkit onto itself, so that two fixtures count as the same.
 
     Parameters
     ----------
-    half_turns : how often everything turns by 180 degrees.
-    carriers : for each carrier the number of the one whose place it takes.
+    half_turns : by how many turns of 180 degrees everything is turned.
+    carriers : for each carrier, the index of the one whose place it takes.
     """
 
     half_turns: int

@@ -15,11 +15,11 @@ from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.making import make_class_from_table, make_wall_carrier, suggest_half_pitch
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Carrier, Change, Wording
+from workhold.fixels.toolkit import Carrier, ToolkitChange, ToolkitWording
 from workhold.units import Unit
 
 __all__ = ["Fence"]
@@ -91,7 +91,7 @@ class Fence(Plate):
     law = "fence"
     names = ("edge", "edge2")
     locating = (1, 2)
-    wording = Wording(
+    wording = ToolkitWording(
         two="fence and locator",
         four="fence, locator and clamp",
         inside="on this fence",
@@ -155,7 +155,7 @@ class Fence(Plate):
             directions: str | Iterable[str] | Iterable[tuple[str, str]] | None = None,
             clamps: int = 1,
             *,
-            flat: float | Iterable[float] | Flat | None = None,
+            flat: float | Iterable[float] | PegFlat | None = None,
             locator_heights: Iterable[float] | None = None,
             clamp_heights: Iterable[float] | None = None,
             supports: Any = None,
@@ -168,37 +168,43 @@ class Fence(Plate):
 
     @property
     def usual_directions(self) -> tuple[Any, ...]:
-        """All directions; of two clamps one down onto the fence, the other along it."""
+        """Default directions: all four; with two clamps,
+        pairs of one down onto the fence and one along it.
+        """
         return (("-x", "-y"), ("+x", "-y")) if self.is_paired else tuple(DIRECTIONS)
 
     @property
     def pushes(self) -> tuple[tuple[str, ...], ...]:
-        """The directions of the clamps of one fixture; all differ, because the fence turns with the plate."""
+        """Directions of the clamps of each arrangement; none are
+        equal by symmetry, as the fence turns with the plate.
+        """
         return self.asked_pushes
 
     @property
     def datum(self) -> Datum:
-        """Where column A meets the fence."""
+        """Origin of places: the point at which column A meets the fence."""
         plate, wall, *_ = self.carriers
         return Datum.from_wall(wall, plate)
 
     @property
     def half_turned(self) -> None:
-        """The fence stays at its side."""
+        """None, as half a turn would move the fence to the other side."""
         return None
 
-    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Yield the clamp in all directions, and half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
+        """Yield changes to try: a second clamp, the clamp in all
+        four directions, half the pitch; each only where it applies.
+        """
         if not self.is_paired:
-            yield Change("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
+            yield ToolkitChange("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
         if not self.is_paired and len(self.directions) < len(DIRECTIONS):
-            yield Change(
+            yield ToolkitChange(
                 "with the clamp in any of the four directions", {fields.DIRECTION.name: tuple(DIRECTIONS)}
             )
         yield from suggest_half_pitch(self)
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The plate, the wall, and for each direction the clamp."""
+        """Plate, wall, and one clamp for each direction, in this order."""
         plate, *clamps = self.make_plate_and_clamps((0.0, self.wall_offset))
         return plate, make_wall_carrier(self, "fence"), *clamps

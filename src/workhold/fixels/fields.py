@@ -1,7 +1,7 @@
 """The fields of every kind of toolkit, one row each, from which files, requests, options and the page are
 made.
 
-A field that is new, or means something else for a new kind, is a row here and an argument of the kind's
+A new field, or one with another meaning for a new kind, is a row here and an argument of the kind's
 constructor.
 """
 
@@ -16,7 +16,7 @@ from workhold.fixels.table import (
     HEIGHTS_SECTION,
     REQUIRED,
     Choice,
-    Lifted,
+    LiftedLimit,
     PageLabel,
     ToolkitField,
 )
@@ -35,7 +35,7 @@ NAMES: Mapping[str, str] = {
 
 
 def name_direction_pair(one: str, other: str) -> str:
-    """Return what a pair of directions is called.
+    """Return a phrase for the directions of two clamps, on a plan with y up.
 
     >>> name_direction_pair("-x", "-y"), name_direction_pair("-x", "-x"), name_direction_pair("-x", "+x")
     ('to the left and downward', 'both to the left', 'against each other, to the left and right')
@@ -99,7 +99,7 @@ BODY_RADIUS = ToolkitField(
     follows="peg_radius",
     at_least="peg_radius",
     below="body radius {value:g} is less than the peg radius {least:g}: give the peg radius or more, in mm.",
-    lifted=Lifted("bodies that would overlap", "bodies", "with pegs without a shoulder"),
+    lifted=LiftedLimit("bodies that would overlap", "bodies", "with pegs without a shoulder"),
     least="0",
     belongs_to="jaws",
 )
@@ -120,7 +120,7 @@ ROWS = ToolkitField(
     "count",
     "Rows of holes; as many as needed if not given.",
     (PageLabel("Rows a jaw", "as needed"),),
-    lifted=Lifted("rows of holes", "holes", "with as many rows as needed"),
+    lifted=LiftedLimit("rows of holes", "holes", "with as many rows as needed"),
     most=100_000,
     belongs_to="holes",
 )
@@ -134,7 +134,7 @@ BLOCKED = ToolkitField(
     entry='write a list of holes and columns by name, such as ["L-B3", "R-A"]',
     carriers=("left", "right"),
     carrier_noun="jaw",
-    lifted=Lifted("blocked holes", "holes", "with no hole blocked"),
+    lifted=LiftedLimit("blocked holes", "holes", "with no hole blocked"),
     belongs_to="jaws",
 )
 MIN_GAP = ToolkitField(
@@ -157,7 +157,7 @@ MAX_OPENING = ToolkitField(
     unset="no limit",
     at_least="min_gap",
     below="max opening {value:g} is below the min gap {least:g}: no opening is left.",
-    lifted=Lifted("largest opening", "travel", "with a larger opening"),
+    lifted=LiftedLimit("largest opening", "travel", "with a larger opening"),
     belongs_to="jaws",
 )
 JAW_WIDTH = ToolkitField(
@@ -168,7 +168,7 @@ JAW_WIDTH = ToolkitField(
     (PageLabel("Width of the jaws", "endless"),),
     figure="width of the jaws",
     unset="endless",
-    lifted=Lifted("width of the jaws", "reach", "with a flat jaw as wide as the part"),
+    lifted=LiftedLimit("width of the jaws", "reach", "with a flat jaw as wide as the part"),
     belongs_to="flat jaw",
     entry="write the width of the jaws as a number",
 )
@@ -216,7 +216,7 @@ TRAVEL = ToolkitField(
     (PageLabel("Stroke", "any"),),
     figure="from the clamp's hole to its tip",
     unset="any",
-    lifted=Lifted("stroke of the clamp", "travel", "with a clamp of any stroke"),
+    lifted=LiftedLimit("stroke of the clamp", "travel", "with a clamp of any stroke"),
     entry="write the least and the most from the clamp's hole to its tip, such as [10, 35]",
     least="0",
     belongs_to="clamp beside its jaws",
@@ -257,9 +257,13 @@ WALL_OFFSET = ToolkitField(
 
 
 def make_heights_field(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
-    """Return the field of the heights between which what stands on a carrier touches.
+    """Return the field ``<carrier>_heights``, the heights between which what stands on a carrier touches.
 
-    ``whose`` is what it is the height of, such as "the clamp's tip".
+    Parameters
+    ----------
+    carrier : first part of the field's name, such as "clamp".
+    whose : words for what has these heights, such as "the clamp's tip".
+    belongs_to : the part of a toolkit that the field describes.
     """
     return ToolkitField(
         f"{carrier}_heights",
@@ -504,7 +508,7 @@ ON_A_PLATE = (
     COLUMNS.relabel(
         PageLabel("Columns", "as needed", is_usual=True),
         default=None,
-        lifted=Lifted("columns of holes", "holes", "with as many columns as needed"),
+        lifted=LiftedLimit("columns of holes", "holes", "with as many columns as needed"),
     ),
     ROWS.relabel(PageLabel("Rows", "as needed", is_usual=True)),
     PEG_RADIUS.relabel(PageLabel("Locator radius", is_usual=True)),

@@ -21,10 +21,18 @@ from workhold.fixels.making import (
     settle,
     suggest_half_pitch,
 )
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Limit, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import (
+    Arrangement,
+    Carrier,
+    Toolkit,
+    ToolkitChange,
+    ToolkitLimit,
+    ToolkitWording,
+    Travel,
+)
 from workhold.units import Unit
 
 __all__ = ["FlatJaw"]
@@ -95,7 +103,7 @@ class FlatJaw(Toolkit):
     locked = "a screw vise, its jaw"
     law = "fence"
     arrangements = (Arrangement("flat", (2, 2)),)
-    wording = Wording(
+    wording = ToolkitWording(
         two="two pegs",
         four="flat jaw and two pegs",
         inside="in this vise",
@@ -138,7 +146,7 @@ class FlatJaw(Toolkit):
     min_gap: float
     max_opening: float | None
     jaw_width: float | None
-    flat: Flat | None
+    flat: PegFlat | None
     jaw_heights: Heights | None
     wall_heights: Heights | None
 
@@ -154,7 +162,7 @@ class FlatJaw(Toolkit):
             max_opening: float | None = None,
             jaw_width: float | None = None,
             *,
-            flat: float | Iterable[float] | Flat | None = None,
+            flat: float | Iterable[float] | PegFlat | None = None,
             jaw_heights: Iterable[float] | None = None,
             wall_heights: Iterable[float] | None = None,
             supports: Any = None,
@@ -172,31 +180,35 @@ class FlatJaw(Toolkit):
             )
 
     @property
-    def limits(self) -> tuple[Limit, ...]:
-        """The limits of its fields; as many columns as needed leave no jaw to have a width."""
+    def limits(self) -> tuple[ToolkitLimit, ...]:
+        """Limits that could be lifted; lifting the number of
+        columns also lifts the jaw width, which depends on it.
+        """
         found = super().limits
         if self.jaw_width is None:
             return found
         words = "with as many columns as needed, and a flat jaw as wide"
         free = {fields.COLUMNS.name: None, fields.JAW_WIDTH.name: None}
         return tuple(
-            evolve(limit, lifted=Change(words, free)) if fields.COLUMNS.name in limit.lifted.fields else limit
+            evolve(limit, lifted=ToolkitChange(words, free))
+            if fields.COLUMNS.name in limit.lifted.fields
+            else limit
             for limit in found
         )
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The flat jaw, and the jaw that moves, whose travel is the jaw separation."""
+        """Flat jaw, and the jaw that moves, whose travel is the jaw separation."""
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
         jaw = make_lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
         return make_wall_carrier(self, "flat jaw", self.jaw_width), jaw
 
     @property
     def datum(self) -> Datum:
-        """Where column A meets the flat jaw; rows move with their jaw."""
+        """Origin of places: the point at which column A meets the flat jaw; rows move with their jaw."""
         wall, jaw = self.carriers
         return Datum.from_wall(wall, jaw)
 
-    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Yield half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
+        """Yield half the pitch as a change to try, where pegs are thin enough."""
         yield from suggest_half_pitch(self)

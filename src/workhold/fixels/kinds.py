@@ -1,4 +1,4 @@
-"""The kinds of toolkits there are, by the names that files and users give them."""
+"""The kinds of toolkits, by the names that files and users give them."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ KINDS: Mapping[str, type[Toolkit]] = {
 }
 # The fields of each kind; kinds that differ in no field share a table.
 TABLES: Mapping[str, FieldTable] = {name: kind.table for name, kind in KINDS.items()}
-# The kind that is meant where nobody says.
+# The default kind.
 USUAL = Vise.kind
-# Other names, each with its kind and the fields that it says.
+# Other names, each with its kind and the fields that it sets.
 ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "gripper": (Vise.kind, {"columns": 1}),
     "plate": (Plate.kind, {}),
@@ -45,7 +45,7 @@ ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
 }
 
 
-# The kinds of the page by name, in its order, and an alias that says some fields.
+# The kinds on the page by name, in its order, with an alias that sets some fields.
 PAGES: Mapping[str, PageWords] = {
     **{one.kind: one.page for one in (Plate, Fence, Vise, OpeningVise, FlatJaw, PlainVise, StrapPlate)},
     "gripper": PageWords("Gripper, one column a jaw", "Close gripper", {**Vise.page.start, "columns": 1}),
@@ -53,7 +53,7 @@ PAGES: Mapping[str, PageWords] = {
 
 
 def resolve_kind(name: str) -> tuple[str, Mapping[str, Any]]:
-    """Return the kind of a name or an alias, and the fields that the alias says.
+    """Return the kind that a name or an alias stands for, and the fields that the alias sets.
 
     Raises
     ------
@@ -73,30 +73,29 @@ def resolve_kind(name: str) -> tuple[str, Mapping[str, Any]]:
 
 
 def find_table(kind: object) -> FieldTable:
-    """Return the table of a kind; for an unknown kind, or an alias that is not resolved, the table of the
-    usual kind.
+    """Return the table of fields of a kind by name; for any
+    other value, aliases too, the table of the usual kind.
     """
     return TABLES.get(str(kind), TABLES[USUAL])
 
 
 def find_owner(row: ToolkitField) -> FieldTable:
-    """Return the first table that has a field of this name."""
+    """Return the first table, in the order of kinds, that has a field of this name."""
     return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))
 
 
 def make_toolkit(kind: str, fields: Mapping[str, Any]) -> Toolkit:
-    """Return a toolkit of a kind.
+    """Return a toolkit of a kind with the given fields.
 
     Parameters
     ----------
-    kind : its name, or an alias.
-    fields : keyword arguments of its class.
+    kind : name or alias of the kind.
+    fields : keyword arguments of its class; they override those of an alias.
 
     Raises
     ------
     InputError
-        For a kind that is not known, fields that it does not have or that are missing, and values of which
-        there is none.
+        For an unknown kind, unknown or missing fields, and invalid values.
 
     Examples
     --------

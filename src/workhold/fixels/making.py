@@ -1,8 +1,7 @@
-"""Constructors of toolkits, made from their tables of fields, and what every constructor refuses.
+"""Constructors of toolkits, made from their tables of fields, with the checks of every constructor.
 
-A kind names its fields by annotations alone. What each takes, what stands for nothing given, what it must be
-at least and which limit it sets are in its row of ``fixels.fields``. Lattices of holes are held to the same
-limits in every kind.
+A kind names its fields by annotations alone. The form, default, minimum and limit of each are in its row of
+``fixels.fields``. The same checks apply to lattices of holes of every kind.
 """
 
 from __future__ import annotations
@@ -17,13 +16,13 @@ from attrs import NOTHING, evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import WALL, Carrier, Holes, parse_hole_name
+from workhold.fixels.carrier import WALL, Carrier, HoleSelection, parse_hole_name
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import PITCH
 from workhold.fixels.pegs import convert_flat, resolve_flat
 from workhold.fixels.support_hardware import HARDWARE, convert_hardware
 from workhold.fixels.table import SILENT, ToolkitField
-from workhold.fixels.toolkit import Change, Toolkit
+from workhold.fixels.toolkit import Toolkit, ToolkitChange
 from workhold.limits import MOST_BLOCKED, MOST_HOLES, MOST_LENGTHS, convert_real, refuse_long, refuse_strong
 
 __all__ = [
@@ -41,7 +40,13 @@ __all__ = [
 
 
 def convert_pitch(value: Any) -> tuple[float, float]:
-    """Return one pitch for both directions, or one for x and one for y."""
+    """Return a pitch as (x, y) floats, from one number for both or from two.
+
+    Raises
+    ------
+    InputError
+        For another number of values, and for what is no number.
+    """
     numbers = tuple(value) if isinstance(value, Iterable) and not isinstance(value, str) else (value, value)
     if len(numbers) != 2:
         raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
@@ -49,7 +54,9 @@ def convert_pitch(value: Any) -> tuple[float, float]:
 
 
 def convert_whole_number(value: Any, name: str = "a count") -> Any:
-    """Return a whole number as an int; None and other numbers as they are, to be looked at later."""
+    """Return a number that is an integer as int; any other number, and None, unchanged, to be checked
+    later.
+    """
     return (
         int(value)
         if value is not None and isfinite(convert_real(value, name)) and value == int(value)
@@ -58,16 +65,18 @@ def convert_whole_number(value: Any, name: str = "a count") -> Any:
 
 
 def convert_optional_length(value: float | None, name: str = "a length") -> float:
-    """Return a length, or NaN (which the vise resolves) for None."""
+    """Return a length as float; NaN for None, to be replaced
+    later by the default, and inf for NaN, to be refused later.
+    """
     return nan if value is None else inf if isnan(convert_real(value, name)) else convert_real(value)
 
 
 def refuse_lattice(
     pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
 ) -> None:
-    """Refuse an impossible lattice, and pegs too thick for neighbouring holes.
+    """Raise InputError for an invalid pitch or count or radius, or pegs too thick for neighbouring holes.
 
-    ``noun`` and ``peg`` are what the lattice and what stands in its holes are called.
+    ``noun`` and ``peg`` name the lattice's carrier and its pegs in messages.
     """
     for value in pitch:
         if not (isfinite(value) and value > 0):
@@ -87,7 +96,7 @@ def refuse_lattice(
 
 
 def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
-    """Refuse more holes than can be looked through."""
+    """Raise InputError for more than ``MOST_HOLES`` holes; None counts as one."""
     holes = (columns or 1) * (rows or 1)
     if holes > MOST_HOLES:
         raise InputError(
@@ -98,7 +107,7 @@ def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
 
 Kind = TypeVar("Kind", bound=type[Toolkit])
 
-# What the bounds of a length are called, by the least that it may be.
+# The error message for a length, by its smallest value.
 BOUNDS = {
     "above 0": "is not a positive length: give it in mm",
     "0": "is not a length: give 0 or more, in mm",
@@ -107,7 +116,7 @@ BOUNDS = {
 
 
 def make_class_from_table(kind: Kind) -> Kind:
-    """Make a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
+    """Return the class of a kind made a frozen attrs class, with attributes as its table of fields says.
 
     Raises KeyError for an annotation without a row.
     """
@@ -124,14 +133,16 @@ def make_class_from_table(kind: Kind) -> Kind:
 
 
 def make_field_attribute(row: ToolkitField, *, inherits: bool) -> Any:
-    """Return the attribute of a field; what is needed beside inherited fields is given by name alone."""
+    """Return the attrs attribute of a field; of classes that inherit fields it is keyword-only."""
     by_name = row.form in SILENT or inherits
     default = NOTHING if row.is_required else row.default
     return field(default=default, converter=choose_converter(row), kw_only=by_name)
 
 
 def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
-    """Return the converter of a field's values; values that cannot be are refused when all are known."""
+    """Return the converter of a field's values by its form;
+    it leaves values to be refused later where others decide.
+    """
     match row.form:
         case "length" if row.follows:
             return partial(convert_optional_length, name=row.words)
@@ -154,13 +165,18 @@ def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
             return CONVERTERS[form]
 
 
-def convert_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: str) -> tuple[Holes, ...]:
-    """Return holes as a tuple, where they may be given by name."""
+def convert_holes(
+    holes: Iterable[HoleSelection | str], *, carriers: tuple[str, ...], noun: str
+) -> tuple[HoleSelection, ...]:
+    """Return holes as a tuple of selections; names are parsed."""
     return tuple(parse_hole_name(one, carriers, noun) if isinstance(one, str) else one for one in holes)
 
 
 def convert_two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, float] | None:
-    """Return two lengths, or None; refuse anything else with ``wrong``, where "{value}" stands for it."""
+    """Return two lengths as floats, or None for None.
+
+    Raises InputError with the message ``wrong``, "{value}" replaced, for anything but two numbers.
+    """
     if value is None:
         return None
     numbers = tuple(value) if isinstance(value, Iterable) else (value,)
@@ -170,9 +186,9 @@ def convert_two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[f
 
 
 def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
-    """Return directions, or pairs of them, in the order of ``DIRECTIONS``; none for None.
+    """Return directions of a clamp, or pairs of them, in the order of ``DIRECTIONS``; empty for None.
 
-    Refuses anything else.
+    Raises InputError for anything else.
     """
     if value is None:
         return ()
@@ -196,7 +212,7 @@ def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
 
 
 def refuse_direction(name: Any) -> None:
-    """Refuse what is no direction of a clamp."""
+    """Raise InputError for what is no key of ``DIRECTIONS``."""
     if not isinstance(name, str) or name not in DIRECTIONS:
         raise InputError(
             f"a clamp cannot move in the direction {name!r}: choose among {', '.join(DIRECTIONS)}."
@@ -204,7 +220,9 @@ def refuse_direction(name: Any) -> None:
 
 
 def convert_lengths(value: float | Iterable[float] | None) -> tuple[float, ...]:
-    """Return lengths, each once, by size; none for None."""
+    """Return lengths as floats without repetitions, ascending;
+    empty for None. One number counts as one length.
+    """
     given = () if value is None else value if isinstance(value, Iterable) else (value,)
     return tuple(sorted({convert_real(one, "a length") for one in given}))
 
@@ -227,10 +245,10 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
 
 
 def settle(toolkit: Any, *, noun: str, peg: str) -> None:
-    """Put in what follows from other fields, and refuse values that cannot be.
+    """Fill in the toolkit's values that follow from other
+    fields, in place, and raise InputError for invalid values.
 
-    The toolkit's fields are converted; values that follow from others are put into it. ``noun`` and ``peg``
-    are what a lattice of it and what stands in its holes are called.
+    ``noun`` and ``peg`` name a lattice's carrier and its pegs in messages.
     """
     rows = toolkit.table.fields
     for row in rows:
@@ -249,13 +267,18 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
 
 
 def refuse_all_out_of_bounds(toolkit: Any) -> None:
-    """Refuse values of any field that are below what they must be at least, or too large to reckon with."""
+    """Raise InputError for values of any field below their minimum, or too large to compute with.
+
+    The flat of pegs is resolved in place.
+    """
     for row in toolkit.table.fields:
         refuse_out_of_bounds(toolkit, row)
 
 
 def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
-    """Refuse a value below what it must be at least, or too large to reckon with."""
+    """Raise InputError for a value of one field below its
+    minimum, or too large; resolve the flat of pegs in place.
+    """
     value = getattr(toolkit, row.name)
     match row.form:
         case "length" if value is not None:
@@ -299,7 +322,9 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
 
 
 def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
-    """Refuse blocked holes that there are not, too many of them, and a carrier without a free hole."""
+    """Raise InputError for blocked holes that do not exist,
+    too many of them, or a carrier with every column blocked.
+    """
     blocked, columns, rows, noun = getattr(toolkit, row.name), toolkit.columns, toolkit.rows, row.carrier_noun
     if len(blocked) > MOST_BLOCKED:
         raise InputError(
@@ -322,7 +347,7 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
 def make_lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
     """Return a carrier with the pitch, counts of holes, peg radius, flat and blocked holes of a toolkit.
 
-    ``others`` is what else it has, or has instead.
+    ``others`` are further or different attributes.
     """
     size = toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, toolkit.peg_radius
     rows = (row for row in toolkit.table.fields if row.form == "holes")
@@ -331,14 +356,18 @@ def make_lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
 
 
 def make_wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Carrier:
-    """Return the straight wall of a toolkit, along x at y = 0; its width in mm is None where it is endless."""
+    """Return the straight wall of a toolkit, along x at y = 0; ``width`` in mm is None for an endless one."""
     size, heights = (toolkit.pitch, toolkit.columns, toolkit.rows), toolkit.wall_heights
     return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True, heights=heights, width=width)
 
 
-def suggest_half_pitch(toolkit: Any) -> Iterator[Change]:
-    """Yield half the pitch as a change to try, where pegs are thin enough; every hole stays where it is."""
+def suggest_half_pitch(toolkit: Any) -> Iterator[ToolkitChange]:
+    """Yield half the pitch as a change to try, where pegs are
+    thin enough; counts are such that all old holes remain.
+    """
     if min(toolkit.pitch) >= 4 * toolkit.peg_radius:
         counts = {name: getattr(toolkit, name) for name in ("columns", "rows")}
         more = {name: 2 * count - 1 for name, count in counts.items() if count is not None}
-        yield Change("with half the pitch", {PITCH.name: tuple(one / 2 for one in toolkit.pitch), **more})
+        yield ToolkitChange(
+            "with half the pitch", {PITCH.name: tuple(one / 2 for one in toolkit.pitch), **more}
+        )

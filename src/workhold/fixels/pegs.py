@@ -1,9 +1,9 @@
 """Pegs: round, or with a flat, and their outlines.
 
-Pegs in holes are round, or have a flat, which lies on straight faces (Wallack and Canny 1996, section
-2.3). Such a peg is turned in its hole so that its flat lies on the face: there its centre stands nearer to
-the part than its radius. On arcs it touches with its round side. Where its body may be turned any way, it
-must be clear of all else.
+Pegs in holes are round, or have a flat for straight faces (Wallack and Canny 1996, section 2.3). Such a peg
+is turned in its hole so that its flat lies on the face; its centre is then nearer to the part than its
+radius. It touches arcs with its round side. Its body must be clear of everything else, whichever way it is
+turned.
 """
 
 from __future__ import annotations
@@ -18,38 +18,41 @@ from workhold.errors import InputError
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.limits import convert_real
 
-__all__ = ["Flat", "convert_flat", "make_peg_outline", "resolve_flat", "compute_standoff"]
+__all__ = ["PegFlat", "convert_flat", "make_peg_outline", "resolve_flat", "compute_standoff"]
 
 # Parts of the peg radius; a width that was rounded when it was written down is one still.
 ROUNDED = 1e-6
 
 
 @frozen
-class Flat:
+class PegFlat:
     """The flat of a peg.
 
     Parameters
     ----------
-    distance : from the peg's centre to its flat, in mm; no more than the peg radius.
-    half_width : of the flat in mm; NaN means all that there is at this distance.
+    distance : from the peg's centre to its flat, in mm; at most the peg radius.
+    half_width : of the flat in mm; NaN for the full chord at this distance.
     """
 
     distance: float = field(converter=convert_real)
     half_width: float = field(default=nan, converter=convert_real)
 
 
-def convert_flat(value: Any) -> Flat | None:
-    """Return a flat from what stands for it: its distance, that and half its width, or a mapping of both.
+def convert_flat(value: Any) -> PegFlat | None:
+    """Return a flat from its distance, a pair (distance, half
+    width), or a mapping of both; None and flats unchanged.
+
+    Raises InputError for anything else.
 
     Examples
     --------
     >>> convert_flat({"distance": 2.0, "half_width": 1.5}) == convert_flat((2.0, 1.5))
     True
     """
-    if value is None or isinstance(value, Flat):
+    if value is None or isinstance(value, PegFlat):
         return value
     if isinstance(value, Mapping) and "distance" in value and set(value) <= {"distance", "half_width"}:
-        return Flat(**value)
+        return PegFlat(**value)
     numbers = (
         tuple(value) if isinstance(value, Iterable) and not isinstance(value, (str, Mapping)) else (value,)
     )
@@ -57,11 +60,14 @@ def convert_flat(value: Any) -> Flat | None:
         raise InputError(
             f"flat {value!r} cannot be used: give its distance from the peg's centre, and half its width, in mm."
         )
-    return Flat(*numbers)
+    return PegFlat(*numbers)
 
 
-def resolve_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
-    """Return a flat on a peg of a radius in mm, as wide as it is; refuse one that such a peg cannot have."""
+def resolve_flat(flat: PegFlat | None, peg_radius: float) -> PegFlat | None:
+    """Return a flat with its half width known, for a peg of a radius in mm; None for None.
+
+    Raises InputError for a flat that such a peg cannot have.
+    """
     if flat is None:
         return None
     if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):
@@ -81,17 +87,20 @@ def resolve_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
     return evolve(flat, half_width=half_width)
 
 
-def compute_standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
-    """Return the distance in mm from a face to the centre of a peg that touches it."""
+def compute_standoff(peg_radius: float, flat: PegFlat | None, face: Segment) -> float:
+    """Return the distance in mm from a face to the centre of
+    a peg that touches it: on lines that of the flat, if any.
+    """
     return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
 
 
 def make_peg_outline(
-    center: Point, radius: float, flat: Flat | None = None, flat_deg: float | None = None
+    center: Point, radius: float, flat: PegFlat | None = None, flat_deg: float | None = None
 ) -> list[Segment]:
-    """Return the outline of a peg in mm, counter-clockwise: a circle, cut off by the flat if there is one.
+    """Return the outline of a peg in mm, counter-clockwise:
+    a full circle, or an arc and the line of its flat.
 
-    The flat looks in the direction ``flat_deg`` in degrees.
+    ``flat_deg`` is the direction in degrees in which the flat faces; None for a circle.
     """
     if flat is None or flat_deg is None or flat.distance >= radius:
         return [Arc(center, radius, 0.0, pi, 1.0)]

@@ -14,7 +14,7 @@ from workhold.fixels.jaw_pair import JawPair
 from workhold.fixels.making import make_class_from_table, refuse_all_out_of_bounds
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import REQUIRED, FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import Arrangement, Toolkit, ToolkitChange, ToolkitWording, Travel
 from workhold.units import Unit
 
 __all__ = ["PlainVise"]
@@ -37,9 +37,9 @@ class PlainVise(Toolkit):
     stop : "left", "right" or "both", the ends of the jaws at which the work stop is; None without one.
     stop_offset : how far inward from the end of the jaws the stop touches the part, in mm.
     least_grip : the least height in mm that both jaws must grip.
-    max_force : what the vise is rated for, in N; None where nobody says.
+    max_force : what the vise is rated for, in N; None where not known.
     jaw_thickness : how thick the jaws are, for the tools of a program, in mm; None for any thickness.
-    screw_lead : how far a turn of the screw moves the jaw, in mm; None where nobody says.
+    screw_lead : how far a turn of the screw moves the jaw, in mm; None where not known.
     supports, top_clamp, pins : as of every toolkit; flat jaws need none of them.
     tolerance : of pegs, which there are none of.
 
@@ -85,7 +85,7 @@ class PlainVise(Toolkit):
     locked = "a screw vise, its jaw"
     law = "fence"
     arrangements = (Arrangement("plain", (0, 0)),)
-    wording = Wording(
+    wording = ToolkitWording(
         two="flat jaws",
         four="two flat jaws",
         inside="in this vise",
@@ -165,6 +165,7 @@ class PlainVise(Toolkit):
 
     @cached_property
     def flat_jaws(self) -> JawPair:
+        """Two flat jaws with the vise's figures."""
         return JawPair(
             width=self.jaw_width,
             height=self.jaw_height,
@@ -180,7 +181,7 @@ class PlainVise(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The fixed jaw, and the one that moves."""
+        """Fixed jaw, and the jaw that moves."""
         travel = Travel(pi / 2, 0.0, getattr(self, fields.MAX_OPENING.name))
         size = (1.0, 1.0), None, None, 0.0, 0.0
         fixed = Carrier("fixed jaw", *size, noun="jaw", width=self.jaw_width, is_jaw=True)
@@ -190,14 +191,18 @@ class PlainVise(Toolkit):
 
     @property
     def heights(self) -> dict[str, Heights]:
-        """The heights up to which the jaws reach, above the part's lower side, for each height of parallels."""
+        """Heights (0, top) in mm above the part's lower side that the
+        jaws reach over, by outline role, for each of the parallels.
+
+        Unlimited heights are left out.
+        """
         jaws = self.flat_jaws
         tops = {one: jaws.compute_top(one) for one in jaws.parallels}
         return {jaws.name_outline_role(one): (0.0, top) for one, top in tops.items() if 0.0 < top < inf}
 
     @property
     def datum(self) -> Datum:
-        """The left end of the fixed jaw's face, on top of the parallels."""
+        """Origin of places: the left end of the fixed jaw's face, on top of the parallels."""
         name = "the left end of the fixed jaw"
         return Datum(
             name=name,
@@ -213,13 +218,17 @@ class PlainVise(Toolkit):
 
     @property
     def is_in_inches(self) -> bool:
-        """Whether its jaws are eighths of an inch wide, and not whole or half millimetres."""
+        """Whether the jaw width is a multiple of an eighth of an inch, and not of half a millimetre."""
         eighths, halves = self.jaw_width / 3.175, self.jaw_width / 0.5
         return abs(eighths - round(eighths)) < 1e-9 < abs(halves - round(halves))
 
-    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Yield the part on the bed, and lower parallels."""
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
+        """Yield changes to try: the part on the bed, and parallels
+        half as high as the lowest; none without parallels.
+        """
         if self.parallels:
-            yield Change("without parallels, on the bed", {fields.PARALLELS.name: ()})
+            yield ToolkitChange("without parallels, on the bed", {fields.PARALLELS.name: ()})
             lower = min(self.parallels) / 2
-            yield Change(f"on parallels of {unit.format_length(lower)}", {fields.PARALLELS.name: (lower,)})
+            yield ToolkitChange(
+                f"on parallels of {unit.format_length(lower)}", {fields.PARALLELS.name: (lower,)}
+            )

@@ -17,10 +17,10 @@ from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle, suggest_half_pitch
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit, ToolkitChange, ToolkitWording, Travel
 from workhold.units import Unit
 
 __all__ = ["Plate"]
@@ -88,7 +88,7 @@ class Plate(Toolkit):
     # What fixtures with one clamp and with two are called, and the contacts that hold the part beside them.
     names = ("clamp", "clamp2")
     locating: ClassVar[tuple[int, ...]] = (3,)
-    wording = Wording(
+    wording = ToolkitWording(
         two="two locators",
         four="three locators and a clamp",
         inside="on this plate",
@@ -121,7 +121,7 @@ class Plate(Toolkit):
     travel: tuple[float, float] | None
     directions: tuple[Any, ...]
     clamps: int
-    flat: Flat | None
+    flat: PegFlat | None
     locator_heights: Heights | None
     clamp_heights: Heights | None
 
@@ -138,7 +138,7 @@ class Plate(Toolkit):
             directions: str | Iterable[str] | Iterable[tuple[str, str]] | None = None,
             clamps: int = 1,
             *,
-            flat: float | Iterable[float] | Flat | None = None,
+            flat: float | Iterable[float] | PegFlat | None = None,
             locator_heights: Iterable[float] | None = None,
             clamp_heights: Iterable[float] | None = None,
             supports: Any = None,
@@ -157,7 +157,8 @@ class Plate(Toolkit):
         return self.clamps == 2
 
     def list_asked_directions(self) -> tuple[Any, ...]:
-        """Return the directions, or pairs of them, that are meant.
+        """Return the directions, or with two clamps the pairs
+        of them, that the field means, with defaults filled in.
 
         Raises
         ------
@@ -175,7 +176,7 @@ class Plate(Toolkit):
 
     @property
     def usual_directions(self) -> tuple[Any, ...]:
-        """All directions, or pairs square to each other, that differ by more than a turn of the plate."""
+        """Default directions, or pairs square to each other: those that no turn of the plate makes equal."""
         holes = make_lattice_carrier(self, "plate")
         is_square = holes.pitch[0] == holes.pitch[1] and holes.columns == holes.rows
         every = (("-x", "-y"), ("-x", "+y")) if self.is_paired else ("-x", "-y")
@@ -183,7 +184,9 @@ class Plate(Toolkit):
 
     @property
     def pushes(self) -> tuple[tuple[str, ...], ...]:
-        """The directions of the clamps of one fixture, without those that half a turn makes of others."""
+        """Directions of the clamps of each arrangement, such
+        as (("-x",), ("-y",)), each once up to half a turn.
+        """
         kept: list[tuple[str, ...]] = []
         for push in self.asked_pushes:
             if not any(sorted(TURNED[name] for name in push) == sorted(other) for other in kept):
@@ -192,17 +195,17 @@ class Plate(Toolkit):
 
     @property
     def asked_pushes(self) -> tuple[tuple[str, ...], ...]:
-        """The directions of the clamps of one fixture, for each direction or pair of them."""
+        """Directions of the clamps for each direction or pair in ``directions``, as tuples."""
         return self.directions if self.is_paired else tuple((name,) for name in self.directions)
 
     @property
     def clamp_directions(self) -> tuple[str, ...]:
-        """The directions in which some clamp pushes."""
+        """Directions in which any clamp pushes, in the order of ``DIRECTIONS``."""
         return tuple(name for name in DIRECTIONS if any(name in push for push in self.pushes))
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """What locates the part and the clamps beside it, once for each way in which they push."""
+        """Arrangement for each of ``pushes``: the locating contacts, and the clamps beside them."""
         name, every = self.names[self.is_paired], self.clamp_directions
         return tuple(
             Arrangement(name, (*self.locating, *map(push.count, every)), " ".join(push))
@@ -211,11 +214,11 @@ class Plate(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The plate, and for each direction the clamp, whose travel grows as it opens."""
+        """Plate, and one clamp for each direction, whose travel grows as it opens."""
         return self.make_plate_and_clamps((0.0, 0.0))
 
     def make_plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
-        """Return the plate with its first hole at a place in mm, and the clamp of each direction."""
+        """Return the plate, with its first hole at ``offset`` in mm, and a clamp for each direction."""
         plate = make_lattice_carrier(
             self, "plate", offset=offset, noun="plate", peg="locator", heights=self.locator_heights
         )
@@ -240,37 +243,43 @@ class Plate(Toolkit):
 
     @property
     def ways(self) -> tuple[Plate, ...]:
-        """The plate with one clamp in one direction each time."""
+        """Toolkits with one clamp each, one for each direction."""
         return tuple(
-            self.changed({fields.CLAMPS.name: 1, fields.DIRECTION.name: (name,)})
+            self.with_fields({fields.CLAMPS.name: 1, fields.DIRECTION.name: (name,)})
             for name in self.clamp_directions
         )
 
     @property
     def law(self) -> str:  # type: ignore[override]
-        """The law of one clamp, or of two."""
+        """Key of the law of search time, for one clamp or for two."""
         return "two clamps" if self.is_paired else "plate"
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """The plate takes its own place, and each clamp that of the one that pushes the other way."""
+        """Index of the carrier whose place each takes after half
+        a turn: the plate its own, each clamp the opposite one's.
+
+        -1 where there is no opposite clamp.
+        """
         names = self.clamp_directions
         ahead = [TURNED[name] for name in names]
         return (0, *(1 + names.index(name) if name in names else -1 for name in ahead))
 
-    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Yield the clamp along rows and columns, and half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
+        """Yield changes to try: another number of clamps, more
+        directions, half the pitch; each only where it applies.
+        """
         if self.is_paired:
-            yield Change("with one clamp", {fields.CLAMPS.name: 1, fields.DIRECTION.name: None})
+            yield ToolkitChange("with one clamp", {fields.CLAMPS.name: 1, fields.DIRECTION.name: None})
             if len(self.pushes) == 1:
                 pairs = ("-x", "-y"), ("-x", "+y")
-                yield Change(
+                yield ToolkitChange(
                     "with the clamps along rows and columns either way", {fields.DIRECTION.name: pairs}
                 )
         if not self.is_paired:
-            yield Change("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
+            yield ToolkitChange("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
             if len(self.pushes) == 1:
-                yield Change(
+                yield ToolkitChange(
                     "with the clamp along the columns as well", {fields.DIRECTION.name: ("-x", "-y")}
                 )
         yield from suggest_half_pitch(self)

@@ -1,6 +1,7 @@
-"""What setting up a toolkit is called on sheets, pictures and pages, and where its places are measured from.
+"""Texts for setting up a toolkit on sheets, pictures and pages, and the origin of its places.
 
-Each kind of toolkit gives its words; drawings and tables put them beside its numbers and know of no kind.
+Each kind of toolkit has its own texts; drawings and tables combine them with its numbers and do not depend on
+the kind.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ __all__ = ["Datum", "PageWords", "SetupWords"]
 
 @frozen
 class SetupWords:
-    """The words of a kind of toolkit.
+    """Texts on setting up a kind of toolkit.
 
-    Words in braces stand for what a fixture has. ``{holes}`` are the holes of its pegs and ``{count}`` their
-    number. ``{peg}`` and ``{plate}`` are the nouns of the pegs and the plate. ``{edge}`` is the distance of
-    row 1 from the datum.
+    Words in braces are placeholders: ``{holes}`` for the holes of the pegs and ``{count}`` for their number,
+    ``{peg}`` and ``{plate}`` for the nouns of pegs and plate, ``{edge}`` for the distance of row 1 from the
+    datum.
 
     Parameters
     ----------
     standing : heading of the places of the pegs, such as "Locators".
-    put : the first thing to do, a sentence.
+    put : the first step, a sentence.
     touching : how the part lies where it is held, in two words.
     located_by : what a clamp pushes the part against, such as "Three locators".
     against : where the part lies before a clamp pushes it.
-    resting : the same of a seat that looks like a fixture.
+    resting : where the part lies in a false seat that looks like the right one.
     """
 
     standing: str
@@ -43,13 +44,13 @@ class SetupWords:
 
 @frozen
 class PageWords:
-    """What the page calls a kind of toolkit, and what it begins with.
+    """Texts and defaults of a kind of toolkit on the page.
 
     Parameters
     ----------
     title : in a few words, to choose it by.
-    closes : what the button says that shows how it closes.
-    start : fields to begin with, in mm, where nobody has given any.
+    closes : label of the button that animates its closing.
+    start : initial values of fields, in mm.
     """
 
     title: str
@@ -59,20 +60,20 @@ class PageWords:
 
 @frozen
 class Datum:
-    """Where zero lies, and what places are measured from.
+    """The origin of places, and its names.
 
     Parameters
     ----------
     name : the zero point in short, such as "A1".
-    point : the same in words, such as "the centre of hole A1".
-    full : the same with what the hole is in, such as "the plate's hole A1".
-    mark : what stands beside it on a plan.
+    point : in words, such as "the centre of hole A1".
+    full : in words with the carrier, such as "the plate's hole A1".
+    mark : label beside it on a plan.
     x, y : what x and y are measured from, such as "hole A1".
-    lines : the column and the row, or what stands for a row, of the zero point.
+    lines : the column and the row (or what replaces a row) of the zero point.
     rows_from : where rows are counted from, such as "below".
-    substitute : what takes the place of the datum where all of a set-up is moved.
-    edge : distance in mm from what stands for a row to the centres of row 1; None where nothing does, or the
-        plate slides.
+    substitute : what replaces the datum where the whole set-up is moved.
+    edge : distance in mm from the wall to the centres of row 1; None without a wall, or where the plate
+        slides.
     """
 
     name: str
@@ -88,6 +89,7 @@ class Datum:
 
     @classmethod
     def from_hole(cls, plate: Carrier) -> Datum:
+        """Return the datum at hole A1 of a plate."""
         name, hole = make_hole_name(plate.name, 0, 0), f"hole {make_hole_name(plate.name, 0, 0)}"
         return cls(
             name=name,
@@ -103,7 +105,7 @@ class Datum:
 
     @classmethod
     def from_wall(cls, wall: Carrier, plate: Carrier) -> Datum:
-        """Return where the first column of a plate meets a wall, whose line counts as a row."""
+        """Return the datum at which the first column of a plate meets a wall."""
         letter, line = make_column_letters(0), f"the {wall.noun}"
         name = f"column {letter} at {line}"
         return cls(
@@ -121,21 +123,21 @@ class Datum:
 
     @property
     def is_hole(self) -> bool:
-        """Whether x and y are measured from one hole."""
+        """Whether x and y are both measured from one hole."""
         return self.x == self.y
 
     @property
     def fixes_rows(self) -> bool:
-        """Whether rows have their places, so that a set-up can be moved along them only."""
+        """Whether rows are fixed, by a wall, so that a set-up can be moved along them only."""
         return not self.is_hole
 
     @property
     def start(self) -> str:
-        """What x and y are measured from, in one phrase."""
+        """Phrase for what x and y are measured from."""
         return self.x if self.is_hole else f"{self.x} and {self.y}"
 
     def describe_peg_centres(self, pegs: str) -> str:
-        """Return what x and y of pegs of a name are, a sentence."""
+        """Return a sentence on what x and y in a table of pegs are; ``pegs`` names them."""
         if self.is_hole:
             return f"x, y: {pegs} centre, from {self.point}."
         return f"x from {self.x}, y from {self.y}, to centres."

@@ -19,7 +19,7 @@ from workhold.fixels.making import make_class_from_table, make_lattice_carrier, 
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.strap_set import StrapSet
 from workhold.fixels.table import FieldTable, PageLabel
-from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Wording
+from workhold.fixels.toolkit import Arrangement, Toolkit, ToolkitChange, ToolkitWording
 from workhold.units import Unit
 
 __all__ = ["StrapPlate"]
@@ -92,7 +92,7 @@ class StrapPlate(Toolkit):
     locked = "a strap with its nut,"
     law = "plate"
     arrangements = (Arrangement("strapped", (3,)),)
-    wording = Wording(
+    wording = ToolkitWording(
         two="two locators",
         four="three locators",
         inside="on this plate",
@@ -251,7 +251,7 @@ class StrapPlate(Toolkit):
         twice = [2 * offset / own for offset, own in zip(self.bolt_offset, self.bolt_pitch, strict=True)]
         return (0,) if all(abs(one - round(one)) <= ROUNDING for one in twice) else None
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
         """A finer lattice."""
         if self.bolt_pitch is None:
             yield from suggest_half_pitch(self)

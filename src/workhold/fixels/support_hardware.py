@@ -1,7 +1,7 @@
-"""Supports, a clamp on top and limits of pins that an owner of a toolkit has: what is usual there.
+"""An owner's hardware beside a toolkit: supports, a clamp on top and limits of pins.
 
-Every kind of toolkit may have all of them. Each figure is a row, of which files, requests and the constructors are
-made; one that is not given is None and stays the usual one. Files say nothing of a toolkit without them.
+Every kind of toolkit may have all of them. Each figure is a row of a table, from which files, requests and
+constructors are made; None stands for the usual value. Files leave out hardware that a toolkit does not have.
 """
 
 from __future__ import annotations
@@ -45,6 +45,16 @@ SUPPORTS_SECTION, CLAMP_SECTION = "Supports", "The clamp on top"
 def make_length_field(
     name: str, least: Any, figure: str, label: str, typed: str = "", section: str | None = None
 ) -> ToolkitField:
+    """Return a field of hardware for a length.
+
+    Parameters
+    ----------
+    least : smallest value, see ``ToolkitField``.
+    figure : name of the figure in texts; also the help.
+    label : label on the page.
+    typed : help of the command's option; empty for no option.
+    section : of the command's help.
+    """
     labels, help = (PageLabel(label, USUAL),), f"{figure[:1].upper()}{figure[1:]}."
     return ToolkitField(
         name, "length", help, labels, least=least, figure=figure, typed=typed, section=section
@@ -52,7 +62,7 @@ def make_length_field(
 
 
 def convert_rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
-    """Return the rings as tuples of numbers, or None."""
+    """Return rings as a tuple of tuples of floats; None for None."""
     return None if values is None else tuple(tuple(convert_real(one) for one in ring) for ring in values)
 
 
@@ -151,7 +161,7 @@ LIMITS = FieldTable(
 
 
 def refuse_wrong(hardware: Hardware) -> None:
-    """Refuse lengths that cannot be."""
+    """Raise InputError for lengths and rings of hardware that cannot be used."""
     for row in hardware.table.fields:
         value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
         if row.form in ("length", "stress") and value is not None:
@@ -172,18 +182,18 @@ def refuse_wrong(hardware: Hardware) -> None:
 
 @frozen(kw_only=True)
 class SupportPads:
-    """The supports that there are; lengths in mm, None for the usual one.
+    """An owner's supports; lengths in mm, None for the usual one.
 
     Parameters
     ----------
     pad_radius : of the round pads.
-    pad_margin : smallest distance from a pad to the border of the face it supports.
+    pad_margin : smallest distance from a pad to the border of the face that it supports.
     height : of the supports above the plates.
 
     Raises
     ------
     InputError
-        For lengths that cannot be.
+        For invalid lengths.
 
     Examples
     --------
@@ -203,20 +213,20 @@ class SupportPads:
 
 @frozen(kw_only=True)
 class TopClamp:
-    """The clamp that presses from above; lengths in mm, None for the usual one.
+    """An owner's clamp that presses from above; lengths in mm, None for the usual one.
 
     Parameters
     ----------
     tip_radius : of its round tip.
     inside : smallest distance from its tip's centre to each side of the supports' triangle.
-    reach : rings (x, y, least, most) in the toolkit's frame in which its tip can stand; anywhere if None.
+    reach : rings (x, y, least, most) in the toolkit's frame in which its tip can stand; None for anywhere.
     tip_margin : smallest distance of its tip from the border of the face on which it stands.
-    head_radius : within which nothing of the part rises above that face.
+    head_radius : radius within which nothing of the part may rise above that face.
 
     Raises
     ------
     InputError
-        For lengths and rings that cannot be.
+        For invalid lengths and rings.
     """
 
     table: ClassVar[FieldTable] = CLAMP
@@ -233,17 +243,18 @@ class TopClamp:
 
 @frozen(kw_only=True)
 class PinLimits:
-    """What pegs may bend before there is a warning; None for the usual limits (``conventions``).
+    """Limits of the bending of pegs above which there is a
+    warning; None for the usual limits (``conventions``).
 
     Parameters
     ----------
     stress_limit : largest bending stress in MPa.
-    movement_limit : farthest in mm that bending pegs may move a point of the part.
+    movement_limit : largest movement in mm of a point of the part by bending pegs.
 
     Raises
     ------
     InputError
-        For numbers that cannot be.
+        For invalid numbers.
     """
 
     table: ClassVar[FieldTable] = LIMITS
@@ -261,16 +272,16 @@ HARDWARE: Mapping[str, type[Hardware]] = {SUPPORTS: SupportPads, TOP_CLAMP: TopC
 
 
 def convert_hardware(name: str, value: Any) -> Hardware | None:
-    """Return the supports, the clamp or limits of pins from a mapping of their figures.
+    """Return the hardware of a toolkit's field from a mapping of its figures; None and hardware unchanged.
 
     Parameters
     ----------
-    name : of the toolkit's field.
+    name : of the toolkit's field: "supports", "top_clamp" or "pins".
 
     Raises
     ------
     InputError
-        For anything else, and figures that there are none of.
+        For any other value, and for unknown figures.
 
     Examples
     --------

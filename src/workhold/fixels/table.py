@@ -1,4 +1,4 @@
-"""What a field of a toolkit is to all who read, check, ask for and show it: a row of a table.
+"""The declaration of a toolkit's field, a row of a table, for all that read, check, ask for or show it.
 
 Glossary
 --------
@@ -23,7 +23,7 @@ __all__ = [
     "Choice",
     "FieldTable",
     "Form",
-    "Lifted",
+    "LiftedLimit",
     "PageLabel",
     "ToolkitField",
 ]
@@ -36,14 +36,14 @@ HEIGHTS_SECTION = "Heights other than the heights of all pegs"
 
 
 @frozen
-class Lifted:
-    """How a limit that a field sets is lifted.
+class LiftedLimit:
+    """How to lift a limit that a field sets.
 
     Parameters
     ----------
-    rule : what it asks, in a few words, such as "rows of holes".
-    bounds : whether it is about the pegs' bodies, the travel, or the holes there are.
-    words : the toolkit without it, in words that follow its name.
+    rule : what the limit requires, in a few words, such as "rows of holes".
+    bounds : what it limits: the pegs' bodies, the travel, how far a wall reaches, or the holes.
+    words : phrase for the toolkit without the limit.
     """
 
     rule: str
@@ -83,13 +83,15 @@ class ToolkitField(Declaration):
     at_least: str = field(default="", kw_only=True)
     below: str = field(default="", kw_only=True)
     allowed: tuple[int, ...] = field(default=(), kw_only=True)
-    lifted: Lifted | None = field(default=None, kw_only=True)
+    lifted: LiftedLimit | None = field(default=None, kw_only=True)
     carriers: tuple[str, ...] = field(default=(), kw_only=True)
     carrier_noun: str = field(default="", kw_only=True)
     section: str | None = field(default=TOOLKIT_SECTION, kw_only=True)
 
     def relabel(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
-        """Return the field of another kind of toolkit, with other labels on the page and further changes."""
+        """Return a copy of the field with other labels on the
+        page and further changes, for another kind of toolkit.
+        """
         return evolve(self, labels=labels, **changes)
 
 

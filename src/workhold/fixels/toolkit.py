@@ -1,8 +1,8 @@
-"""Toolkits: what holds the pegs, where they may stand, what moves, and when that clamps.
+"""Toolkits: carriers of pegs, the places where pegs may stand, what moves, and when that clamps.
 
-A toolkit is data plus the freedom it has. Whatever searches, proves, lists, draws and writes fixtures takes
-the data below from the toolkit and knows no vise. A further toolkit is a small module that fills the data in,
-such as ``fixels.vise``.
+A toolkit is data. Whatever searches, proves, lists, draws and writes fixtures takes the data below from the
+toolkit and does not depend on its kind. A new kind is a small module with these data, such as
+``fixels.vise``.
 
 Glossary
 --------
@@ -34,7 +34,16 @@ from workhold.fixels.support_hardware import PinLimits, SupportPads, TopClamp
 from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.units import Unit
 
-__all__ = ["Arrangement", "Carrier", "Change", "Limit", "Symmetry", "Toolkit", "Travel", "Wording"]
+__all__ = [
+    "Arrangement",
+    "Carrier",
+    "ToolkitChange",
+    "ToolkitLimit",
+    "Symmetry",
+    "Toolkit",
+    "Travel",
+    "ToolkitWording",
+]
 
 # The field whose change makes other pegs.
 PEG_RADIUS = "peg_radius"
@@ -45,21 +54,21 @@ LIFTED = ("bodies", "travel", "reach", "holes")
 
 
 @frozen
-class Wording:
-    """What a toolkit's things are called where it holds nothing.
+class ToolkitWording:
+    """Phrases for messages about a toolkit that holds nothing.
 
     Parameters
     ----------
-    two, four : the pegs of one carrier that no chord may part, and all pegs, such as "two pegs of one jaw".
+    two : the two pegs of a chord, such as "two pegs of one jaw".
+    four : all contacts, such as "four pegs of the two jaws".
     inside : where the part lies, such as "in this vise".
-    within : what a fixture must stand in, and with what asked of it, such as "the jaws as asked: with the
-        rows given".
+    within : what a fixture must fit, such as "the jaws as asked: with the rows given".
     rules : what four pegs that touch must still do, such as "keeps the smallest gap, closes and clamps".
-    backwards : when a set of four that closes without clamping would hold.
+    backwards : when four contacts that close but do not clamp would hold.
     holes : the rule about holes, such as "holes that the jaws do not have".
-    sets : what holds the part together, in the plural.
-    clear : the rule that is asked last of what holds the part beside a wall.
-    reasons : why it holds nothing, from what is asked first to what is asked last; empty for the usual ones
+    sets : the combinations that are counted, in the plural.
+    clear : the last rule for fixtures beside a wall.
+    reasons : why it holds nothing, from the first stage to the last; empty for the usual reasons
         (``model.search_report``).
     """
 
@@ -76,31 +85,31 @@ class Wording:
 
 
 @frozen
-class Change:
-    """A change of a toolkit that might help where it holds nothing: in words, and its new fields."""
+class ToolkitChange:
+    """A change of a toolkit to try where it holds nothing: a phrase, and the new values of fields."""
 
     words: str
     fields: Mapping[str, Any]
 
 
 @frozen
-class Limit:
-    """A limit that a toolkit has and could do without.
+class ToolkitLimit:
+    """A limit of a toolkit that could be lifted.
 
     Parameters
     ----------
-    rule : what it asks, in a few words, such as "rows of holes".
-    bounds : whether it is about the pegs' bodies, the travel, how far a wall reaches, or the holes there are.
-    lifted : the toolkit without it.
+    rule : what it requires, in a few words, such as "rows of holes".
+    bounds : what it limits: the pegs' bodies, the travel, how far a wall reaches, or the holes.
+    lifted : the change that lifts it.
     """
 
     rule: str
     bounds: Literal["bodies", "travel", "reach", "holes"]
-    lifted: Change
+    lifted: ToolkitChange
 
 
 def is_whole(number: float) -> bool:
-    """Return whether a number is whole within rounding."""
+    """Return whether a number is an integer within 1e-9."""
     return abs(number - round(number)) < 1e-9
 
 
@@ -123,10 +132,10 @@ class Toolkit:
     wording : what its things are called where it holds nothing.
     setup_words : what setting it up is called on sheets, pictures and pages.
     page : what the page calls it.
-    supports, top_clamp : the supports and the clamp on top that its owner has; None where nobody says.
+    supports, top_clamp : the supports and the clamp on top that its owner has; None where not known.
     pins : what its pegs may bend; None for the usual limits.
     tolerance : how far its pegs and the faces they touch may be off (``model.requirements.Tolerance``), as its
-        preset or file says; None where nobody says. A query takes it where it is given no other.
+        preset or file says; None where not known. A query takes it where it is given no other.
     """
 
     __slots__ = ()
@@ -148,28 +157,30 @@ class Toolkit:
     law: ClassVar[str]
     clamping: ClassVar[int] = 1
     symmetries: ClassVar[tuple[Symmetry, ...]] = ()
-    wording: ClassVar[Wording]
+    wording: ClassVar[ToolkitWording]
     setup_words: ClassVar[SetupWords]
     page: ClassVar[PageWords]
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The carriers, those that stand still first."""
+        """Carriers, those that stand still first."""
         raise NotImplementedError
 
     @property
     def ways(self) -> tuple[Toolkit, ...]:
-        """The toolkit with one of its moving carriers each; their arrangements, in order, are its own."""
+        """Toolkits with only one of its moving carriers each,
+        in the order of its arrangements; itself if it has one.
+        """
         return (self,)
 
     @property
     def datum(self) -> Datum:
-        """Where zero lies, and what places are measured from: the first hole of the first plate."""
+        """Origin of places, here the first hole of the first plate."""
         return Datum.from_hole(self.plates[0])
 
     @property
     def plates(self) -> tuple[Carrier, ...]:
-        """The carriers that have a lattice of holes."""
+        """Carriers with a lattice of holes."""
         return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
 
     @property
@@ -184,23 +195,24 @@ class Toolkit:
 
     @property
     def is_in_inches(self) -> bool:
-        """Whether its holes are eighths of an inch apart, and not whole or half millimetres."""
+        """Whether all pitches are multiples of an eighth of an inch, and none of half a millimetre."""
         pitches = [pitch for carrier in self.plates for pitch in carrier.pitch]
         return all(is_whole(pitch / EIGHTH) and not is_whole(pitch / 0.5) for pitch in pitches)
 
     @property
     def contacts(self) -> frozenset[ContactKind]:
+        """Kinds of contacts of its carriers."""
         return frozenset(carrier.contact for carrier in self.carriers)
 
     @property
     def tips(self) -> int:
-        """How many clamps hold the part, whose contacts are the last of a fixture."""
+        """Number of clamp tips in a fixture; their contacts are its last."""
         carriers = self.carriers
         return sum(carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
 
     @property
     def heights(self) -> dict[str, Heights]:
-        """The heights of what has its own, by the role of its carriers.
+        """Heights in mm by role of the carriers that have heights of their own.
 
         >>> from workhold import Plate
         >>> Plate(pitch=20, peg_radius=3, clamp_heights=(6, 14)).heights
@@ -210,17 +222,19 @@ class Toolkit:
 
     @property
     def travels(self) -> int:
-        """How many things move in one fixture, each with a travel of its own: the jaw, or its clamps."""
+        """Number of things that move in one fixture, each with its own travel: one jaw, or its clamps."""
         return max(self.tips, 1)
 
     @property
     def closes_at_once(self) -> bool:
-        """Whether one movement closes it, so that closing can be simulated, unlike two clamps."""
+        """Whether a single movement closes it, so that closing can be simulated; False with two clamps."""
         return self.travels == 1
 
     @property
     def ends_on_walls(self) -> tuple[slice, ...]:
-        """The contacts of a fixture that are the ends of the contact with a wall, for each wall."""
+        """Slices of a fixture's contacts, one for each wall,
+        that are the ends of the part's contact with it.
+        """
         standing = self.arrangements[0].carriers
         flush = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
         walls = [number for number in flush if number in standing]
@@ -228,12 +242,12 @@ class Toolkit:
 
     @property
     def flat_jaws(self) -> JawPair | None:
-        """The two flat jaws that hold the part by friction; None where pegs hold it."""
+        """Pair of flat jaws that hold the part by friction; None for other toolkits."""
         return None
 
     @property
     def strap_set(self) -> StrapSet | None:
-        """The straps that hold the part down by friction; None where there are none."""
+        """Straps that hold the part down by friction; None for other toolkits."""
         return None
 
     @property
@@ -243,62 +257,67 @@ class Toolkit:
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """The carrier whose place each carrier takes after half a turn of everything, -1 for none.
+        """Index of the carrier whose place each takes after half a turn of everything, -1 for none.
 
-        It is None where half a turn makes another toolkit.
+        None where half a turn makes another toolkit.
         """
         return next((one.carriers for one in self.symmetries if one.half_turns % 2), None)
 
     @property
     def has_flats(self) -> bool:
+        """Whether any carrier's pegs have flats."""
         return any(carrier.flat is not None for carrier in self.carriers)
 
     @property
     def peg_count(self) -> int:
+        """Number of contacts of a fixture, ends on walls included."""
         return len(self.arrangements[0].carriers)
 
     @property
     def types(self) -> tuple[str, ...]:
+        """Names of its types of arrangements, each once."""
         return tuple(dict.fromkeys(arrangement.name for arrangement in self.arrangements))
 
     @property
     def gap(self) -> float | None:
-        """The gap rule in mm; None where pegs may stand on any side of what moves."""
+        """Smallest gap in mm between standing and moving pegs; None where there is no such rule."""
         return None
 
     @property
-    def limits(self) -> tuple[Limit, ...]:
-        """The limits that it has and could do without."""
+    def limits(self) -> tuple[ToolkitLimit, ...]:
+        """Limits set by its fields that could be lifted, in the order in which a person would lift them."""
         limits = []
         for row in self.table.fields:
             free = self.find_followed_length(row) if row.follows else row.default
             if row.lifted is not None and getattr(self, row.name) != free:
-                change = Change(row.lifted.words, {row.name: free})
-                limits.append(Limit(row.lifted.rule, row.lifted.bounds, change))
+                change = ToolkitChange(row.lifted.words, {row.name: free})
+                limits.append(ToolkitLimit(row.lifted.rule, row.lifted.bounds, change))
         return tuple(sorted(limits, key=lambda limit: LIFTED.index(limit.bounds)))
 
     def find_followed_length(self, row: ToolkitField) -> float:
-        """Return the length in mm that stands for one that is not given; of a pitch that in x."""
+        """Return the default in mm of a field that follows another field; of a pitch that in x."""
         value = getattr(self, row.follows)
         return float(value[0] if isinstance(value, tuple) else value)
 
-    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Yield the changes to try where it holds nothing, besides lifting its limits; their words use ``unit``."""
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
+        """Yield changes to try where it holds nothing, besides
+        lifting its limits; lengths in words are in ``unit``.
+        """
         yield from ()
 
     @classmethod
     def preset(cls, name: str, **changes: Any) -> Self:
-        """Return a toolkit that people own, by name.
+        """Return a toolkit from a preset or a file, perhaps with some fields changed.
 
         Parameters
         ----------
         name : one of :meth:`presets`, or the path of a toolkit's TOML file.
-        changes : fields that are other ones, such as ``columns=2``; lengths in mm.
+        changes : fields to change, such as ``columns=2``; lengths in mm.
 
         Raises
         ------
         InputError
-            For a name that is not known, a toolkit of another class, and fields that it cannot have.
+            For an unknown name, a toolkit of another class, and fields that it cannot have.
 
         Examples
         --------
@@ -330,41 +349,48 @@ class Toolkit:
 
         return list_presets_of_kind(cls)
 
-    def changed(self, fields: Mapping[str, Any]) -> Self:
+    def with_fields(self, fields: Mapping[str, Any]) -> Self:
+        """Return the toolkit with some fields changed; a new peg radius also drops the tolerance."""
         # Other pegs are as good as nobody says.
         others = {"tolerance": None} if PEG_RADIUS in fields else {}
         return evolve(self, **others, **fields)  # type: ignore[misc]
 
-    def without(self, limits: Iterable[Limit]) -> Self:
-        return self.changed({name: value for limit in limits for name, value in limit.lifted.fields.items()})
+    def without_limits(self, limits: Iterable[ToolkitLimit]) -> Self:
+        """Return the toolkit with the given limits lifted."""
+        return self.with_fields(
+            {name: value for limit in limits for name, value in limit.lifted.fields.items()}
+        )
 
     @property
     def wall(self) -> Carrier | None:
-        """The wall that the part lies flush against, where there is one."""
+        """Wall that the part lies flush against; None without one."""
         return next((carrier for carrier in self.carriers if carrier.is_wall), None)
 
     @property
-    def reaching(self) -> Carrier | None:
-        """The wall where it has ends; None of an endless one, and where there is none."""
+    def wall_with_ends(self) -> Carrier | None:
+        """Wall, if it has ends; None for an endless one, and without one."""
         return next((carrier for carrier in self.carriers if carrier.reach is not None), None)
 
     @property
     def moving(self) -> Carrier:
+        """First carrier that moves."""
         return next(carrier for carrier in self.carriers if carrier.travel is not None)
 
     @property
     def moving_axis(self) -> tuple[float, float]:
-        """The unit vector along which travel is counted."""
+        """Unit vector along which the travel of the first moving carrier is counted."""
         travel = self.moving.travel
         assert travel is not None
         return travel.unit
 
     def find_arrangement(self, name: str, direction: str | None = None) -> Arrangement:
-        """Return the arrangement of a name, and of a direction where several have the name."""
+        """Return the first arrangement with this name and, if given, this direction."""
         return next(a for a in self.arrangements if a.name == name and direction in (None, a.direction))
 
     def count_arrangements(self, arrangement: NDArray[Any]) -> dict[str, int]:
-        """Return how many fixtures there are of each arrangement, from the indices (N,) of theirs."""
+        """Return how many fixtures there are of each type,
+        by name, from the indices (N,) of their arrangements.
+        """
         counts = dict.fromkeys(self.types, 0)
         for one, count in zip(
             self.arrangements, np.bincount(arrangement, minlength=1).tolist(), strict=False
@@ -373,19 +399,23 @@ class Toolkit:
         return counts
 
     def find_peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
-        """Return the carrier (N, K) of each peg of N fixtures, from the indices (N,) of their arrangements."""
+        """Return the index (N, K) of each peg's carrier in N
+        fixtures, from the indices (N,) of their arrangements.
+        """
         return np.array([one.carriers for one in self.arrangements], np.int8).take(arrangement, axis=0)
 
     def find_carrier(self, name: str) -> Carrier:
+        """Return the carrier of a name; raises StopIteration without one."""
         return next(carrier for carrier in self.carriers if carrier.name == name)
 
     def find_carrier_numbers(self, names: Iterable[str]) -> list[int]:
+        """Return the indices of the carriers with these names."""
         known = [carrier.name for carrier in self.carriers]
         return [known.index(name) for name in names]
 
     def find_arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
-        """Return the indices (N,) of the arrangements that have ``standing`` pegs (N,) on the carrier that
-        stands still.
+        """Return the index (N,) of the first arrangement with
+        ``standing`` (N,) pegs on the first carrier; -1 without one.
         """
         pegs = [one.pegs[0] for one in self.arrangements]
         return np.asarray(
@@ -399,13 +429,13 @@ class Toolkit:
         row: NDArray[Any],
         travelled: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return x and y (N, K) in mm of the holes of N fixtures.
+        """Return x (N, K) and y (N, K) in mm of the holes of N fixtures.
 
         Parameters
         ----------
         arrangement : (N,) indices.
         column, row : (N, K) of the holes.
-        travelled : (N,) in mm, or (N, M) of each of the last M pegs.
+        travelled : travel in mm, (N,) of the one moving carrier, or (N, M) of the last M pegs.
         """
         moved = (
             np.broadcast_to(travelled[:, None], column.shape)
@@ -421,7 +451,7 @@ class Toolkit:
         carriers = np.array([one.carriers for one in self.arrangements], np.int64)
 
         def of_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
-            """Return the numbers (C,) of carriers for each peg (N, K)."""
+            """Return the values (C,) of carriers for each peg, (N, K)."""
             return np.asarray(values[carriers].take(arrangement, axis=0))
 
         x, y = (

@@ -9,12 +9,20 @@ from typing import TYPE_CHECKING, Any
 from attrs import evolve
 
 from workhold.fixels import fields
-from workhold.fixels.carrier import Heights, Holes
+from workhold.fixels.carrier import Heights, HoleSelection
 from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
-from workhold.fixels.toolkit import Arrangement, Carrier, Change, Symmetry, Toolkit, Travel, Wording
+from workhold.fixels.toolkit import (
+    Arrangement,
+    Carrier,
+    Symmetry,
+    Toolkit,
+    ToolkitChange,
+    ToolkitWording,
+    Travel,
+)
 from workhold.units import Unit
 
 __all__ = ["OpeningVise", "Vise"]
@@ -80,7 +88,7 @@ class Vise(Toolkit):
     locked = "a screw vise, its jaw"
     law = "vise"
     arrangements = (Arrangement("I", (2, 2)), Arrangement("II", (3, 1)))
-    wording = Wording(
+    wording = ToolkitWording(
         two="two pegs of one jaw",
         four="four pegs of the two jaws",
         inside="in this vise",
@@ -104,8 +112,8 @@ class Vise(Toolkit):
     max_opening: float | None
     row_offset: float
     body_radius: float
-    blocked: tuple[Holes, ...]
-    flat: Flat | None
+    blocked: tuple[HoleSelection, ...]
+    flat: PegFlat | None
     left_heights: Heights | None
     right_heights: Heights | None
 
@@ -121,9 +129,9 @@ class Vise(Toolkit):
             max_opening: float | None = None,
             row_offset: float = 0.0,
             body_radius: float | None = None,
-            blocked: Iterable[Holes | str] = (),
+            blocked: Iterable[HoleSelection | str] = (),
             *,
-            flat: float | Iterable[float] | Flat | None = None,
+            flat: float | Iterable[float] | PegFlat | None = None,
             left_heights: Iterable[float] | None = None,
             right_heights: Iterable[float] | None = None,
             supports: Any = None,
@@ -137,17 +145,17 @@ class Vise(Toolkit):
 
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
-        """Half a turn, which swaps the jaws; none where their pegs have different heights."""
+        """Half a turn that swaps the jaws; none where their pegs have different heights."""
         return (Symmetry(1, (1, 0)),) if self.left_heights == self.right_heights else ()
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The jaws, which are made once."""
+        """Left jaw and right jaw."""
         return self.jaws
 
     @cached_property
     def jaws(self) -> tuple[Carrier, ...]:
-        """The left jaw, and the right jaw, whose travel is the jaw separation."""
+        """Left jaw, and the right jaw, whose travel is the jaw separation; computed once."""
         both = {"body_radius": self.body_radius, "noun": "jaw"}
         left = make_lattice_carrier(self, "left", **both, heights=self.left_heights)
         right = make_lattice_carrier(
@@ -162,22 +170,26 @@ class Vise(Toolkit):
 
     @property
     def gap(self) -> float:
-        """The smallest gap in mm."""
+        """Smallest gap in mm."""
         return self.min_gap
 
-    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Yield a smaller gap, a column more, rows offset and half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
+        """Yield changes to try: a smaller gap, one more column,
+        offset rows, half the pitch; each only where it applies.
+        """
         jaw, _ = self.carriers
         narrow, offset = 2 * jaw.peg_radius, jaw.pitch[1] / 2
         words = [f"{unit.format_short_length(length)} {unit.abbreviation}" for length in (narrow, offset)]
         if self.min_gap > narrow > 0:
-            yield Change(f"with a smallest gap of {words[0]}", {fields.MIN_GAP.name: narrow})
-        yield Change("with one more column on each jaw", {fields.COLUMNS.name: self.columns + 1})
+            yield ToolkitChange(f"with a smallest gap of {words[0]}", {fields.MIN_GAP.name: narrow})
+        yield ToolkitChange("with one more column on each jaw", {fields.COLUMNS.name: self.columns + 1})
         if self.row_offset == 0.0:
-            yield Change(f"with the right jaw's rows offset by {words[1]}", {fields.ROW_OFFSET.name: offset})
+            yield ToolkitChange(
+                f"with the right jaw's rows offset by {words[1]}", {fields.ROW_OFFSET.name: offset}
+            )
         if min(jaw.pitch) >= 4 * jaw.peg_radius:
             half = (jaw.pitch[0] / 2, jaw.pitch[1] / 2)
-            yield Change(
+            yield ToolkitChange(
                 "with half the pitch",
                 {
                     fields.PITCH.name: half,
@@ -189,7 +201,7 @@ class Vise(Toolkit):
 
 @make_class_from_table
 class OpeningVise(Vise):
-    """The vise that clamps by opening: its pegs hold the part from inside its holes, or around a waist.
+    """A vise that clamps by opening: its pegs hold the part from inside its holes, or around a waist.
 
     Parameters, errors and all rules are those of :class:`Vise`; only the sign of clamping differs.
     """

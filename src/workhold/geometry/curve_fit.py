@@ -1,4 +1,5 @@
-"""Curves as lines and arcs: what is a line or an arc in disguise, and biarcs for what is not.
+"""Lines and arcs in place of curves: exact ones for curves that are lines or arcs in disguise, biarcs for
+others.
 
 Glossary
 --------
@@ -25,21 +26,21 @@ from numpy.typing import NDArray
 from workhold.conventions import AS_ARC, CORNER, CURVATURE_JUMP, DISGUISE, SHORTEST
 from workhold.geometry.rational import (
     Pieces,
+    bound_departure,
+    compute_direction,
     compute_end_curvatures,
     compute_end_directions,
+    compute_point,
     cut,
-    departure,
-    direction_at,
     drop_point_pieces,
-    point_at,
-    points_along,
+    sample_points,
 )
 from workhold.geometry.segment import Arc, Line, Point, make_segment_from_bulge
 from workhold.limits import MOST_RADIUS
 
-__all__ = ["FittedCurve", "biarcs", "fit_circle", "corners_of", "fit_curve", "never_interrupt"]
+__all__ = ["FittedCurve", "fit_biarcs", "fit_circle", "find_corners", "fit_curve", "ignore_interrupt"]
 
-# A biarc is as long as it can be but for this share, and so many lengths are tried.
+# Relative precision to which the longest biarc is found, and the most lengths tried.
 STEP, MOST_STEPS = 0.02, 60
 
 
@@ -49,10 +50,10 @@ class FittedCurve:
 
     Parameters
     ----------
-    points : N + 1 points (x, y) in mm; the last is the first where the curve is closed.
-    bulges : N bulges.
-    departure : bound of the distance between them and the curve, either way, in mm.
-    is_disguise : whether the curve is lines and arcs but for hairs; otherwise biarcs may stand in its place.
+    points : N + 1 points (x, y) in mm; the last equals the first where the curve is closed.
+    bulges : N bulges, tan(sweep / 4), 0 for a line.
+    departure : upper bound of the distance between them and the curve, either way, in mm.
+    is_disguise : whether the curve was lines and arcs within rounding; False where biarcs approximate it.
     """
 
     points: tuple[Point, ...]
@@ -61,18 +62,18 @@ class FittedCurve:
     is_disguise: bool = False
 
 
-def never_interrupt() -> None:
-    """Interrupt nothing."""
+def ignore_interrupt() -> None:
+    """Do nothing; the default of parameters ``interrupt``."""
 
 
-def biarcs(
-    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = never_interrupt
+def fit_biarcs(
+    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = ignore_interrupt
 ) -> list[FittedCurve]:
-    """Biarcs in place of a curve, each as long as the tolerance allows, tangent to the curve where they meet.
+    """Return biarcs that replace a curve within a tolerance in mm, each as long as possible, in order.
 
-    Corners of the curve stay corners.
+    They are tangent to the curve where they meet. Corners of the curve stay corners.
     """
-    corners = [0, *corners_of(pieces)]
+    corners = [0, *find_corners(pieces)]
     found: list[FittedCurve] = []
     for first, last in zip(corners, [*corners[1:], len(pieces)], strict=True):
         found += fit_smooth_biarcs(pieces[first:last], tolerance, interrupt)
@@ -82,6 +83,7 @@ def biarcs(
 def fit_smooth_biarcs(
     pieces: Pieces, tolerance: float, interrupt: Callable[[], None]
 ) -> Iterator[FittedCurve]:
+    """Yield biarcs, in order, that replace a curve without corners within a tolerance in mm."""
     total = float(len(pieces))
     place, step = 0.0, total
     while place < total:
@@ -94,9 +96,10 @@ def fit_smooth_biarcs(
 def fit_longest_biarc(
     pieces: Pieces, place: float, step: float, tolerance: float
 ) -> tuple[FittedCurve, float]:
-    """The biarc that reaches farthest from a place of a curve, to a share of ``STEP``, and its end.
+    """Return the biarc that reaches farthest from parameter
+    ``place`` of a smooth curve, and the parameter of its end.
 
-    ``step`` is the first length tried. What is smaller than the tolerance may be a line instead.
+    ``step`` is the length in parameters to try first. A stretch smaller than the tolerance may become a line.
     """
     total = float(len(pieces))
     room = total - place
@@ -104,7 +107,7 @@ def fit_longest_biarc(
     step = min(step, room)
     for _ in range(MOST_STEPS):
         reach = total if step == room else place + step
-        run = biarc(pieces, place, reach, tolerance) or fit_small_line(pieces, place, reach, tolerance)
+        run = fit_biarc(pieces, place, reach, tolerance) or fit_small_line(pieces, place, reach, tolerance)
         if run is None:
             high = step
         else:
@@ -118,30 +121,36 @@ def fit_longest_biarc(
 
 
 def fit_small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
-    """The line for a stretch of a curve smaller than the tolerance, such as a cusp; None for others."""
+    """Return the line between two parameters of a curve, if
+    that stretch is smaller than the tolerance in mm, else None.
+    """
     stretch = cut(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
     size = float(np.hypot(*np.ptp(places, axis=0)))
-    ends = point_at(pieces, first), point_at(pieces, last)
+    ends = compute_point(pieces, first), compute_point(pieces, last)
     return FittedCurve(ends, (0.0,), size) if size <= tolerance else None
 
 
-def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
-    """The biarc in place of a stretch of a smooth curve; None where it departs by more than the tolerance.
+def fit_biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
+    """Return the biarc in place of a stretch of a smooth curve;
+    None where it departs by more than the tolerance in mm.
 
     Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the
     joint, so the curve changes from one arc to the other where it crosses that.
     """
-    start, end = point_at(pieces, first), point_at(pieces, last)
-    begins, ends = direction_at(pieces, first, after=True), direction_at(pieces, last, after=False)
+    start, end = compute_point(pieces, first), compute_point(pieces, last)
+    begins, ends = compute_direction(pieces, first, after=True), compute_direction(pieces, last, after=False)
     joint = find_biarc_joint(start, end, begins, ends)
     if joint is None or min(dist(start, joint), dist(joint, end)) < SHORTEST:
         return None
-    one, other = turn(begins, less(joint, start)), turn(less(end, joint), ends)
+    one, other = (
+        measure_turn(begins, subtract_points(joint, start)),
+        measure_turn(subtract_points(end, joint), ends),
+    )
     if max(abs(one), abs(other)) > pi / 2:
         return None
     c, s = cos(2 * one), sin(2 * one)
-    middle = crossing(
+    middle = find_crossing(
         pieces, first, last, joint, (c * begins[0] - s * begins[1], s * begins[0] + c * begins[1])
     )
     if middle is None:
@@ -152,27 +161,33 @@ def biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Fitted
         (first, middle, start, joint, bulges[0]),
         (middle, last, joint, end, bulges[1]),
     ):
-        away = max(away, departure(cut(pieces, low, high), make_segment_from_bulge(p, q, bulge), tolerance))
+        away = max(
+            away, bound_departure(cut(pieces, low, high), make_segment_from_bulge(p, q, bulge), tolerance)
+        )
         if away > tolerance:
             return None
     return FittedCurve((start, joint, end), bulges, away)
 
 
-def less(p: Point, q: Point) -> Point:
+def subtract_points(p: Point, q: Point) -> Point:
+    """Return the vector p - q."""
     return p[0] - q[0], p[1] - q[1]
 
 
-def turn(u: Point, v: Point) -> float:
-    """Signed angle from one vector to another."""
+def measure_turn(u: Point, v: Point) -> float:
+    """Return the signed angle in radians, in [-pi, pi], from
+    vector ``u`` to vector ``v``, positive counter-clockwise.
+    """
     return atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
 
 
 def find_biarc_joint(start: Point, end: Point, begins: Point, ends: Point) -> Point | None:
-    """The joint of a biarc with equally long tangents up to their corners; None where there is none.
+    """Return the joint of the biarc with equally long tangents; None where there is none.
 
-    The length d solves |end - start - d (begins + ends)| = 2 d.
+    ``begins`` and ``ends`` are unit tangents at start and end. The tangent length d solves |end - start - d
+    (begins + ends)| = 2 d.
     """
-    vx, vy = less(end, start)
+    vx, vy = subtract_points(end, start)
     tx, ty = begins[0] + ends[0], begins[1] + ends[1]
     along, square = vx * tx + vy * ty, vx * vx + vy * vy
     # 4 - |t|², which is 2 (1 - begins . ends), without cancellation.
@@ -187,11 +202,17 @@ def find_biarc_joint(start: Point, end: Point, begins: Point, ends: Point) -> Po
     return x / 2, y / 2
 
 
-def crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Point) -> float | None:
-    """Parameter at which a curve crosses the line through a point, square to a direction (Illinois)."""
+def find_crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Point) -> float | None:
+    """Return the parameter between ``first`` and ``last`` at
+    which a curve crosses the line through ``joint``, or None.
+
+    The line is square to ``across``; None unless the curve goes from its negative to its positive side. Found
+    by the Illinois method.
+    """
 
     def height(parameter: float) -> float:
-        x, y = less(point_at(pieces, parameter), joint)
+        """Return the signed distance of the curve from the line at a parameter."""
+        x, y = subtract_points(compute_point(pieces, parameter), joint)
         return x * across[0] + y * across[1]
 
     low, high = height(first), height(last)
@@ -213,17 +234,20 @@ def crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Po
     return middle
 
 
-def corners_of(pieces: Pieces) -> list[int]:
-    """Numbers of the pieces that begin in another direction than the piece before ends in."""
+def find_corners(pieces: Pieces) -> list[int]:
+    """Return the indices of the pieces that begin in another
+    direction than the piece before ends in; never 0.
+    """
     leaving, entering = compute_end_directions(pieces)
     turned = np.hypot(*(entering[:-1] - leaving[1:]).T) > CORNER
     return [int(k) + 1 for k in np.flatnonzero(turned)]
 
 
 def fit_curve(
-    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = never_interrupt
+    pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = ignore_interrupt
 ) -> FittedCurve | None:
-    """Lines and arcs for a curve: its own where it is a disguise, else biarcs within a tolerance in mm.
+    """Return lines and arcs for a curve: those that it is
+    within rounding, else biarcs within a tolerance in mm.
 
     Parameters
     ----------
@@ -237,22 +261,25 @@ def fit_curve(
     pieces = drop_point_pieces(pieces, SHORTEST)
     if not len(pieces):
         return None
-    whole = whole_circle(pieces, DISGUISE)
+    whole = fit_whole_circle(pieces, DISGUISE)
     if whole is not None:
         return evolve(whole, is_disguise=True)
-    runs = disguised(pieces, [0, *find_breaks(pieces), len(pieces)], interrupt)
+    runs = find_disguised_runs(pieces, [0, *find_breaks(pieces), len(pieces)], interrupt)
     if all(run is not None for _, _, run in runs):
         return join_fitted_curves([run for _, _, run in runs if run is not None], True)
-    whole = whole_circle(pieces, tolerance)
+    whole = fit_whole_circle(pieces, tolerance)
     if whole is not None:
         return whole
     fitted: list[FittedCurve] = []
     for first, last, run in runs:
-        fitted += [run] if run is not None else biarcs(pieces[first:last], tolerance, interrupt)
+        fitted += [run] if run is not None else fit_biarcs(pieces[first:last], tolerance, interrupt)
     return join_fitted_curves(fitted, False)
 
 
 def join_fitted_curves(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
+    """Return fitted curves joined to one, each beginning
+    where the one before ends; the departure is the largest.
+    """
     points = [runs[0].points[0]]
     for run in runs:
         points += run.points[1:]
@@ -261,20 +288,24 @@ def join_fitted_curves(runs: list[FittedCurve], is_disguise: bool) -> FittedCurv
 
 
 def find_breaks(pieces: Pieces) -> list[int]:
-    """Numbers of the pieces that begin with another direction or curvature than the last ends with."""
+    """Return the indices of the pieces that begin with another
+    direction or curvature than the piece before ends with.
+    """
     begin, end = compute_end_curvatures(pieces)
     jump, most = np.abs(begin[1:] - end[:-1]), np.maximum(np.abs(begin[1:]), np.abs(end[:-1]))
     smooth = jump <= CURVATURE_JUMP * most
-    corners = set(corners_of(pieces))
+    corners = set(find_corners(pieces))
     return [k for k in range(1, len(pieces)) if k in corners or not smooth[k - 1]]
 
 
-def disguised(
+def find_disguised_runs(
     pieces: Pieces, places: list[int], interrupt: Callable[[], None]
 ) -> list[tuple[int, int, FittedCurve | None]]:
-    """Longest rows of stretches that are one line or arc, as (first piece, last piece + 1, run).
+    """Return (first piece, past-the-last piece, fitted curve)
+    of runs of stretches that are one line or arc, in order.
 
-    Stretches that are none come alone, with None.
+    ``places`` are the indices of the pieces at which stretches begin, and the number of pieces. Runs are as
+    long as possible; a stretch that is no line or arc is a run by itself, with None.
     """
     found: list[tuple[int, int, FittedCurve | None]] = []
     k = 0
@@ -286,7 +317,7 @@ def disguised(
             1,
             True,
         )
-        # Steps that double and then halve: as many stretches as one line or arc takes in.
+        # Steps that double and then halve find the largest number of stretches in one line or arc.
         while run is not None and step >= 1:
             further = min(taken + step, len(places) - 1)
             longer = (
@@ -303,13 +334,15 @@ def disguised(
 
 
 def fit_one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
-    """The line or arc, through both ends, that a curve is to within a tolerance; None where there is none."""
-    start, end = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
+    """Return the line or arc through both ends of a curve
+    that is within a tolerance in mm of it; None without one.
+    """
+    start, end = compute_point(pieces, 0.0), compute_point(pieces, float(len(pieces)))
     chord = dist(start, end)
     if chord < SHORTEST:
         return None
     line = Line(start, end)
-    away = departure(pieces, line, tolerance)
+    away = bound_departure(pieces, line, tolerance)
     if isfinite(away):
         return FittedCurve((start, end), (0.0,), away)
     circle = fit_circle_to_curve(pieces)
@@ -321,19 +354,23 @@ def fit_one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
     off = (cx - line.middle[0]) * tx + (cy - line.middle[1]) * ty
     cx, cy = cx - off * tx, cy - off * ty
     radius = dist((cx, cy), start)
-    sweep = swept(pieces, (cx, cy))
+    sweep = measure_swept_angle(pieces, (cx, cy))
     if not 1e-9 < abs(sweep) < 2 * pi - 1e-3:
         return None
     mid_angle, sign = atan2(start[1] - cy, start[0] - cx) + sweep / 2, 1.0 if sweep > 0 else -1.0
     arc = Arc((cx, cy), radius, mid_angle, abs(sweep) / 2, sign)
-    away = departure(pieces, arc, max(tolerance, allow_for_written_arcs(pieces, arc)))
-    return FittedCurve(*halves((start, end), sweep, (cx, cy)), away) if isfinite(away) else None
+    away = bound_departure(pieces, arc, max(tolerance, allow_for_written_arcs(pieces, arc)))
+    return FittedCurve(*halve_arc((start, end), sweep, (cx, cy)), away) if isfinite(away) else None
 
 
-def halves(
+def halve_arc(
     ends: tuple[Point, Point], sweep: float, center: Point
 ) -> tuple[tuple[Point, ...], tuple[float, ...]]:
-    """Points and bulges of an arc, halved where it is nearly a circle: one bulge fixes its centre badly."""
+    """Return points and bulges of an arc between ``ends``:
+    one arc, or two halves where it is nearly a whole circle.
+
+    One bulge would fix the centre of such an arc badly. ``sweep`` is signed, in radians.
+    """
     if abs(sweep) < 1.9 * pi:
         return ends, (tan(sweep / 4),)
     (x, y), (cx, cy) = ends[0], center
@@ -342,22 +379,24 @@ def halves(
     return (ends[0], middle, ends[1]), (tan(sweep / 8),) * 2
 
 
-def whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
-    """The circle that a closed curve is to within a tolerance; None where it is none."""
-    start = point_at(pieces, 0.0)
-    if dist(start, point_at(pieces, float(len(pieces)))) > SHORTEST:
+def fit_whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
+    """Return the circle, as two halves, that a closed curve
+    is within a tolerance in mm; None where it is none.
+    """
+    start = compute_point(pieces, 0.0)
+    if dist(start, compute_point(pieces, float(len(pieces)))) > SHORTEST:
         return None
     circle = fit_circle_to_curve(pieces)
     if circle is None:
         return None
     (cx, cy), radius = circle
-    sweep = swept(pieces, (cx, cy))
+    sweep = measure_swept_angle(pieces, (cx, cy))
     if abs(abs(sweep) - 2 * pi) > 1e-3:
         return None
     sign = 1.0 if sweep > 0 else -1.0
     angle = atan2(start[1] - cy, start[0] - cx)
     arc = Arc((cx, cy), radius, angle + pi, pi, sign)
-    away = departure(pieces, arc, max(tolerance, allow_for_written_arcs(pieces, arc)))
+    away = bound_departure(pieces, arc, max(tolerance, allow_for_written_arcs(pieces, arc)))
     if not isfinite(away):
         return None
     first, second = ((cx + radius * cos(t), cy + radius * sin(t)) for t in (angle, angle + pi))
@@ -365,7 +404,7 @@ def whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
 
 
 def allow_for_written_arcs(pieces: Pieces, arc: Arc) -> float:
-    """How far cubics may be from an arc when they are how programs write it, in mm; 0 where they are not.
+    """Return the tolerance in mm for cubics that approximate an arc as programs write it; 0 for other curves.
 
     The cubic whose handles are 4/3 tan(sweep / 4) radii long is off by 2.73e-4 radii for a quarter turn, and
     by the sixth power of the sweep for less (M. Goldapp, "Approximation of circular arcs by cubic
@@ -382,17 +421,19 @@ def allow_for_written_arcs(pieces: Pieces, arc: Arc) -> float:
 
 
 def fit_circle_to_curve(pieces: Pieces) -> tuple[Point, float] | None:
-    """Centre and radius of the circle of least squares through points of a curve; None for a line.
+    """Return centre and radius in mm of the least-squares circle through points of a curve; None for a line.
 
-    They are the ends of cubics, where those that stand for arcs meet them, with one or two their middles too;
-    and quarters of other pieces.
+    The points are the ends of cubics, with one or two cubics their middles, too; of other pieces each
+    quarter.
     """
     each = 4 if pieces.shape[1] != 4 else 1 if len(pieces) > 2 else 2
-    return fit_circle(points_along(pieces, each))
+    return fit_circle(sample_points(pieces, each))
 
 
 def fit_circle(points: NDArray[np.float64]) -> tuple[Point, float] | None:
-    """Centre and radius of the circle of least squares through (N, 2) points (Kasa 1976); None for a line."""
+    """Return centre and radius of the least-squares circle
+    through points (N, 2) (Kasa 1976); None for a line or a point.
+    """
     middle = points.mean(axis=0)
     x, y = (points - middle).T
     size = float(np.hypot(x, y).max())
@@ -405,8 +446,8 @@ def fit_circle(points: NDArray[np.float64]) -> tuple[Point, float] | None:
     return (center, radius) if isfinite(radius) and 0 < radius < MOST_RADIUS else None
 
 
-def swept(pieces: Pieces, center: Point) -> float:
-    """Signed angle that a curve covers about a centre, from quarters of its pieces."""
-    x, y = (points_along(pieces, 4) - np.array(center)).T
+def measure_swept_angle(pieces: Pieces, center: Point) -> float:
+    """Return the signed angle in radians that a curve covers about a centre, from quarters of its pieces."""
+    x, y = (sample_points(pieces, 4) - np.array(center)).T
     steps = np.diff(np.arctan2(y, x))
     return float(((steps + pi) % (2 * pi) - pi).sum())

@@ -2,8 +2,8 @@
 
 Hull edges are the straight pieces of the boundary of an outline's convex hull. Each is a common tangent of
 two corners, of a corner and a convex arc, or of two convex arcs, and has everything on its left. All pairs
-are looked at, so none is missed. Tangents of which one is a part of another, up to the rounding of a drawing,
-are one edge: it may run over several faces and the gaps between them.
+are examined, so none is missed. A tangent that lies on another one, within the rounding of a drawing, is the
+same edge, which may run over several faces and the gaps between them.
 
 Glossary
 --------
@@ -24,11 +24,13 @@ from numpy.typing import NDArray
 from workhold.conventions import LEAST_HULL_EDGE, TOUCHING
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
-__all__ = ["HullEdge", "HullEnd", "HullTouch", "compute_convex_hull", "hull_edges", "find_touches_along"]
+__all__ = ["HullEdge", "HullEnd", "HullTouch", "compute_convex_hull", "find_hull_edges", "find_touches_along"]
 
 
 def compute_convex_hull(points: Iterable[Point]) -> list[Point]:
-    """Corners of the convex hull, counter-clockwise from the leftmost; points on its sides are left out.
+    """Return the corners of the convex hull, counter-clockwise from the leftmost (of these, the lowest).
+
+    Points on sides are left out. Two distinct points or fewer are returned sorted.
 
     Reference: A. M. Andrew, *Another efficient algorithm for convex hulls in two dimensions*, Information
     Processing Letters 9 (1979).
@@ -46,7 +48,7 @@ def compute_convex_hull(points: Iterable[Point]) -> list[Point]:
 
 
 def compute_half_hull(ordered: list[Point]) -> list[Point]:
-    """The chain of left turns from the first of some ordered points to the last."""
+    """Return the points of a sorted list that form a chain of left turns from its first point to its last."""
     chain: list[Point] = []
     for x, y in ordered:
         while len(chain) >= 2:
@@ -73,8 +75,8 @@ class HullEnd:
     point : in mm.
     faces : indices of the faces that meet there: one that lies along the edge or is an arc, or the two of a
         corner.
-    center, radius : of the arc in mm; the point itself and 0 where there is none.
-    along : whether the face lies along the edge.
+    center, radius : of the arc in mm; at a corner, the point and 0.
+    along : whether the one face lies along the edge.
     """
 
     point: Point
@@ -86,7 +88,7 @@ class HullEnd:
 
 @frozen
 class HullEdge:
-    """A hull edge, run through with the outline on its left."""
+    """A hull edge, directed so that the outline is on its left."""
 
     start: HullEnd
     end: HullEnd
@@ -98,26 +100,27 @@ class HullEdge:
 
     @property
     def tangent(self) -> Point:
-        """Unit vector from start to end."""
+        """Unit vector (x, y) from start to end."""
         (ax, ay), (bx, by) = self.start.point, self.end.point
         return (bx - ax) / self.length, (by - ay) / self.length
 
-    def height(self, point: Point) -> float:
-        """How far in mm a point is to the left of the edge's line."""
+    def measure_height(self, point: Point) -> float:
+        """Return the signed distance in mm of a point from the edge's infinite line, positive on the left."""
         (x, y), (tx, ty) = self.start.point, self.tangent
         return (point[1] - y) * tx - (point[0] - x) * ty
 
 
 @frozen(eq=False)
 class HullPieces:
-    """N pieces of an outline that may lie on its hull.
+    """N pieces of an outline, joints and convex arcs, that may lie on its hull.
 
     Parameters
     ----------
-    center, radius : (N, 2) and (N,), in mm.
-    middle : unit vectors (N, 2) to the middles of arcs.
-    cosine : (N,) of half their sweeps; -2 for a joint, which supports in every direction.
-    faces : those that each piece is of.
+    center, radius : (N, 2) and (N,), in mm; radius 0 for a joint.
+    middle : (N, 2) unit vectors to the middles of arcs.
+    cosine : (N,) of half the sweep of arcs; -2 for a joint or a whole circle, which support in every
+        direction.
+    faces : indices of the faces of each piece.
     """
 
     center: Array
@@ -127,8 +130,8 @@ class HullPieces:
     faces: tuple[tuple[int, ...], ...]
 
     @classmethod
-    def of(cls, segments: Sequence[Segment], counts: Sequence[int] | None = None) -> HullPieces:
-        """The pieces of closed chains of segments that may lie on their hull, see :func:`hull_edges`."""
+    def from_segments(cls, segments: Sequence[Segment], counts: Sequence[int] | None = None) -> HullPieces:
+        """Return the pieces of closed chains of segments; parameters as of :func:`hull_edges`."""
         before: list[int] = []
         for count in [len(segments)] if counts is None else counts:
             first = len(before)
@@ -150,17 +153,22 @@ class HullPieces:
         table = np.array(rows).reshape(-1, 6)
         return cls(table[:, :2], table[:, 2], table[:, 3:5], table[:, 5], tuple(faces))
 
-    def supports(self, normal: Array, chosen: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.bool_]:
-        """Whether pieces support in directions, unit vectors (..., 2)."""
+    def find_supporting(
+        self, normal: Array, chosen: NDArray[np.int64] | slice = slice(None)
+    ) -> NDArray[np.bool_]:
+        """Return whether (...) pieces can be outermost in directions ``normal``, unit vectors (..., 2)."""
         along = (normal * self.middle[chosen]).sum(axis=-1)
         return np.asarray(along >= self.cosine[chosen])
 
 
-def tangents(pieces: HullPieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
-    """Common tangents of pairs with both pieces on their left: indices (M,) of both, normals (M, 2).
+def iterate_common_tangents(
+    pieces: HullPieces,
+) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
+    """Yield common tangents of pairs of pieces with both on
+    the left: indices (M,), (M,) and outward normals (M, 2).
 
-    With D from one centre to the other and n the outward normal, n . D is the difference of the radii, and D
-    runs forward.
+    The tangent runs from the first to the second. With D from one centre to the other, n . D is the
+    difference of the radii.
     """
     count = len(pieces.radius)
     for first in range(0, count, BLOCK):
@@ -177,23 +185,23 @@ def tangents(pieces: HullPieces) -> Iterator[tuple[NDArray[np.int64], NDArray[np
         tangent /= square[:, None]
         # n = (t_y, -t_x), so that D . n is ``across``.
         normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
-        good = pieces.supports(normal, one[start]) & pieces.supports(normal, end)
+        good = pieces.find_supporting(normal, one[start]) & pieces.find_supporting(normal, end)
         yield one[start[good]], end[good], normal[good]
 
 
-def farthest(pieces: HullPieces, normal: Array) -> Array:
-    """Supports (M,) in mm of all pieces together in directions (M, 2)."""
+def compute_supports(pieces: HullPieces, normal: Array) -> Array:
+    """Return the largest coordinate (M,) in mm of all pieces along directions (M, 2)."""
     out = np.empty(len(normal))
     for first in range(0, len(normal), BLOCK):
         block = slice(first, first + BLOCK)
         reach = normal[block] @ pieces.center.T + pieces.radius
-        there = pieces.supports(normal[block][:, None])
+        there = pieces.find_supporting(normal[block][:, None])
         out[block] = np.where(there, reach, -np.inf).max(axis=1, initial=-np.inf)
     return out
 
 
-def hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None) -> tuple[HullEdge, ...]:
-    """The hull edges of an outline, those of the lowest faces first.
+def find_hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None) -> tuple[HullEdge, ...]:
+    """Return the hull edges of an outline in the order of the faces at their starts.
 
     Parameters
     ----------
@@ -209,13 +217,13 @@ def hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None)
     >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
     [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
     """
-    pieces = HullPieces.of(segments, counts)
+    pieces = HullPieces.from_segments(segments, counts)
     found: list[HullEdge] = []
-    for start, end, normal in tangents(pieces):
+    for start, end, normal in iterate_common_tangents(pieces):
         level = (pieces.center[start] * normal).sum(axis=1) + pieces.radius[start]
-        good = np.flatnonzero(farthest(pieces, normal) <= level + TOUCHING)
+        good = np.flatnonzero(compute_supports(pieces, normal) <= level + TOUCHING)
         for k in good.tolist():
-            ends = [end_of(pieces, number, normal[k]) for number in (int(start[k]), int(end[k]))]
+            ends = [make_hull_end(pieces, number, normal[k]) for number in (int(start[k]), int(end[k]))]
             if not is_on_arc(*ends):
                 found.append(HullEdge(*ends))
     # Longest first, and of equal ones those between corners, where a face ends at a tangent joint.
@@ -232,12 +240,12 @@ def hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = None)
 
 @frozen
 class HullTouch:
-    """Where an outline touches the line of one of its hull edges: along a face, or in a point.
+    """A stretch or a point of the line of a hull edge that the outline touches.
 
     Parameters
     ----------
-    low, high : from where to where, in mm along the edge from its start.
-    faces : indices of the face that lies along the edge, of the arc, or of the two that meet at a corner.
+    low, high : from where to where, in mm along the edge from its start; equal for a point.
+    faces : index of the face that lies along the edge, or of the arc; both indices for a corner.
     """
 
     low: float
@@ -248,7 +256,8 @@ class HullTouch:
 def find_touches_along(
     edge: HullEdge, segments: Sequence[Segment], counts: Sequence[int] | None = None
 ) -> tuple[HullTouch, ...]:
-    """Where an outline touches the line of a hull edge, from its start on; what touches alone comes last.
+    """Return where an outline touches the line of a hull edge:
+    stretches first, then points, each in order from the start.
 
     Parameters
     ----------
@@ -267,7 +276,7 @@ def find_touches_along(
     alone: list[HullTouch] = []
 
     def place(point: Point) -> float:
-        """How far along the edge a point is; on it but for rounding."""
+        """Return the position in mm of a point along the edge, clamped to it."""
         return min(max((point[0] - x) * tx + (point[1] - y) * ty, 0.0), length)
 
     first = 0
@@ -275,17 +284,17 @@ def find_touches_along(
         for k in range(first, first + count):
             face, before = segments[k], first + (k - first - 1) % count
             if isinstance(face, Line):
-                if all(abs(edge.height(point)) <= 2 * TOUCHING for point in (face.start, face.end)):
+                if all(abs(edge.measure_height(point)) <= 2 * TOUCHING for point in (face.start, face.end)):
                     along.append(HullTouch(place(face.start), place(face.end), (k,)))
             elif face.sign > 0:
                 (cx, cy), radius = face.center, face.radius
                 foot = cx + radius * ty, cy - radius * tx
                 middle = ty * np.cos(face.mid_angle) - tx * np.sin(face.mid_angle)
                 supports = face.is_full or middle >= np.cos(face.half_sweep)
-                if supports and abs(edge.height(foot)) <= 2 * TOUCHING:
+                if supports and abs(edge.measure_height(foot)) <= 2 * TOUCHING:
                     alone.append(HullTouch(place(foot), place(foot), (k,)))
             whole = isinstance(face, Arc) and face.is_full
-            if not whole and abs(edge.height(face.start)) <= 2 * TOUCHING:
+            if not whole and abs(edge.measure_height(face.start)) <= 2 * TOUCHING:
                 alone.append(HullTouch(place(face.start), place(face.start), (before, k)))
         first += count
     return (
@@ -294,24 +303,29 @@ def find_touches_along(
     )
 
 
-def end_of(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
+def make_hull_end(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
+    """Return the end of a hull edge on piece ``number``, for the edge with this outward normal."""
     (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
     nx, ny = normal.tolist()
     return HullEnd((x + radius * nx, y + radius * ny), pieces.faces[number], (x, y), radius, along=False)
 
 
 def is_on_arc(one: HullEnd, other: HullEnd) -> bool:
-    """Whether one is an arc and the other that arc's own end: what is between them is rounding alone."""
+    """Return whether one end is on an arc and the other is
+    that arc's own end, so that only rounding separates them.
+    """
     return (one.radius == 0.0) != (other.radius == 0.0) and not set(one.faces).isdisjoint(other.faces)
 
 
 def is_part(edge: HullEdge, other: HullEdge) -> bool:
-    """Whether a hull edge lies on a longer one, up to the rounding of a drawing."""
+    """Return whether a hull edge lies on ``other`` and
+    runs the same way, within the rounding of a drawing.
+    """
     (x, y), (tx, ty) = other.start.point, other.tangent
     for px, py in (edge.start.point, edge.end.point):
         ahead = (px - x) * tx + (py - y) * ty
         if (
-            abs(other.height((px, py))) > 2 * TOUCHING
+            abs(other.measure_height((px, py))) > 2 * TOUCHING
             or not -2 * TOUCHING <= ahead <= other.length + 2 * TOUCHING
         ):
             return False
@@ -320,14 +334,16 @@ def is_part(edge: HullEdge, other: HullEdge) -> bool:
 
 
 def assign_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
-    """A hull edge whose end at a corner belongs to the face that lies along the edge, if one does."""
+    """Return the hull edge with each end at a corner given
+    the face that lies along the edge there, if one does.
+    """
     ends = []
     # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end
     # the one before.
     for end, index in ((edge.start, -1), (edge.end, 0)):
         face = segments[end.faces[index]]
         lies = isinstance(face, Line) and all(
-            abs(edge.height(p)) <= 2 * TOUCHING for p in (face.start, face.end)
+            abs(edge.measure_height(p)) <= 2 * TOUCHING for p in (face.start, face.end)
         )
         if end.radius == 0.0 and lies:
             end = evolve(end, faces=(end.faces[index],), along=True)

@@ -1,4 +1,4 @@
-"""Closed loops of segments: building them from vertices, their direction, what is refused, and their faces.
+"""Closed loops of segments: construction from vertices, direction, checks, and faces.
 
 Glossary
 --------
@@ -35,22 +35,22 @@ from workhold.geometry.segment import (
     Arc,
     Line,
     Segment,
-    bounding_box,
+    compute_bounding_box,
     find_common_points,
     make_segment_from_bulge,
-    segment_rows,
+    make_segment_rows,
 )
-from workhold.kernels.base.distance import turns_around
+from workhold.kernels.base.distance import measure_winding
 from workhold.limits import MOST_COMPARED, MOST_LENGTH, MOST_RADIUS, make_real_array
 
 __all__ = [
-    "Comparisons",
+    "ComparisonBudget",
     "Face",
     "LoopShape",
     "check_vertices",
     "encloses",
     "list_loop_faces",
-    "loop_segments",
+    "make_loop_segments",
     "find_near_pairs",
     "refuse_meeting",
     "refuse_meeting_loops",
@@ -65,13 +65,13 @@ Place = Callable[[int], str]
 Item = TypeVar("Item")
 
 
-class Comparisons:
-    """How many pairs of segments and loops of a part may still be compared.
+class ComparisonBudget:
+    """A limit on the number of pairs of segments and loops of a part that are compared.
 
     Parameters
     ----------
-    part : what a refusal calls it.
-    most : how many there may be.
+    part : name of the part in the error's message.
+    most : how many pairs there may be.
     """
 
     def __init__(self, part: str, most: int = MOST_COMPARED) -> None:
@@ -79,12 +79,12 @@ class Comparisons:
         self.most = self.left = most
 
     def spend(self, pairs: int) -> None:
-        """Counts pairs.
+        """Subtract a number of pairs from what is left.
 
         Raises
         ------
         InputError
-            Where there are more than the limit.
+            When nothing is left.
         """
         self.left -= pairs
         if self.left < 0:
@@ -96,52 +96,53 @@ class Comparisons:
 
 @define(frozen=True, slots=False, eq=False)
 class LoopShape:
-    """A loop's segments with what is needed to compare it with other loops quickly.
+    """A loop's segments with bounds for quick comparison with other loops.
 
     Parameters
     ----------
-    segments : in running order, run either way.
-    boxes : (N, 4) bounding boxes of the segments.
+    segments : in running order, in either direction.
+    boxes : (N, 4) bounding boxes of the segments: smallest x and y, largest x and y, in mm.
     """
 
     segments: tuple[Segment, ...]
     boxes: NDArray[np.float64]
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> LoopShape:
-        return cls(tuple(segments), np.array([bounding_box(segment) for segment in segments]))
+    def from_segments(cls, segments: Sequence[Segment]) -> LoopShape:
+        """Return the shape of a closed chain of segments."""
+        return cls(tuple(segments), np.array([compute_bounding_box(segment) for segment in segments]))
 
     @cached_property
     def rows(self) -> NDArray[np.float64]:
         """Kernel rows of the segments, shape (N, 10)."""
-        return segment_rows(self.segments)
+        return make_segment_rows(self.segments)
 
     @cached_property
     def chords(self) -> NDArray[np.float64]:
-        """(N, 5) starts, ends, and how far each segment is from its chord at most."""
+        """(N, 5) start, end, and largest distance in mm of each segment from its chord."""
         return np.array(
             [(*segment.start, *segment.end, measure_depth(segment)) for segment in self.segments]
         ).reshape(-1, 5)
 
     @cached_property
     def box(self) -> NDArray[np.float64]:
-        """Bounding box of the loop, shape (4,)."""
+        """Bounding box (4,) of the loop: smallest x and y, largest x and y, in mm."""
         return np.concatenate([self.boxes[:, :2].min(axis=0), self.boxes[:, 2:].max(axis=0)])
 
 
 def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.float64]:
-    """Copy the vertices of one loop after checking that each number and each segment can be used.
+    """Return a checked, read-only copy of the vertices of one loop, with nearly straight arcs made lines.
 
     Parameters
     ----------
     vertices : (N, 3) array-like of x, y in mm and bulge.
-    loop : the loop's place, for messages.
-    place : the place of segment k, for messages.
+    loop : name of the loop, for messages.
+    place : returns the name of segment k, for messages.
 
     Returns
     -------
-    (N, 3) array, read-only; an arc that is nowhere farther than ``READING``, or a millionth of it, from its
-    chord is a line.
+    (N, 3) array, read-only. Bulges below ``STRAIGHT``, and those of arcs that rise less than ``READING`` mm
+    from their chords, are 0.
 
     Raises
     ------
@@ -190,15 +191,19 @@ def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.f
 
 
 def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which arcs (N,) with chords (N,) are no lines: their middles are bulge * chord / 2 off the chords."""
+    """Return which arcs (N,), with bulges and chords in mm (N,),
+    are no lines: those that rise noticeably from their chords.
+
+    The rise is bulge * chord / 2.
+    """
     size = np.abs(bulge)
     return (size * steps / 2.0 >= READING) & (size >= STRAIGHT)
 
 
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
-    """Refuses arcs of (N, 3) vertices, with chords (N,), that reach too far or have too large a radius.
+    """Raise InputError, naming the place, for the first arc of (N, 3) vertices with too large a radius.
 
-    Raises InputError, naming the place of the first.
+    ``steps`` (N,) are the chords in mm.
     """
     bulge = np.minimum(np.abs(array[:, 2]), 1e30)
     curved = is_curved(bulge, steps)
@@ -211,8 +216,8 @@ def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], 
         )
 
 
-def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
-    """Segments of a loop given by (N, 3) vertices."""
+def make_loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
+    """Return the segments of a loop of (N, 3) vertices; the last one ends at the first vertex."""
     points = [(float(x), float(y)) for x, y in vertices[:, :2]]
     ends = points[1:] + points[:1]
     return tuple(
@@ -221,7 +226,7 @@ def loop_segments(vertices: NDArray[np.float64]) -> tuple[Segment, ...]:
 
 
 def compute_signed_area(segments: Sequence[Segment]) -> float:
-    """Area in mm² of a loop, positive counter-clockwise (shoelace formula plus circular segments)."""
+    """Return the area in mm² of a loop, positive counter-clockwise (shoelace formula plus circular segments)."""
     area = 0.0
     for segment in segments:
         (x0, y0), (x1, y1) = segment.start, segment.end
@@ -232,7 +237,7 @@ def compute_signed_area(segments: Sequence[Segment]) -> float:
 
 
 def compute_circular_segment(sweep: float) -> float:
-    """sweep - sin(sweep) without cancellation (Taylor series below 0.1 rad, exact to rounding)."""
+    """Return sweep - sin(sweep) for a sweep in radians, without cancellation."""
     if sweep > 0.1:
         return sweep - sin(sweep)
     square = sweep * sweep
@@ -240,7 +245,9 @@ def compute_circular_segment(sweep: float) -> float:
 
 
 def reverse_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The vertices of a loop run the other way round, from the same first vertex."""
+    """Return the (N, 3) vertices, read-only, of the loop
+    run the other way round from the same first vertex.
+    """
     out = np.empty_like(vertices)
     order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
     out[:, :2] = vertices[order, :2]
@@ -250,7 +257,7 @@ def reverse_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def refuse_no_area(shape: LoopShape, loop: str) -> None:
-    """Refuses a loop that runs back along itself."""
+    """Raise InputError for a loop that encloses no area; ``loop`` is its name in the message."""
     if abs(compute_signed_area(shape.segments)) <= TOUCHING * sum(
         segment.length for segment in shape.segments
     ):
@@ -258,7 +265,7 @@ def refuse_no_area(shape: LoopShape, loop: str) -> None:
 
 
 def find_near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
-    """Pairs (i, j) whose (N, 4) bounding boxes come within the touching distance."""
+    """Yield index pairs (i, j) whose bounding boxes (N, 4) come within the touching distance."""
     for i, (x0, y0, x1, y1) in enumerate(boxes_a):
         apart = (
             (boxes_b[:, 0] > x1 + TOUCHING)
@@ -271,21 +278,22 @@ def find_near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) 
 
 
 def measure_depth(segment: Segment) -> float:
-    """How far a segment reaches from its chord: the rise of an arc, 0 of a line."""
+    """Return the largest distance in mm of a segment from its chord; 0 for a line. Arcs of up to a turn."""
     return segment.radius * (1 - cos(segment.half_sweep)) if isinstance(segment, Arc) else 0.0
 
 
-# Segments that more others come near to are compared with their chords first.
+# With more near segments than this, chords are compared first.
 MANY_NEAR = 32
 
 
 def find_near_segments(
-    one: LoopShape, k: int, others: LoopShape, comparisons: Comparisons
+    one: LoopShape, k: int, others: LoopShape, comparisons: ComparisonBudget
 ) -> NDArray[np.int64]:
-    """Numbers of the segments of another shape that segment ``k`` of one may come near to.
+    """Return the indices of the segments of ``others`` that may
+    come within the touching distance of segment ``k`` of ``one``.
 
-    Boxes of slanted segments overlap though these run side by side, so that where there are many such boxes
-    what lies on one side of the chord is left out.
+    Boxes decide; where many overlap, segments wholly on one side of the chord are left out. The comparisons
+    are spent.
     """
     x0, y0, x1, y1 = one.boxes[k]
     boxes = others.boxes
@@ -309,15 +317,15 @@ def find_near_segments(
     return found
 
 
-def refuse_self_crossing(shape: LoopShape, place: Place, comparisons: Comparisons | None = None) -> None:
-    """Refuses a loop that crosses or touches itself anywhere but at its joints.
+def refuse_self_crossing(shape: LoopShape, place: Place, comparisons: ComparisonBudget | None = None) -> None:
+    """Raise InputError for a loop that crosses or touches itself anywhere but at its joints.
 
     Raises
     ------
     InputError
         Naming both segments and the point; also for more comparisons than may be made.
     """
-    comparisons = comparisons or Comparisons("the outline")
+    comparisons = comparisons or ComparisonBudget("the outline")
     segments, box = shape.segments, shape.boxes
     count = len(segments)
     # Tangent neighbours meet again within rounding of their joint; that is no crossing.
@@ -336,16 +344,16 @@ def refuse_self_crossing(shape: LoopShape, place: Place, comparisons: Comparison
 
 
 def refuse_meeting_loops(
-    a: LoopShape, b: LoopShape, place_a: Place, place_b: Place, comparisons: Comparisons | None = None
+    a: LoopShape, b: LoopShape, place_a: Place, place_b: Place, comparisons: ComparisonBudget | None = None
 ) -> None:
-    """Refuses two loops that cross or touch.
+    """Raise InputError for two loops that cross or touch.
 
     Raises
     ------
     InputError
         Naming both segments and the point; also for more comparisons than may be made.
     """
-    comparisons = comparisons or Comparisons("the outline")
+    comparisons = comparisons or ComparisonBudget("the outline")
     for i in range(len(a.segments)):
         for j in find_near_segments(a, i, b, comparisons).tolist():
             for x, y in find_common_points(a.segments[i], b.segments[j], TOUCHING):
@@ -356,18 +364,19 @@ def refuse_meeting_loops(
 
 
 def refuse_meeting(
-    shapes: Sequence[LoopShape], place: Callable[[int, int], str], comparisons: Comparisons
+    shapes: Sequence[LoopShape], place: Callable[[int, int], str], comparisons: ComparisonBudget
 ) -> None:
-    """Refuses loops of which two cross or touch.
+    """Raise InputError if any two of the loops cross or touch.
 
     Parameters
     ----------
-    place : the place of a loop and one of its segments.
+    place : returns the name of a loop's segment, from both indices.
+    comparisons : spent for each pair.
 
     Raises
     ------
     InputError
-        Naming both segments and the point; also for more comparisons than may be made.
+        Naming both segments and the point; also for more comparisons than are allowed.
     """
     boxes = np.array([shape.box for shape in shapes])
     for a, b in find_near_pairs(boxes, boxes):
@@ -377,13 +386,15 @@ def refuse_meeting(
 
 
 def encloses(around: LoopShape, inner: LoopShape) -> bool:
-    """Whether a loop, run either way, has another loop, which does not meet it, in its inside."""
+    """Return whether one loop encloses another; they must not meet, and either may run in any direction."""
     x, y = inner.segments[0].start
-    return bool(abs(turns_around(x, y, around.rows)) > pi)
+    return bool(abs(measure_winding(x, y, around.rows)) > pi)
 
 
 def have_same_carrier(a: Segment, b: Segment) -> bool:
-    """Whether neighbour ``b`` continues the line or circle of ``a`` in the same sense."""
+    """Return whether segment ``b``, a neighbour of ``a``,
+    continues its line or circle in the same direction.
+    """
     if isinstance(a, Line) and isinstance(b, Line):
         (tx, ty), (ux, uy) = a.tangent, b.tangent
         dx, dy = b.start[0] - a.start[0], b.start[1] - a.start[1]
@@ -408,8 +419,8 @@ class Face:
 
     Parameters
     ----------
-    number : the smallest number among its segments; it names the face.
-    segments : the numbers of its segments, in running order.
+    number : the smallest number among its segments, which names the face.
+    segments : numbers of its segments, in running order.
     segment : the whole face as one segment.
     """
 
@@ -418,7 +429,8 @@ class Face:
     segment: Segment
 
 
-def merged(run: Sequence[Segment]) -> Segment:
+def merge_run(run: Sequence[Segment]) -> Segment:
+    """Return a run of segments of one line or circle as one segment."""
     first = run[0]
     if len(run) == 1:
         return first
@@ -432,9 +444,10 @@ def merged(run: Sequence[Segment]) -> Segment:
 
 
 def cut_into_runs(items: Sequence[Item], continues: Callable[[Item, Item], bool]) -> list[list[Item]]:
-    """A closed row cut into runs of neighbours of which each continues the one before it.
+    """Return a cyclic sequence cut into runs in which each item
+    continues the one before; ``continues(before, item)`` decides.
 
-    The first run begins with the first item that does not continue its neighbour, or else with the first.
+    The first run begins at the first item that does not continue its predecessor, or at index 0 if all do.
     """
     first = next((k for k in range(len(items)) if not continues(items[k - 1], items[k])), 0)
     runs: list[list[Item]] = []
@@ -449,11 +462,11 @@ def cut_into_runs(items: Sequence[Item], continues: Callable[[Item, Item], bool]
 def list_loop_faces(
     segments: Sequence[Segment], first_number: int, marks: Sequence[object] | None = None
 ) -> list[Face]:
-    """Faces of one loop whose segments are numbered from ``first_number``; ordered by their numbers.
+    """Return the faces of one loop, whose segments are numbered from ``first_number``, ascending by number.
 
     Parameters
     ----------
-    marks : of every segment; segments of different marks are never one face. None where all are alike.
+    marks : one for each segment; a face does not extend over different marks. None for no marks.
     """
 
     def continues(one: int, other: int) -> bool:
@@ -464,5 +477,5 @@ def list_loop_faces(
     faces = []
     for run in cut_into_runs(range(len(segments)), continues):
         numbers = tuple(first_number + k for k in run)
-        faces.append(Face(min(numbers), numbers, merged([segments[k] for k in run])))
+        faces.append(Face(min(numbers), numbers, merge_run([segments[k] for k in run])))
     return sorted(faces, key=lambda face: face.number)

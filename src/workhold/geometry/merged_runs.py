@@ -1,8 +1,8 @@
-"""Runs of short chords and of arcs that are one line or one arc but for a hair, made one.
+"""The merging of runs of short chords, or of arcs, that are one line or one arc within rounding.
 
-Programs that cannot say an arc write it as hundreds of chords. Those that cut curves into arcs give each a
-centre of its own, and those that cut a circle round each sweep by itself. To a peg they are one face, and the
-search would have to separate hundreds of nearly equal contacts.
+Programs without arcs write them as hundreds of chords. Programs that cut curves into arcs give each arc its
+own centre, and those that cut a circle round each arc by itself. For a peg these are one face, and the search
+would have to separate hundreds of nearly equal contacts.
 
 Glossary
 --------
@@ -21,9 +21,9 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import DISGUISE, DRAWN_ON, READING, SHORTEST
-from workhold.geometry.curve_fit import fit_circle, never_interrupt
+from workhold.geometry.curve_fit import fit_circle, ignore_interrupt
 from workhold.geometry.loop import cut_into_runs
-from workhold.geometry.rational import departure, join_pieces, split_arc
+from workhold.geometry.rational import bound_departure, join_pieces, split_arc
 from workhold.geometry.segment import Arc, Line, Point, Segment, make_segment_from_bulge
 
 __all__ = [
@@ -39,9 +39,9 @@ Array = NDArray[np.float64]
 
 
 def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, int]:
-    """Puts each chain of arcs that lies within ``READING`` of a circle onto it.
+    """Put each chain of arcs that lies within ``READING`` mm of a circle onto that circle.
 
-    The ends of a chain stay where they are, unless the whole loop is one. Done twice it changes nothing more.
+    The ends of a chain stay unless the whole loop is the chain. Applying it again changes nothing.
 
     Parameters
     ----------
@@ -50,10 +50,10 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
 
     Returns
     -------
-    ((N, 3) array, read-only: the loop with one circle for each such chain; how many arcs were changed)
+    ((N, 3) array, read-only, with these chains on circles; how many arcs were changed)
     """
     out, changed = np.array(vertices), 0
-    for chain in chains(segments):
+    for chain in find_arc_chains(segments):
         arcs = [segment for k in chain if isinstance(segment := segments[k], Arc)]
         circle = None if is_one_already(arcs) else fit_common_circle(arcs, len(chain) == len(segments))
         if circle is not None:
@@ -64,13 +64,14 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
 
 
 def is_one_already(arcs: Sequence[Arc]) -> bool:
-    """Whether arcs differ by no more than the rounding of a drawing."""
+    """Return whether arcs have the same centre and radius within the rounding of a drawing."""
     first, hair = arcs[0], READING / 100
     return all(dist(arc.center, first.center) + abs(arc.radius - first.radius) < hair for arc in arcs)
 
 
 def follows(one: Segment, other: Segment) -> bool:
-    """Whether neighbours may be of one circle: arcs of one turning sense, nearly tangent where they meet.
+    """Return whether segment ``other``, next after ``one``, may be
+    of the same circle: nearly tangent, similar radius, same sense.
 
     An arc within e of a circle is turned against it by no more than some 4 e / chord.
     """
@@ -78,13 +79,13 @@ def follows(one: Segment, other: Segment) -> bool:
         return False
     if abs(one.radius - other.radius) > 0.1 * (one.radius + other.radius) or one.is_full or other.is_full:
         return False
-    ends = one.normal(one.sign * one.half_sweep), other.normal(-other.sign * other.half_sweep)
+    ends = one.compute_normal(one.sign * one.half_sweep), other.compute_normal(-other.sign * other.half_sweep)
     chord = min(arc.radius * min(sin(min(arc.half_sweep, pi / 2)), 1.0) * 2 for arc in (one, other))
     return dist(*ends) <= 16 * READING / chord + 1e-9
 
 
-def chains(segments: Sequence[Segment]) -> list[list[int]]:
-    """Segments' numbers of each chain of two or more arcs, in running order."""
+def find_arc_chains(segments: Sequence[Segment]) -> list[list[int]]:
+    """Return the indices of each chain of two or more arcs of a loop, in running order."""
 
     def continues(one: int, other: int) -> bool:
         return follows(segments[one], segments[other])
@@ -94,15 +95,18 @@ def chains(segments: Sequence[Segment]) -> list[list[int]]:
 
 
 def fit_common_circle(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
-    """Centre and radius of a circle within ``READING`` of arcs, through both ends unless they are ``whole``.
+    """Return centre and radius in mm of a circle within ``READING`` of all arcs; None without one.
 
-    The circle of least squares through ends and middles (I. Kasa, "A circle fitting procedure and its error
-    analysis", IEEE Transactions on Instrumentation and Measurement 25 (1976) 8-14), whose centre is moved
-    onto the axis of both ends.
+    It goes through both ends of the chain, unless the chain is ``whole``, a closed loop. It is the
+    least-squares circle through ends and middles (I. Kasa, "A circle fitting procedure and its error
+    analysis", IEEE Transactions on Instrumentation and Measurement 25 (1976) 8-14), its centre moved onto the
+    axis of both ends.
     """
     if len(arcs) < 2 or (whole and abs(sum(arc.half_sweep for arc in arcs) - pi) > 1e-3):
         return None
-    points = np.array([point for arc in arcs for point in (arc.start, arc.at(0.0))] + [arcs[-1].end])
+    points = np.array(
+        [point for arc in arcs for point in (arc.start, arc.compute_point(0.0))] + [arcs[-1].end]
+    )
     middle = points.mean(axis=0)
     x, y = (points - middle).T
     (a, b, c), *_ = np.linalg.lstsq(np.column_stack([x, y, np.ones(len(x))]), x * x + y * y, rcond=None)
@@ -120,21 +124,25 @@ def fit_common_circle(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] |
 
 
 def is_near(arc: Arc, center: Point, radius: float) -> bool:
-    """Whether an arc is nowhere farther than ``READING`` from a circle.
+    """Return whether all points of an arc are within ``READING`` mm of a circle.
 
     The distance from the centre has its extremes at the arc's ends and on the line through both centres.
     """
-    points = [arc.start, arc.end, arc.at(0.0)]
+    points = [arc.start, arc.end, arc.compute_point(0.0)]
     toward = atan2(arc.center[1] - center[1], arc.center[0] - center[0])
     for angle in (toward, toward + pi):
         parameter = (angle - arc.mid_angle + pi) % tau - pi
         if abs(parameter) <= arc.half_sweep:
-            points.append(arc.at(parameter))
+            points.append(arc.compute_point(parameter))
     return all(abs(dist(point, center) - radius) <= READING for point in points)
 
 
 def write_chain(out: Array, chain: Sequence[int], circle: tuple[Point, float], count: int) -> None:
-    """Puts the inner vertices of a chain on its circle, and writes the bulges of its arcs."""
+    """Write into ``out``, the (N, 3) vertices of a loop, a
+    chain's inner vertices and bulges as they are on a circle.
+
+    ``chain`` are indices of its arcs, ``count`` is N.
+    """
     (cx, cy), radius = circle
     places = [*chain, (chain[-1] + 1) % count]
     angles = [atan2(out[k, 1] - cy, out[k, 0] - cx) for k in places]
@@ -148,20 +156,20 @@ def write_chain(out: Array, chain: Sequence[int], circle: tuple[Point, float], c
 
 # Radians. Chords that meet at more than this are a corner.
 CORNER_OF_CHORDS = 0.4
-# As many chords as can be an arc: four corners of a drawing are on none by chance.
+# Smallest number of chords that can be an arc: four corners of a drawing lie on one only on purpose.
 LEAST_CHORDS = 4
 
 
 @frozen
 class MergedLoop:
-    """A loop with one segment for each run.
+    """A loop with each run of segments replaced by one.
 
     Parameters
     ----------
     vertices : (N, 3) array of x, y in mm and bulge.
-    firsts : for each segment the number of the first one that it stands for.
-    merged : how many segments were taken together.
-    departure : bound of the distance between the loops, either way, in mm.
+    firsts : for each segment, the number of the first of the old ones that it replaces.
+    merged : by how many segments the loop has fewer.
+    departure : upper bound of the distance between both loops, either way, in mm.
     """
 
     vertices: Array
@@ -171,8 +179,17 @@ class MergedLoop:
 
 
 @frozen
-class Piece:
-    """A segment from a point, with the number of the first that it stands for, and its distance from them."""
+class MergedPiece:
+    """A segment that stands for one or several old ones.
+
+    Parameters
+    ----------
+    start : its first point, in mm; it ends where the next piece starts.
+    bulge : tan(sweep / 4), 0 for a line.
+    first : number of the first old segment that it stands for.
+    kept : whether it must not be merged further.
+    departure : upper bound of its distance from the old segments, in mm.
+    """
 
     start: Point
     bulge: float
@@ -185,28 +202,29 @@ def merge_chords(
     vertices: Array,
     fit: float | None = None,
     kept: Sequence[bool] = (),
-    interrupt: Callable[[], None] = never_interrupt,
+    interrupt: Callable[[], None] = ignore_interrupt,
 ) -> MergedLoop:
-    """One line or arc for each run of segments that is nowhere farther from it than ``DISGUISE``.
+    """Return a loop in which each run of segments within
+    ``DISGUISE`` mm of a line or arc is replaced by that.
 
     Parameters
     ----------
     vertices : (N, 3) array of a loop.
-    fit : how far chords may be from an arc that stands for them, in mm, where that is more.
-    kept : for each segment whether it stays as it is; none does if this is empty.
-    interrupt : is called before every run, and may raise an error.
+    fit : larger tolerance in mm for arcs in place of chords; None for none.
+    kept : for each segment whether it stays as it is; empty for none.
+    interrupt : called before every run; may raise an error to stop.
     """
     pieces = [
-        Piece((float(x), float(y)), float(b), k, bool(kept) and kept[k])
+        MergedPiece((float(x), float(y)), float(b), k, bool(kept) and kept[k])
         for k, (x, y, b) in enumerate(vertices)
     ]
     count = len(pieces)
     tolerance = DISGUISE if fit is None else max(fit, DISGUISE)
-    whole = whole_circle(pieces, tolerance)
+    whole = fit_whole_circle(pieces, tolerance)
     if whole is not None:
         pieces = whole
     elif count > 2:
-        drawn = from_a_corner(pieces)
+        drawn = begin_at_corner(pieces)
         pieces = merge_all_runs(drawn, tolerance, interrupt)
         if 1 < len(pieces) < count:
             # Where a run has ended the loop can begin: no other goes across.
@@ -221,25 +239,25 @@ def merge_chords(
     return MergedLoop(rows, tuple(piece.first for piece in pieces), count - len(pieces), away)
 
 
-# mm. Vertices this near to a circle are drawn on it, with the digits of a file that gives few.
+# mm. Vertices this near to a circle count as drawn on it, in a file with few digits.
 CHORDS_ON = 0.01
 # mm and a share of the radius: chords farther inside their circle than both are sides of a polygon; the share is
 # that of 20 sides to the circle.
 COARSE, COARSE_SHARE = 0.5, 0.0123
-# Steps of the fits that are proposed.
+# Leading digits of the tolerances that are proposed.
 FITS = (1.0, 2.0, 5.0, 10.0, 20.0)
 
 
 @frozen
 class ChordedArcs:
-    """Arcs and circles that a loop has as chords, farther from them than a disguise may be.
+    """Arcs and circles that a loop approximates by chords, with a departure too large for silent merging.
 
     Parameters
     ----------
-    chords : how many.
-    radii : of the arcs, in mm.
-    departure : how far the chords are from the arcs, in mm.
-    fit : with which :func:`merge_chords` makes them arcs, in mm.
+    chords : how many chords.
+    radii : of the arcs, in mm, each once.
+    departure : distance of the chords from the arcs, in mm.
+    fit : tolerance in mm with which :func:`merge_chords` turns them into arcs.
     """
 
     chords: int
@@ -249,9 +267,9 @@ class ChordedArcs:
 
 
 def find_chorded_arcs(
-    vertices: Array, kept: Sequence[bool] = (), interrupt: Callable[[], None] = never_interrupt
+    vertices: Array, kept: Sequence[bool] = (), interrupt: Callable[[], None] = ignore_interrupt
 ) -> ChordedArcs | None:
-    """The arcs that a loop has as chords; None where it has none.
+    """Return the arcs that a loop approximates by chords; None where it has none.
 
     Four chords and more are an arc where they meet at less than ``CORNER_OF_CHORDS`` and all their ends lie on
     one circle. So a polygon of 15 equal sides and fewer is a polygon, and one of 16 may be a circle: a quarter
@@ -265,12 +283,12 @@ def find_chorded_arcs(
     if len(vertices) <= LEAST_CHORDS:
         return None
     pieces = [
-        Piece((float(x), float(y)), float(b), k, b != 0.0 or (bool(kept) and kept[k]))
+        MergedPiece((float(x), float(y)), float(b), k, b != 0.0 or (bool(kept) and kept[k]))
         for k, (x, y, b) in enumerate(vertices)
     ]
-    found = whole_circle(pieces, inf, CHORDS_ON)
+    found = fit_whole_circle(pieces, inf, CHORDS_ON)
     if found is None:
-        found = merge_longest_runs(from_a_corner(pieces), CHORDS_ON, inf, LEAST_CHORDS, interrupt)
+        found = merge_longest_runs(begin_at_corner(pieces), CHORDS_ON, inf, LEAST_CHORDS, interrupt)
     arcs = [
         (piece, after)
         for piece, after in zip(found, found[1:] + found[:1], strict=True)
@@ -294,18 +312,20 @@ def find_chorded_arcs(
     return ChordedArcs(chords + len(arcs), tuple(radii), away, fit)
 
 
-def is_coarse(piece: Piece, after: Piece) -> bool:
-    """Whether the chords of an arc are the sides of a polygon that somebody meant."""
+def is_coarse(piece: MergedPiece, after: MergedPiece) -> bool:
+    """Return whether the chords of an arc, up to the piece
+    ``after``, are so coarse that a polygon is meant.
+    """
     arc = make_segment_from_bulge(piece.start, after.start, piece.bulge)
     return isinstance(arc, Arc) and piece.departure > max(COARSE, COARSE_SHARE * arc.radius)
 
 
 def describe_chords(found: Sequence[ChordedArcs], fit: str) -> list[str]:
-    """What to say of arcs that came as chords.
+    """Return a list with one sentence on arcs that came as chords; empty without any.
 
     Parameters
     ----------
-    fit : what the choice of a fit is called.
+    fit : name of the option for the tolerance.
     """
     if not found:
         return []
@@ -318,91 +338,112 @@ def describe_chords(found: Sequence[ChordedArcs], fit: str) -> list[str]:
     ]
 
 
-def merge_all_runs(pieces: list[Piece], tolerance: float, interrupt: Callable[[], None]) -> list[Piece]:
-    """A row of pieces with its runs merged, first those with vertices on them to a file's digits."""
+def merge_all_runs(
+    pieces: list[MergedPiece], tolerance: float, interrupt: Callable[[], None]
+) -> list[MergedPiece]:
+    """Return an open row of pieces with its runs merged, first
+    those whose vertices are on the line or arc to a file's digits.
+    """
     for near in (min(DRAWN_ON, tolerance), tolerance):
         pieces = merge_longest_runs(pieces, near, tolerance, LEAST_CHORDS, interrupt)
     return merge_longest_runs(pieces, DISGUISE, DISGUISE, 2, interrupt)
 
 
-def from_a_corner(pieces: list[Piece]) -> list[Piece]:
-    """The pieces of a loop, begun at a corner, or else where the longest begins."""
-    turns, points = np.abs(turns_of(pieces)), points_of(pieces)
+def begin_at_corner(pieces: list[MergedPiece]) -> list[MergedPiece]:
+    """Return the pieces of a loop rotated to begin at its
+    sharpest corner, or without a corner at its longest piece.
+    """
+    turns, points = np.abs(compute_turns(pieces)), list_starts(pieces)
     lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
     sharpest = int(np.argmax(turns))
     first = sharpest if turns[sharpest] > CORNER_OF_CHORDS else int(np.argmax(lengths))
     return pieces[first:] + pieces[:first]
 
 
-def points_of(pieces: Sequence[Piece]) -> Array:
-    """(N, 2) starts."""
+def list_starts(pieces: Sequence[MergedPiece]) -> Array:
+    """Return the start points (N, 2) of pieces, in mm."""
     return np.array([piece.start for piece in pieces])
 
 
-def turns_of(pieces: Sequence[Piece]) -> Array:
-    """(N,) signed angles by which a loop turns where each piece begins."""
-    points = points_of(pieces)
+def compute_turns(pieces: Sequence[MergedPiece]) -> Array:
+    """Return the signed angles (N,) in radians by which a loop turns where each piece begins."""
+    points = list_starts(pieces)
     along = np.roll(points, -1, axis=0) - points
     chord, half = np.arctan2(along[:, 1], along[:, 0]), 2 * np.arctan([piece.bulge for piece in pieces])
     turned = chord - half - np.roll(chord + half, 1)
     return np.asarray((turned + pi) % (2 * pi) - pi)
 
 
-def whole_circle(pieces: list[Piece], tolerance: float, near: float | None = None) -> list[Piece] | None:
-    """The two halves of the circle that a loop is to within a tolerance; None where it is none.
+def fit_whole_circle(
+    pieces: list[MergedPiece], tolerance: float, near: float | None = None
+) -> list[MergedPiece] | None:
+    """Return the two halves of the circle that a loop is within a tolerance in mm; None where it is none.
 
-    Its vertices are as near to the circle, or as ``near`` says.
+    Vertices must be within ``near`` mm of the circle; None for the tolerance.
     """
     count = len(pieces)
-    if not worth(pieces, 2 * LEAST_CHORDS) or any(piece.kept for piece in pieces):
+    if not is_worth_fitting(pieces, 2 * LEAST_CHORDS) or any(piece.kept for piece in pieces):
         return None
-    if (np.abs(turns_of(pieces)) > CORNER_OF_CHORDS).any():
+    if (np.abs(compute_turns(pieces)) > CORNER_OF_CHORDS).any():
         return None
-    points = points_of([*pieces, pieces[0]])
-    circle = fit_circle(points[:-1] if all(p.bulge == 0.0 for p in pieces) else with_middles(pieces, points))
+    points = list_starts([*pieces, pieces[0]])
+    circle = fit_circle(
+        points[:-1] if all(p.bulge == 0.0 for p in pieces) else insert_middles(pieces, points)
+    )
     if circle is None:
         return None
     (cx, cy), radius = circle
-    turned = sum(turns_of(pieces)) + sum(4 * np.arctan(piece.bulge) for piece in pieces)
+    turned = sum(compute_turns(pieces)) + sum(4 * np.arctan(piece.bulge) for piece in pieces)
     sign = 1.0 if turned > 0 else -1.0
     angle = atan2(points[0, 1] - cy, points[0, 0] - cx)
-    away = off(pieces, points, Arc((cx, cy), radius, angle + pi, pi, sign), near or tolerance, tolerance)
+    away = measure_departure(
+        pieces, points, Arc((cx, cy), radius, angle + pi, pi, sign), near or tolerance, tolerance
+    )
     if not isfinite(away) or (count == 2 and away < READING):
         return None
     x, y = cx + radius * np.cos(angle), cy + radius * np.sin(angle)
-    one = Piece((float(x), float(y)), sign, pieces[0].first, True, away)
-    return [one, Piece((float(2 * cx - x), float(2 * cy - y)), sign, pieces[count // 2].first, True, away)]
+    one = MergedPiece((float(x), float(y)), sign, pieces[0].first, True, away)
+    return [
+        one,
+        MergedPiece((float(2 * cx - x), float(2 * cy - y)), sign, pieces[count // 2].first, True, away),
+    ]
 
 
-def worth(pieces: Sequence[Piece], least: int) -> bool:
-    """Whether so few pieces can be a run: two arcs or two lines can, few lines and an arc only by chance."""
+def is_worth_fitting(pieces: Sequence[MergedPiece], least: int) -> bool:
+    """Return whether there are enough pieces for a run: two if all are arcs, else ``least``."""
     arcs = sum(piece.bulge != 0.0 for piece in pieces)
     return len(pieces) >= (2 if arcs == len(pieces) else least)
 
 
 def merge_longest_runs(
-    pieces: list[Piece],
+    pieces: list[MergedPiece],
     near: float,
     tolerance: float,
     least: int,
-    interrupt: Callable[[], None] = never_interrupt,
-) -> list[Piece]:
-    """The longest runs one after the other; those of fewer than ``LEAST_CHORDS`` chords are lines only.
+    interrupt: Callable[[], None] = ignore_interrupt,
+) -> list[MergedPiece]:
+    """Return an open row of pieces with the longest runs
+    merged, found one after the other from its beginning.
 
-    Vertices may be ``near`` mm from a line or an arc, chords between them ``tolerance``, for arcs
-    ``DISGUISE`` at most. A run has ``least`` chords or more.
+    Corners and kept pieces end runs.
+
+    Parameters
+    ----------
+    near : largest distance of vertices from the line or arc, in mm.
+    tolerance : largest distance of chords between them, in mm; for arcs ``DISGUISE`` at most.
+    least : how many pieces with chords a run must have; fewer than ``LEAST_CHORDS`` only make lines.
     """
-    points = points_of([*pieces, pieces[0]])
-    corner = np.abs(turns_of(pieces)) > CORNER_OF_CHORDS
+    points = list_starts([*pieces, pieces[0]])
+    corner = np.abs(compute_turns(pieces)) > CORNER_OF_CHORDS
     ends = np.array([piece.kept for piece in pieces]) | np.roll([piece.kept for piece in pieces], 1) | corner
-    # Where the row of pieces that may be one run with a piece ends.
+    # Ends of runs: kept pieces and corners.
     stops = np.append(np.flatnonzero(ends), len(pieces))
-    out: list[Piece] = []
+    out: list[MergedPiece] = []
     k = 0
     while k < len(pieces):
         interrupt()
         stop = int(stops[np.searchsorted(stops, k + 1)])
-        # Two arcs can be a run, and so many chords; then steps that double and afterwards halve.
+        # A run starts with two arcs, or ``least`` chords, and grows in steps that double and then halve.
         best, taken, step, growing = None, k + 1, 1, True
         for fewest in (2, least):
             if best is None and k + fewest <= stop:
@@ -423,13 +464,13 @@ def merge_longest_runs(
 
 
 def make_one_piece(
-    pieces: Sequence[Piece], points: Array, near: float, tolerance: float, least: int
-) -> Piece | None:
-    """The line or arc that a run is; None where it is none.
+    pieces: Sequence[MergedPiece], points: Array, near: float, tolerance: float, least: int
+) -> MergedPiece | None:
+    """Return the line or arc that replaces a run of N pieces; None where none is near enough.
 
-    ``points`` are the (N + 1, 2) ends of the run's N pieces.
+    ``points`` (N + 1, 2) are the ends of the pieces; the rest as in :func:`merge_longest_runs`.
     """
-    if not worth(pieces, least):
+    if not is_worth_fitting(pieces, least):
         return None
     start, end = (float(points[0, 0]), float(points[0, 1])), (float(points[-1, 0]), float(points[-1, 1]))
     chord = dist(start, end)
@@ -437,32 +478,35 @@ def make_one_piece(
         return None
     before = max(piece.departure for piece in pieces)
     line = Line(start, end)
-    away = off(pieces, points, line, near, tolerance)
+    away = measure_departure(pieces, points, line, near, tolerance)
     if isfinite(away):
-        return Piece(start, 0.0, pieces[0].first, False, before + away)
-    if not worth(pieces, LEAST_CHORDS):
+        return MergedPiece(start, 0.0, pieces[0].first, False, before + away)
+    if not is_worth_fitting(pieces, LEAST_CHORDS):
         return None
     arc = fit_arc(pieces, points, line)
     if arc is None:
         return None
-    away = off(pieces, points, arc, near, tolerance)
+    away = measure_departure(pieces, points, arc, near, tolerance)
     return (
-        Piece(start, arc.sign * tan(arc.half_sweep / 2), pieces[0].first, True, before + away)
+        MergedPiece(start, arc.sign * tan(arc.half_sweep / 2), pieces[0].first, True, before + away)
         if isfinite(away)
         else None
     )
 
 
-def with_middles(pieces: Sequence[Piece], points: Array) -> Array:
+def insert_middles(pieces: Sequence[MergedPiece], points: Array) -> Array:
+    """Return ``points`` with the middles of the arcs among the pieces appended."""
     chords = np.diff(points, axis=0)
     bulges = np.array([piece.bulge for piece in pieces])[:, None]
     middles = points[:-1] + chords / 2 + np.column_stack([chords[:, 1], -chords[:, 0]]) * bulges / 2
     return np.concatenate([points, middles[bulges[:, 0] != 0.0]])
 
 
-def fit_arc(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
-    """Arc of least squares through both ends of a run; see ``curve_fit.fit_circle``."""
-    circle = fit_circle(with_middles(pieces, points))
+def fit_arc(pieces: Sequence[MergedPiece], points: Array, line: Line) -> Arc | None:
+    """Return the least-squares arc through both ends of a
+    run, given the ``line`` between them; None without one.
+    """
+    circle = fit_circle(insert_middles(pieces, points))
     if circle is None:
         return None
     (cx, cy), _ = circle
@@ -478,8 +522,12 @@ def fit_arc(pieces: Sequence[Piece], points: Array, line: Line) -> Arc | None:
     return Arc((cx, cy), radius, float(angles[0]) + sweep / 2, abs(sweep) / 2, 1.0 if sweep > 0 else -1.0)
 
 
-def off(pieces: Sequence[Piece], points: Array, segment: Segment, near: float, tolerance: float) -> float:
-    """Distance in mm of a run from a line or arc; infinity where it is too far or runs backward."""
+def measure_departure(
+    pieces: Sequence[MergedPiece], points: Array, segment: Segment, near: float, tolerance: float
+) -> float:
+    """Return the largest distance in mm of a run from a line
+    or arc; inf where it is too large or the run turns back.
+    """
     if isinstance(segment, Arc):
         cx, cy = segment.center
         x, y = points[:, 0] - cx, points[:, 1] - cy
@@ -505,4 +553,4 @@ def off(pieces: Sequence[Piece], points: Array, segment: Segment, near: float, t
         return found if found <= tolerance else inf
     ends = [(float(x), float(y)) for x, y in points]
     curves = [split_arc(ends[k], ends[k + 1], piece.bulge) for k, piece in enumerate(pieces)]
-    return departure(join_pieces(curves), segment, min(tolerance, DISGUISE))
+    return bound_departure(join_pieces(curves), segment, min(tolerance, DISGUISE))

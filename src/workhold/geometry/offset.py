@@ -27,91 +27,102 @@ from workhold.geometry.segment import (
     Line,
     Point,
     Segment,
-    bounding_box,
+    compute_bounding_box,
     find_carrier_crossings,
-    segment_rows,
+    make_segment_rows,
 )
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 
-__all__ = ["clear_parts", "make_joint_circle", "keep_clear_parts", "offset_segment", "list_trimmed_offsets"]
+__all__ = [
+    "find_clear_parts",
+    "make_joint_circle",
+    "keep_clear_parts",
+    "offset_segment",
+    "list_trimmed_offsets",
+]
 
 
 def offset_segment(segment: Segment, radius: float) -> Segment | None:
-    """A segment moved outward by ``radius`` mm, or None for a concave arc that vanishes."""
+    """Return a segment moved outward by ``radius`` mm; None for a concave arc that vanishes."""
     if isinstance(segment, Line):
-        nx, ny = segment.normal()
+        nx, ny = segment.compute_normal()
         (x0, y0), (x1, y1) = segment.start, segment.end
         return Line((x0 + radius * nx, y0 + radius * ny), (x1 + radius * nx, y1 + radius * ny))
     if segment.radius + segment.sign * radius <= CLEARANCE:
         return None
-    return segment.grown(segment.sign * radius)
+    return segment.grow(segment.sign * radius)
 
 
 def list_trimmed_offsets(
     segments: Sequence[Segment], radius: float, flat: float | None = None
 ) -> list[tuple[int, Segment]]:
-    """Boundary pieces of (part + disc of ``radius`` mm) that face the segments, without rolled corners.
+    """Return the boundary pieces of (part + disc of ``radius`` mm)
+    that are offsets of segments; arcs around corners are left out.
 
     Parameters
     ----------
     segments : the whole outline with its holes, material on the left.
     radius : in mm, zero or more.
-    flat : lines are moved outward by this in mm instead, ``radius`` or less: where the disc keeps clear of
-        all but the line.
+    flat : offset in mm of lines instead of ``radius``, at most as large, for a disc with a flat against the
+        line; None for none.
 
     Returns
     -------
     list of (index of the segment, piece), in the order of the segments and of the parameter along each.
     """
-    rows = segment_rows(segments)
+    rows = make_segment_rows(segments)
     raw = [offset_segment(segment, radius) for segment in segments]
     joints = [s.start for s in segments if not (isinstance(s, Arc) and s.is_full)]
     circles = [make_joint_circle(joint, radius) for joint in joints]
-    boxes = np.array([bounding_box(segment) for segment in segments])
+    boxes = np.array([compute_bounding_box(segment) for segment in segments])
     joint_boxes = np.array([(*joint, *joint) for joint in joints]).reshape(-1, 4)
     pieces: list[tuple[int, Segment]] = []
 
     def is_clear(beside: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        return np.asarray(outline_distances(points, beside) >= radius - CLEARANCE)
+        """Return whether (M,) points (M, 2) are at least
+        the radius from the segments with rows ``beside``.
+        """
+        return np.asarray(measure_outline_distances(points, beside) >= radius - CLEARANCE)
 
-    # Beside a flat the disc reaches over the line, and behind an acute corner into what lies on the other
-    # side of the part.
+    # With a flat the disc reaches over the line, and behind an acute corner over segments on the other side
+    # of the part.
     behind = [None if flat is None else offset_segment(segment, -radius) for segment in segments]
     for index, segment in enumerate(segments):
         piece, beside, sides = raw[index], rows, [raw]
         if flat is not None and isinstance(segment, Line):
             piece, beside, sides = offset_segment(segment, flat), np.delete(rows, index, 0), [raw, behind]
-        # A hollow that the disc fills is none of its own, and cuts its neighbours all the same.
+        # A hollow that the disc fills gives no piece, but still cuts its neighbours.
         if piece is None or (isinstance(piece, Arc) and piece.radius <= FILLED):
             continue
         # Only what comes within a diameter of the segment can touch the disc beside it.
-        near = np.flatnonzero(boxes_apart(boxes, bounding_box(piece)) <= 2 * radius + CLEARANCE)
+        near = np.flatnonzero(measure_box_gaps(boxes, compute_bounding_box(piece)) <= 2 * radius + CLEARANCE)
         others = [r for side in sides for k in near if k != index and (r := side[k]) is not None]
-        close = np.flatnonzero(boxes_apart(joint_boxes, bounding_box(piece)) <= radius + CLEARANCE)
+        close = np.flatnonzero(
+            measure_box_gaps(joint_boxes, compute_bounding_box(piece)) <= radius + CLEARANCE
+        )
         others += [circles[k] for k in close]
         pieces += [(index, kept) for kept in keep_clear_parts(piece, others, partial(is_clear, beside))]
     return pieces
 
 
-def clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[Segment]:
-    """Parts of a segment at least ``radius`` mm from a zone, a closed loop with its inside on the left.
+def find_clear_parts(piece: Segment, zone: Sequence[Segment], radius: float) -> list[Segment]:
+    """Return the parts of a segment outside a zone and at least ``radius`` mm from it.
 
-    They end where the distance is the radius: on the zone's offset or on a joint circle, like the pieces of
-    an outline.
+    ``zone`` is a closed loop with its inside on the left.
     """
-    rows = segment_rows(zone)
+    rows = make_segment_rows(zone)
     others = [raw for segment in zone if (raw := offset_segment(segment, radius)) is not None]
     others += [make_joint_circle(segment.start, radius) for segment in zone]
 
     def is_clear(middles: NDArray[np.float64]) -> NDArray[np.bool_]:
         outside = np.array([not is_inside(x, y, rows) for x, y in middles], np.bool_)
-        return np.asarray(outside & (outline_distances(middles, rows) >= radius - CLEARANCE))
+        return np.asarray(outside & (measure_outline_distances(middles, rows) >= radius - CLEARANCE))
 
     return keep_clear_parts(piece, others, is_clear)
 
 
 def make_joint_circle(joint: Point, radius: float) -> Segment:
-    """The circle on which the centre of a disc rolls around a joint."""
+    """Return the full circle of ``radius`` mm around a joint."""
     return Arc(joint, radius, 0.0, pi, 1.0)
 
 
@@ -120,17 +131,18 @@ def keep_clear_parts(
     others: Sequence[Segment],
     is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
 ) -> list[Segment]:
-    """Parts of a raw piece that stay clear; ``is_clear`` takes (M, 2) points.
+    """Return the parts of a raw piece that are clear, in order along it.
 
-    It may enter or leave the boundary only where it meets the line or the circle of another piece.
+    It is cut where it meets the line or the circle of any of ``others``; the middle of each part decides.
+    ``is_clear`` takes points (M, 2) and returns (M,).
     """
     half = piece.half_extent
     points = [point for other in others for point in find_carrier_crossings(piece, other)]
-    inner = sorted(p for p in (piece.parameter(point) for point in points) if -half < p < half)
+    inner = sorted(p for p in (piece.find_parameter(point) for point in points) if -half < p < half)
     cuts = [-half, *inner, half]
     scale = piece.radius if isinstance(piece, Arc) else 1.0
     spans: list[list[float]] = []
-    clear = is_clear(np.array([piece.at((a + b) / 2) for a, b in pairwise(cuts)]))
+    clear = is_clear(np.array([piece.compute_point((a + b) / 2) for a, b in pairwise(cuts)]))
     for (a, b), keep in zip(pairwise(cuts), clear, strict=True):
         if keep and spans and spans[-1][1] == a:
             spans[-1][1] = b
@@ -138,11 +150,13 @@ def keep_clear_parts(
             spans.append([a, b])
     if spans == [[-half, half]]:
         return [piece]
-    return [piece.part(a, b) for a, b in spans if (b - a) * scale > CLEARANCE]
+    return [piece.cut_part(a, b) for a, b in spans if (b - a) * scale > CLEARANCE]
 
 
-def boxes_apart(boxes: NDArray[np.float64], box: tuple[float, float, float, float]) -> NDArray[np.float64]:
-    """Larger gap in x and y, (N,), between bounding boxes (N, 4) and one; negative where they overlap."""
+def measure_box_gaps(
+    boxes: NDArray[np.float64], box: tuple[float, float, float, float]
+) -> NDArray[np.float64]:
+    """Return the larger gap in x and y, (N,), between bounding boxes (N, 4) and one; negative where they overlap."""
     x0, y0, x1, y1 = box
     gaps = np.stack([boxes[:, 0] - x1, x0 - boxes[:, 2], boxes[:, 1] - y1, y0 - boxes[:, 3]])
     return np.asarray(gaps.max(axis=0))

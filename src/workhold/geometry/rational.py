@@ -1,4 +1,5 @@
-"""Rational Bézier pieces, which any drawing's curves are exactly, and how far they are from lines and arcs.
+"""Rational Bézier pieces, which represent all curves of drawings exactly, and bounds of their distance from
+lines and arcs.
 
 Glossary
 --------
@@ -13,10 +14,10 @@ forward : a curve runs along a line without turning back, or around a centre in 
     it then has a point at each place of the line or arc, so that either is as far from the other as the
     curve's points are.
 
-Distances are bounded by control points, no sampling. Let a rational function have Bernstein coefficients a in
-its numerator and b > 0 in its denominator. It lies between the smallest and the largest a / b, since it is a
+Distances are bounded by control points, without sampling. A rational function with Bernstein coefficients a
+in its numerator and b > 0 in its denominator lies between the smallest and the largest a / b, since it is a
 mean of them with positive weights. Distances from a line are such a function, and so are squares of distances
-from a point. Halving the pieces brings the bound four times as near to the distance.
+from a point. Halving the pieces makes the excess of the bound four times smaller.
 """
 
 from __future__ import annotations
@@ -34,28 +35,28 @@ __all__ = [
     "Pieces",
     "split_arc",
     "cut",
-    "departure",
-    "direction_at",
+    "bound_departure",
+    "compute_direction",
     "split_ellipse",
     "compute_end_curvatures",
     "compute_end_directions",
-    "halved",
+    "halve_pieces",
     "join_pieces",
-    "mapped",
-    "point_at",
-    "points_along",
+    "transform_pieces",
+    "compute_point",
+    "sample_points",
     "make_bezier_piece",
     "split_spline",
     "drop_point_pieces",
 ]
 
 Pieces = NDArray[np.float64]
-# Degrees above this are no drawing's, and cost more to bound than they are worth.
+# Largest degree; drawings have none above, and bounds would cost too much.
 MOST_DEGREE = 12
 
 
 def split_spline(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike, degree: int) -> Pieces:
-    """The pieces of a B-spline between its knots.
+    """Return the Bézier pieces of a B-spline between its distinct knots.
 
     Parameters
     ----------
@@ -107,15 +108,16 @@ def split_spline(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike,
 
 
 def make_bezier_piece(points: ArrayLike) -> Pieces:
-    """The one piece of a Bézier curve of (n + 1, 2) control points."""
+    """Return the Bézier curve of (n + 1, 2) control points as one piece, (1, n + 1, 3)."""
     control = np.asarray(points, dtype=np.float64)
     return np.column_stack([control, np.ones(len(control))])[None]
 
 
 def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep: float) -> Pieces:
-    """Exact pieces of center + major cos t + minor sin t from ``start`` over a signed ``sweep`` in radians.
+    """Return exact pieces of the curve center + major cos t + minor
+    sin t, t from ``start`` over a signed ``sweep`` in radians.
 
-    Each covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that
+    Each piece covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that
     (Piegl and Tiller, The NURBS Book, 1997, section 7.3).
     """
     count = max(1, ceil(abs(sweep) / (pi / 2) - 1e-9))
@@ -123,6 +125,7 @@ def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep
     half = cos(step / 2)
 
     def at(angle: float, weight: float) -> tuple[float, float, float]:
+        """Return the row (x w, y w, w) of the control point at an angle."""
         c, s = cos(angle) / weight, sin(angle) / weight
         x, y = center[0] + major[0] * c + minor[0] * s, center[1] + major[1] * c + minor[1] * s
         return x * weight, y * weight, weight
@@ -137,7 +140,9 @@ def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep
 
 
 def split_arc(start: Point, end: Point, bulge: float) -> Pieces:
-    """The pieces of the arc of a bulge from one point to another, or of a line for a bulge of 0."""
+    """Return the pieces of the arc with a bulge from one
+    point to another; one linear piece for a bulge of 0.
+    """
     segment = make_segment_from_bulge(start, end, bulge)
     if not isinstance(segment, Arc):
         return make_bezier_piece([start, end])
@@ -149,8 +154,10 @@ def split_arc(start: Point, end: Point, bulge: float) -> Pieces:
     return found
 
 
-def raised(pieces: Pieces, degree: int) -> Pieces:
-    """Same curves as pieces of a higher degree (Farin, Curves and Surfaces for CAGD, section 6.1)."""
+def raise_degree(pieces: Pieces, degree: int) -> Pieces:
+    """Return the same curves with their degree raised to
+    ``degree`` (Farin, Curves and Surfaces for CAGD, section 6.1).
+    """
     while pieces.shape[1] <= degree:
         n = pieces.shape[1]
         share = (np.arange(n + 1) / n)[:, None]
@@ -161,12 +168,13 @@ def raised(pieces: Pieces, degree: int) -> Pieces:
 
 
 def join_pieces(curves: list[Pieces]) -> Pieces:
+    """Return the pieces of several curves in order, all raised to the largest degree among them."""
     degree = max(pieces.shape[1] for pieces in curves) - 1
-    return np.concatenate([raised(pieces, degree) for pieces in curves])
+    return np.concatenate([raise_degree(pieces, degree) for pieces in curves])
 
 
-def mapped(pieces: Pieces, matrix: ArrayLike) -> Pieces:
-    """The image under an affine map with the (2, 3) matrix (a, c, e), (b, d, f), exactly."""
+def transform_pieces(pieces: Pieces, matrix: ArrayLike) -> Pieces:
+    """Return the exact image of pieces under the affine map with the (2, 3) matrix ((a, c, e), (b, d, f))."""
     out = np.empty_like(pieces)
     out[..., :2] = pieces @ np.asarray(matrix, dtype=np.float64).T
     out[..., 2] = pieces[..., 2]
@@ -174,7 +182,9 @@ def mapped(pieces: Pieces, matrix: ArrayLike) -> Pieces:
 
 
 def drop_point_pieces(pieces: Pieces, shortest: float) -> Pieces:
-    """The pieces that reach farther than ``shortest``, their ends moved onto each other."""
+    """Return the pieces with an extent of at least ``shortest``
+    mm, starts moved onto the end of the piece before.
+    """
     places = pieces[..., :2] / pieces[..., 2:]
     kept: Pieces = pieces[np.ptp(places, axis=1).max(axis=1) >= shortest].copy()
     if len(kept) > 1:
@@ -182,14 +192,16 @@ def drop_point_pieces(pieces: Pieces, shortest: float) -> Pieces:
     return kept
 
 
-def halved(pieces: Pieces) -> Pieces:
-    """The (2 P, n + 1, 3) halves of pieces, in order (de Casteljau)."""
+def halve_pieces(pieces: Pieces) -> Pieces:
+    """Return the (2 P, n + 1, 3) halves of pieces, in order along the curve."""
     left, right = split(pieces, 0.5)
     return np.stack([left, right], axis=1).reshape(-1, *pieces.shape[1:])
 
 
 def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
-    """The parts of pieces before and after a parameter within each (de Casteljau)."""
+    """Return the parts of all pieces before, and after,
+    the parameter ``at`` in (0, 1) of each (de Casteljau).
+    """
     n = pieces.shape[1]
     left, right = np.empty_like(pieces), np.empty_like(pieces)
     values = pieces
@@ -200,7 +212,7 @@ def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
 
 
 def cut(pieces: Pieces, first: float, last: float) -> Pieces:
-    """The stretch of a curve between two parameters, the first smaller."""
+    """Return the pieces of a curve between parameters ``first`` < ``last``, each from 0 to P."""
     low, high = min(int(first), len(pieces) - 1), min(int(ceil(last)), len(pieces))
     stretch = pieces[low : max(high, low + 1)]
     begin, end = first - low, last - (low + len(stretch) - 1)
@@ -212,7 +224,8 @@ def cut(pieces: Pieces, first: float, last: float) -> Pieces:
     return stretch
 
 
-def point_at(pieces: Pieces, parameter: float) -> Point:
+def compute_point(pieces: Pieces, parameter: float) -> Point:
+    """Return the point (x, y) in mm of a curve at a parameter from 0 to P."""
     number = min(int(parameter), len(pieces) - 1)
     t = parameter - number
     n = pieces.shape[1] - 1
@@ -221,8 +234,9 @@ def point_at(pieces: Pieces, parameter: float) -> Point:
     return float(x / w), float(y / w)
 
 
-def direction_at(pieces: Pieces, parameter: float, after: bool) -> Point:
-    """Unit tangent of a curve at a parameter, seen from the stretch after it or before it.
+def compute_direction(pieces: Pieces, parameter: float, after: bool) -> Point:
+    """Return the unit tangent of a curve at a parameter;
+    at a joint of pieces, that ``after`` it or before it.
 
     Where the derivative vanishes, as at a control point given twice, it is the direction to the next one that
     differs.
@@ -239,9 +253,12 @@ def direction_at(pieces: Pieces, parameter: float, after: bool) -> Point:
 
 
 def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(P, 2) unit tangents where each piece begins and where it ends, see :func:`direction_at`."""
+    """Return the unit tangents (P, 2) at the start, and at the
+    end, of each piece, both forward; see :func:`direction_at`.
+    """
 
     def leaving(rows: Pieces) -> NDArray[np.float64]:
+        """Return the unit tangents (P, 2) at the starts of pieces."""
         places = rows[..., :2] / rows[..., 2:]
         steps = places[:, 1:] - places[:, :1]
         sizes = np.hypot(steps[..., 0], steps[..., 1])
@@ -253,8 +270,10 @@ def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
     return leaving(pieces), -leaving(pieces[:, ::-1])
 
 
-def points_along(pieces: Pieces, each: int) -> NDArray[np.float64]:
-    """(each * P + 1, 2) points of a curve at equal parameters, ``each`` to a piece."""
+def sample_points(pieces: Pieces, each: int) -> NDArray[np.float64]:
+    """Return points (each * P + 1, 2) in mm of a curve at
+    equally spaced parameters, ``each`` intervals to a piece.
+    """
     n = pieces.shape[1] - 1
     t = (np.arange(each) / each)[:, None]
     k = np.arange(n + 1)
@@ -265,12 +284,14 @@ def points_along(pieces: Pieces, each: int) -> NDArray[np.float64]:
 
 
 def compute_end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(P,) signed curvatures in 1/mm where each piece begins and ends; NaN where its derivative vanishes.
+    """Return the signed curvatures (P,) in 1/mm at the start, and at the end, of each piece.
 
-    kappa = (n - 1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 - p0|³ (Farin, section 12.5).
+    NaN where the derivative vanishes. kappa = (n - 1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 -
+    p0|³ (Farin, section 12.5).
     """
 
     def curvature(rows: Pieces) -> NDArray[np.float64]:
+        """Return the signed curvatures (P,) at the starts of pieces."""
         n = rows.shape[1] - 1
         if n < 2:
             return np.zeros(len(rows))
@@ -288,20 +309,22 @@ def compute_end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
 
 Array = NDArray[np.float64]
 
-# Halvings, after which a bound is within some thousandth of the curve's own size of what it bounds, squared.
+# Number of halvings, after which a bound is near enough: the excess is about a thousandth of the curve's
+# size, squared.
 MOST_HALVINGS = 7
-# So many pieces are halved no more where they are near enough without.
+# With more pieces than this no further halving is done where bounds suffice.
 MOST_HALVED = 4096
-# A bound this near to a distance that is reached is good enough.
+# A bound within this factor of a distance that is reached suffices.
 NEAR_ENOUGH = 1.03
-# A share of the coefficients: a derivative that is nowhere below minus this vanishes or rises, but for
-# rounding.
+# Relative to the coefficients: a derivative above minus this counts as not negative.
 ROUNDING = 1e-11
 
 
 @lru_cache(maxsize=64)
-def product_table(n: int, m: int) -> Array:
-    """Weights (n + 1, m + 1) of the products of Bernstein coefficients of degrees n and m."""
+def make_product_weights(n: int, m: int) -> Array:
+    """Return the matrix (n + m + 1, (n + 1) (m + 1)) that maps
+    products of Bernstein coefficients to those of the product.
+    """
     i, j = np.arange(n + 1)[:, None], np.arange(m + 1)[None, :]
     weights = np.array(
         [[comb(n, a) * comb(m, b) / comb(n + m, a + b) for b in range(m + 1)] for a in range(n + 1)]
@@ -311,47 +334,50 @@ def product_table(n: int, m: int) -> Array:
     return place.reshape(n + m + 1, -1)
 
 
-def product(a: Array, b: Array) -> Array:
-    """(P, n + m + 1) Bernstein coefficients of the products of (P, n + 1) and (P, m + 1) ones."""
+def multiply_bernstein(a: Array, b: Array) -> Array:
+    """Return the Bernstein coefficients (P, n + m + 1) of
+    products of polynomials with (P, n + 1) and (P, m + 1) ones.
+    """
     outer: Array = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
-    return outer @ product_table(a.shape[1] - 1, b.shape[1] - 1).T
+    return outer @ make_product_weights(a.shape[1] - 1, b.shape[1] - 1).T
 
 
-def turning(u: Array, v: Array) -> Array:
-    """Bernstein coefficients of u v' - u' v, whose sign is that of the derivative of v / u."""
+def compute_turning_coefficients(u: Array, v: Array) -> Array:
+    """Return the Bernstein coefficients of u v' - u' v, which has the sign of the derivative of v / u."""
     n = u.shape[1] - 1
-    return product(u, n * np.diff(v)) - product(n * np.diff(u), v)
+    return multiply_bernstein(u, n * np.diff(v)) - multiply_bernstein(n * np.diff(u), v)
 
 
-def departure(pieces: Pieces, segment: Segment, limit: float) -> float:
-    """A bound on how far a curve and a line or arc between the same ends are from each other, in mm.
+def bound_departure(pieces: Pieces, segment: Segment, limit: float) -> float:
+    """Return an upper bound in mm of the distance between a
+    curve and a line or arc with the same ends, either way.
 
-    Ends agree but for rounding; the segment may also be a full circle. ``limit`` is the largest bound that is
-    of use: it is infinity where that is not shown to hold, or the curve does not run forward.
+    inf where it is not shown to be at most ``limit``, or the curve does not run forward. The segment may be a
+    full circle.
     """
     for halving in range(MOST_HALVINGS + 1):
-        reached, bound, forward = measured(pieces, segment)
+        reached, bound, forward = measure_departure(pieces, segment)
         if reached > limit:
             return inf
         is_last = halving == MOST_HALVINGS or len(pieces) > MOST_HALVED
         if bound <= limit and forward and (is_last or bound <= NEAR_ENOUGH * reached + 1e-9):
             return bound
         if halving < MOST_HALVINGS:
-            pieces = halved(pieces)
+            pieces = halve_pieces(pieces)
     return inf
 
 
-def measured(pieces: Pieces, segment: Segment) -> tuple[float, float, bool]:
-    """A distance that is reached, a bound of all, and whether the curve runs forward."""
+def measure_departure(pieces: Pieces, segment: Segment) -> tuple[float, float, bool]:
+    """Return (a distance in mm that is reached, an upper bound of all, whether the curve runs forward)."""
     w = pieces[..., 2]
     if isinstance(segment, Arc):
         x, y = (pieces[..., k] - segment.center[k] * w for k in (0, 1))
         radius = segment.radius
-        # How far the square of the distance from the centre is from that of the radius.
-        off = product(x, x) + product(y, y) - radius * radius * product(w, w)
-        ratio = off / product(w, w)
+        # Squared distance from the centre minus the squared radius.
+        off = multiply_bernstein(x, x) + multiply_bernstein(y, y) - radius * radius * multiply_bernstein(w, w)
+        ratio = off / multiply_bernstein(w, w)
         away = np.abs(ratio) / (radius + np.sqrt(np.maximum(radius * radius + ratio, 0.0)))
-        around = segment.sign * (product(x, np.diff(y)) - product(y, np.diff(x)))
+        around = segment.sign * (multiply_bernstein(x, np.diff(y)) - multiply_bernstein(y, np.diff(x)))
         # Pieces that cover half a turn or more are distinguished from their complements when they are halved.
         (ax, bx), (ay, by) = (one[:, [0, -1]].T for one in (x, y))
         covered = segment.sign * np.arctan2(ax * by - ay * bx, ax * bx + ay * by).sum()
@@ -362,6 +388,6 @@ def measured(pieces: Pieces, segment: Segment) -> tuple[float, float, bool]:
     (x0, y0), (tx, ty) = segment.start, segment.tangent
     x, y = pieces[..., 0] - x0 * w, pieces[..., 1] - y0 * w
     away = np.abs(x * ty - y * tx) / w
-    along = turning(w, x * tx + y * ty)
+    along = compute_turning_coefficients(w, x * tx + y * ty)
     forward = bool((along >= -ROUNDING * segment.length).all())
     return float(away[:, [0, -1]].max()), float(away.max()), forward

@@ -7,7 +7,7 @@ normal : unit vector pointing away from the material (to the right of a line's d
     of a convex arc, towards the centre of a concave one).
 convex arc : an arc run through counter-clockwise, so that the material is on the centre's side; its ``sign``
     is +1.
-row : the ten numbers that describe a segment to the compiled kernels, see :func:`segment_rows`.
+row : the ten numbers that describe a segment to the compiled kernels, see :func:`make_segment_rows`.
 carrier : the endless line or whole circle that a segment is a part of.
 box : a rectangle with sides along the axes.
 """
@@ -47,11 +47,11 @@ __all__ = [
     "holds",
     "make_segment_from_bulge",
     "find_row_ends",
-    "segment_rows",
+    "make_segment_rows",
 ]
 
 Point = tuple[float, float]
-# mm. A line and a circle, or two circles, that miss each other by no more have one point in common.
+# mm. A line and a circle, or two circles, that miss each other by at most this have one common point.
 TOUCH = 1e-9
 
 
@@ -79,7 +79,7 @@ class Line:
 
     @property
     def middle(self) -> Point:
-        """The point of parameter 0."""
+        """Point of parameter 0."""
         return ((self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2)
 
     @property
@@ -88,27 +88,28 @@ class Line:
         length = self.length
         return ((self.end[0] - self.start[0]) / length, (self.end[1] - self.start[1]) / length)
 
-    def at(self, parameter: float) -> Point:
-        """Point at a parameter in mm."""
+    def compute_point(self, parameter: float) -> Point:
+        """Return the point at a parameter in mm."""
         (x, y), (tx, ty) = self.middle, self.tangent
         return (x + parameter * tx, y + parameter * ty)
 
-    def normal(self, parameter: float = 0.0) -> Point:
-        """Outward unit normal (the same everywhere)."""
+    def compute_normal(self, parameter: float = 0.0) -> Point:
+        """Return the outward unit normal, the same at every parameter."""
         tx, ty = self.tangent
         return (ty, -tx)
 
-    def parameter(self, point: Point) -> float:
-        """Parameter in mm of the foot of a point on the carrying line."""
+    def find_parameter(self, point: Point) -> float:
+        """Return the parameter in mm of the foot of a point on the infinite line."""
         (x, y), (tx, ty) = self.middle, self.tangent
         return (point[0] - x) * tx + (point[1] - y) * ty
 
-    def row(self) -> tuple[float, ...]:
+    def to_row(self) -> tuple[float, ...]:
+        """Return the row of ten numbers for the kernels, see :func:`make_segment_rows`."""
         return (0.0, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0, 0.0, 0.0)
 
-    def part(self, low: float, high: float) -> Line:
-        """The piece between two parameters in mm."""
-        return Line(self.at(low), self.at(high))
+    def cut_part(self, low: float, high: float) -> Line:
+        """Return the piece from parameter ``low`` to ``high``, in mm."""
+        return Line(self.compute_point(low), self.compute_point(high))
 
 
 @frozen
@@ -122,8 +123,8 @@ class Arc:
     mid_angle : direction from the centre to the arc's middle, in radians.
     half_sweep : half the angle covered, in radians, in (0, pi]; pi is a full circle.
     sign : +1 for a convex arc (run counter-clockwise), -1 for a concave one (run clockwise).
-    rest : what rounding has left of the centre, (x, y) in mm. It counts where the arc is shallow
-        (``kernels.base.feature``): its centre is so far away that the arc itself would be rounded.
+    rest : rounding error of the centre, (x, y) in mm, to be added to it. It is kept for shallow arcs
+        (``kernels.base.feature``), whose centre is too far away for its rounding to be negligible.
     """
 
     center: Point
@@ -145,25 +146,30 @@ class Arc:
 
     @property
     def middle(self) -> Point:
-        """The point of parameter 0, rounded once."""
+        """Point of parameter 0, computed in fractions and rounded once."""
         x, y = to_middle(self.radius, self.mid_angle)
         (cx, cy), (rest_x, rest_y) = self.center, self.rest
         return (float(Fraction(cx) + Fraction(rest_x) + x), float(Fraction(cy) + Fraction(rest_y) + y))
 
     @property
     def is_full(self) -> bool:
+        """Whether the arc is a full circle."""
         return self.half_sweep >= pi
 
     @property
     def start(self) -> Point:
-        return self.at(-self.sign * self.half_sweep)
+        """First point in running order."""
+        return self.compute_point(-self.sign * self.half_sweep)
 
     @property
     def end(self) -> Point:
-        return self.at(self.sign * self.half_sweep)
+        """Last point in running order."""
+        return self.compute_point(self.sign * self.half_sweep)
 
-    def at(self, parameter: float) -> Point:
-        """Point at a parameter: the counter-clockwise angle in radians from the arc's middle."""
+    def compute_point(self, parameter: float) -> Point:
+        """Return the point at a parameter: the angle in radians
+        from the arc's middle, counter-clockwise whatever the sign.
+        """
         if self.half_sweep < SHALLOW:
             (x, y), (tx, ty) = self.middle, (cos(self.mid_angle), sin(self.mid_angle))
             beside, back = self.radius * sin(parameter), 2 * self.radius * sin(parameter / 2) ** 2
@@ -171,28 +177,33 @@ class Arc:
         angle = self.mid_angle + parameter
         return (self.center[0] + self.radius * cos(angle), self.center[1] + self.radius * sin(angle))
 
-    def normal(self, parameter: float = 0.0) -> Point:
-        """Outward unit normal at a parameter in radians."""
+    def compute_normal(self, parameter: float = 0.0) -> Point:
+        """Return the outward unit normal at a parameter in radians."""
         angle = self.mid_angle + parameter
         return (self.sign * cos(angle), self.sign * sin(angle))
 
-    def parameter(self, point: Point) -> float:
-        """Parameter in radians, in (-pi, pi], of the point of the circle nearest to a point."""
+    def find_parameter(self, point: Point) -> float:
+        """Return the parameter in radians, in (-pi, pi], of
+        the nearest point of the whole circle to ``point``.
+        """
         (x, y), radius = (self.middle, self.radius) if self.half_sweep < SHALLOW else (self.center, 0.0)
         dx, dy = point[0] - x, point[1] - y
         mx, my = cos(self.mid_angle), sin(self.mid_angle)
         return atan2(mx * dy - my * dx, radius + mx * dx + my * dy)
 
-    def row(self) -> tuple[float, ...]:
+    def to_row(self) -> tuple[float, ...]:
+        """Return the row of ten numbers for the kernels, see :func:`make_segment_rows`."""
         direction = (cos(self.mid_angle), sin(self.mid_angle))
         return (1.0, *self.center, *direction, self.half_sweep, self.radius, self.sign, *self.rest)
 
-    def part(self, low: float, high: float) -> Arc:
-        """The piece between two parameters in radians."""
+    def cut_part(self, low: float, high: float) -> Arc:
+        """Return the piece from parameter ``low`` to ``high``, in radians."""
         return evolve(self, mid_angle=self.mid_angle + (low + high) / 2, half_sweep=(high - low) / 2)
 
-    def grown(self, by: float) -> Arc:
-        """The arc moved away from its centre by a length in mm, less than its radius towards it."""
+    def grow(self, by: float) -> Arc:
+        """Return the arc with its radius larger by ``by`` mm,
+        which may be negative but not down to a radius of 0.
+        """
         radius = self.radius + by
         if self.half_sweep >= SHALLOW:
             return evolve(self, radius=radius)
@@ -205,9 +216,9 @@ Segment = Line | Arc
 
 
 def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
-    """The vector in mm from an arc's centre to its middle, as fractions.
+    """Return the vector in mm from an arc's centre to its middle, as fractions, nearly exact.
 
-    The rounded direction is brought to length 1, up to the fourth order in its roundings.
+    The rounded direction is normalized, up to the fourth order in its rounding errors.
     """
     x, y = Fraction(cos(mid_angle)), Fraction(sin(mid_angle))
     scale = Fraction(radius) * (3 - x * x - y * y) / 2
@@ -215,10 +226,10 @@ def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
 
 
 def make_segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
-    """Builds the segment from ``start`` to ``end`` with a DXF bulge, tan(sweep / 4), 0 for a line.
+    """Return the segment from ``start`` to ``end`` with a DXF bulge, tan(sweep / 4), 0 for a line.
 
-    The points differ; a bulge that is nearly 0 is a line. Formula: chord c, sweep 4 atan(bulge), radius
-    c / (2 sin(sweep / 2)) (AutoCAD DXF reference, LWPOLYLINE group 42).
+    The points must differ; a bulge below ``STRAIGHT`` makes a line. Formula: chord c, sweep 4 atan(bulge),
+    radius c / (2 sin(sweep / 2)) (AutoCAD DXF reference, LWPOLYLINE group 42).
     """
     if abs(bulge) < STRAIGHT:
         return Line(start, end)
@@ -242,15 +253,18 @@ def make_segment_from_bulge(start: Point, end: Point, bulge: float) -> Segment:
     return Arc(center, radius, mid_angle, half_sweep, sign, rest)
 
 
-def segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
-    """Rows (N, 10) of segments for the kernels, read-only, columns as in ``kernels.base.feature``."""
-    rows = np.array([segment.row() for segment in segments], dtype=np.float64).reshape(-1, SEGMENT_LENGTH)
+def make_segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
+    """Return rows (N, 10) of segments for the kernels, read-only, columns as in ``kernels.base.feature``."""
+    rows = np.array([segment.to_row() for segment in segments], dtype=np.float64).reshape(-1, SEGMENT_LENGTH)
     rows.setflags(write=False)
     return rows
 
 
 def find_row_ends(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the low and the high end (N, 2, 2) of segments, given their rows (N, 10), to which more may be added."""
+    """Return the end points (N, 2, 2) in mm of segments at their least and largest parameter.
+
+    ``rows`` (N, 10 or more) are rows of :func:`segment_rows`.
+    """
     half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
     cosine, sine = np.cos(half), np.sin(half)
     turned = (cosine * axis[..., 0] - sine * axis[..., 1], sine * axis[..., 0] + cosine * axis[..., 1])
@@ -260,7 +274,9 @@ def find_row_ends(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def cross_carrying_lines(a: Line, b: Line) -> list[Point]:
-    """Common point of two carrying lines; none when they are parallel to within 1e-12 rad."""
+    """Return the one common point of the infinite lines
+    of two segments; none where parallel within 1e-12 rad.
+    """
     (ax, ay), (atx, aty) = a.middle, a.tangent
     (bx, by), (btx, bty) = b.middle, b.tangent
     cross = atx * bty - aty * btx
@@ -271,7 +287,9 @@ def cross_carrying_lines(a: Line, b: Line) -> list[Point]:
 
 
 def cross_carrying_line_and_circle(line: Line, center: Point, radius: float) -> list[Point]:
-    """Common points of a line and a circle; a touch within ``TOUCH`` gives one point."""
+    """Return the common points of an infinite line and a circle;
+    one where they touch or miss by at most ``TOUCH`` mm.
+    """
     (px, py), (tx, ty) = line.middle, line.tangent
     dx, dy = center[0] - px, center[1] - py
     along = dx * tx + dy * ty
@@ -284,7 +302,9 @@ def cross_carrying_line_and_circle(line: Line, center: Point, radius: float) -> 
 
 
 def cross_carrying_circles(center_a: Point, radius_a: float, center_b: Point, radius_b: float) -> list[Point]:
-    """Common points of two circles; a touch within ``TOUCH`` gives one, equal circles none."""
+    """Return the common points of two circles; one where they touch
+    or miss by at most ``TOUCH`` mm, none for concentric ones.
+    """
     dx, dy = center_b[0] - center_a[0], center_b[1] - center_a[1]
     distance = hypot(dx, dy)
     if distance <= TOUCH:
@@ -304,7 +324,9 @@ def cross_carrying_circles(center_a: Point, radius_a: float, center_b: Point, ra
 
 
 def find_carrier_crossings(a: Segment, b: Segment) -> list[Point]:
-    """Common points of the carrying lines or circles of two segments (none when they coincide)."""
+    """Return the common points of the infinite lines or
+    whole circles of two segments; none where these coincide.
+    """
     if isinstance(a, Line):
         return (
             cross_carrying_lines(a, b)
@@ -317,21 +339,24 @@ def find_carrier_crossings(a: Segment, b: Segment) -> list[Point]:
 
 
 def holds(segment: Segment, point: Point, tolerance: float) -> bool:
-    """Whether a point of a segment's carrier lies on the segment, ends included, to a tolerance in mm."""
+    """Return whether a point on a segment's line or circle lies
+    on the segment, ends included, within a tolerance in mm.
+    """
     slack = tolerance if isinstance(segment, Line) else tolerance / segment.radius
-    return abs(segment.parameter(point)) <= segment.half_extent + slack
+    return abs(segment.find_parameter(point)) <= segment.half_extent + slack
 
 
 def measure_distance_to_segment(point: Point, segment: Segment) -> float:
-    """Distance in mm from a point to a segment."""
-    parameter, half = segment.parameter(point), segment.half_extent
+    """Return the distance in mm from a point to a segment."""
+    parameter, half = segment.find_parameter(point), segment.half_extent
     if abs(parameter) <= half:
-        return dist(point, segment.at(parameter))
-    return min(dist(point, segment.at(end)) for end in (-half, half))
+        return dist(point, segment.compute_point(parameter))
+    return min(dist(point, segment.compute_point(end)) for end in (-half, half))
 
 
 def find_common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
-    """Points at which two segments meet or touch to within a tolerance in mm.
+    """Return the points at which two segments meet or touch
+    within a tolerance in mm, in no order; some may be repeated.
 
     Overlapping segments (same line or circle) give the ends of each that lie on the other.
     """
@@ -344,8 +369,8 @@ def find_common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
     return points
 
 
-def bounding_box(segment: Segment) -> tuple[float, float, float, float]:
-    """(smallest x, smallest y, largest x, largest y) of a segment in mm."""
+def compute_bounding_box(segment: Segment) -> tuple[float, float, float, float]:
+    """Return (smallest x, smallest y, largest x, largest y) of a segment in mm."""
     xs, ys = [segment.start[0], segment.end[0]], [segment.start[1], segment.end[1]]
     if isinstance(segment, Arc):
         for dx, dy in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
@@ -356,17 +381,17 @@ def bounding_box(segment: Segment) -> tuple[float, float, float, float]:
 
 
 def are_parallel_lines(segments: Iterable[Segment]) -> bool:
-    """Whether some segments, one at least, are lines that run the same way or back."""
+    """Return whether all segments are lines with parallel directions, either way; False without any."""
     found = list(segments)
     if not found or not all(isinstance(one, Line) for one in found):
         return False
-    (x, y), *rest = (one.normal() for one in found)
+    (x, y), *rest = (one.compute_normal() for one in found)
     return all(abs(x * v - y * u) <= PARALLEL for u, v in rest)
 
 
-def box_around(segments: Iterable[Segment]) -> tuple[float, float, float, float]:
-    """(smallest x, smallest y, largest x, largest y) in mm of some segments, one at least."""
-    x0, y0, x1, y1 = zip(*map(bounding_box, segments), strict=True)
+def compute_box_around(segments: Iterable[Segment]) -> tuple[float, float, float, float]:
+    """Return (smallest x, smallest y, largest x, largest y) in mm of one or more segments."""
+    x0, y0, x1, y1 = zip(*map(compute_bounding_box, segments), strict=True)
     return min(x0), min(y0), max(x1), max(y1)
 
 
@@ -380,7 +405,8 @@ class Box:
     y1: float
 
     @classmethod
-    def about(cls, center: Point, width: float, height: float) -> Box:
+    def from_center(cls, center: Point, width: float, height: float) -> Box:
+        """Return the box with a centre, width and height."""
         x, y = center
         return cls(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
@@ -398,21 +424,25 @@ class Box:
 
     @property
     def corners(self) -> list[Point]:
-        """The corners, counter-clockwise from the lower left."""
+        """Corners, counter-clockwise from the lower left."""
         return [(self.x0, self.y0), (self.x1, self.y0), (self.x1, self.y1), (self.x0, self.y1)]
 
-    def grown(self, margin: float) -> Box:
+    def grow(self, margin: float) -> Box:
+        """Return the box enlarged by a margin on every side."""
         return Box(self.x0 - margin, self.y0 - margin, self.x1 + margin, self.y1 + margin)
 
-    def union(self, other: Box) -> Box:
+    def unite(self, other: Box) -> Box:
+        """Return the smallest box around both."""
         return Box(
             min(self.x0, other.x0), min(self.y0, other.y0), max(self.x1, other.x1), max(self.y1, other.y1)
         )
 
-    def overlap(self, other: Box) -> float:
+    def compute_overlap_area(self, other: Box) -> float:
+        """Return the area common to both boxes; 0 where they do not overlap."""
         width = min(self.x1, other.x1) - max(self.x0, other.x0)
         height = min(self.y1, other.y1) - max(self.y0, other.y0)
         return max(width, 0.0) * max(height, 0.0)
 
     def contains(self, other: Box) -> bool:
+        """Return whether another box lies in this one, borders included."""
         return self.x0 <= other.x0 and self.y0 <= other.y0 and self.x1 >= other.x1 and self.y1 >= other.y1

@@ -1,10 +1,10 @@
 """The planar subdivision of lines and arcs: the pieces into which they cut each other, and loops of these.
 
-Segments of one carrier are put together first, so a piece that many segments share is there once. A region is
-known by asking beside every piece whether its points belong to it; pieces with the region on one side only
-are its border. It is asked where no other carrier runs between the piece and the points. Two pieces that run
-nowhere farther apart than carriers that are one, as beside the place where a circle touches a line, have such
-points on their outer sides only, and one of them is the border.
+Segments of one carrier are joined first, so a piece that many segments share is there once. To find the
+border of a region, points on both sides of every piece are tested; pieces with the region on one side only
+are its border. The points are so near that no other carrier runs between them and the piece. Twins, such as
+those beside the place where a circle touches a line, have such points only on their outer sides, and one of
+them is the border.
 
 Glossary
 --------
@@ -27,12 +27,12 @@ from attrs import Factory, define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.geometry.loop import Comparisons, find_near_pairs
-from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box, find_carrier_crossings
+from workhold.geometry.loop import ComparisonBudget, find_near_pairs
+from workhold.geometry.segment import Arc, Line, Point, Segment, compute_bounding_box, find_carrier_crossings
 
 __all__ = [
     "BorderPiece",
-    "CutCarrier",
+    "CutCurve",
     "Inside",
     "join_border_loops",
     "find_border_pieces",
@@ -40,35 +40,36 @@ __all__ = [
     "subdivide",
 ]
 
-# Carriers, and points along one, that differ by less than this in mm are one.
+# mm. Carriers, and points along one, that differ by less count as one.
 ONE = 1e-6
-# Pieces shorter than this in mm come of rounding and are left out.
+# mm. Shorter pieces are rounding errors and are left out.
 SHORT = 1e-5
 # mm. Largest gap between the ends of neighbouring pieces of a border.
 REACH = 1e-4
-# How far beside a piece its two sides are looked at, in mm, and as a share of the piece: far enough that
-# what rises by 0.001 for 1 and ends at the piece is there.
+# mm, and a part of the piece's length: distance of the two test points from a piece. It is large enough to be
+# beyond a curve that ends at the piece with a slope of 0.001.
 BESIDE, BESIDE_SHARE = 2e-2, 0.1
-# Where along a piece that may be, as shares of it: the first where nothing is near, or where it is farthest.
+# Positions of the test points along a piece, as parts of it: the first with nothing near is taken, or the
+# clearest.
 SHARES = (0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875, 0.03, 0.97)
-# mm. Pieces that run no farther apart are twins, if their ends are no farther from each other than the second.
+# mm. Pieces that are nowhere farther apart than THIN are twins, if their ends are within SAME_END.
 THIN, SAME_END = 2 * ONE, 10 * ONE
 # Points times carriers that are looked at together.
 AT_ONCE = 1 << 20
-# Which of some points (x, y) belong to a region.
+# Returns which of some points (x, y) belong to a region.
 Inside = Callable[[Sequence[Point]], Sequence[bool]]
 
 
 @define
-class CutCarrier:
+class CutCurve:
     """A line or a circle with the spans that segments cover, and the positions at which it is cut.
 
     Parameters
     ----------
-    segment : one segment on it, which fixes positions: they are its parameters.
-    spans : (low, high) positions; of a circle low is in [-pi, pi) and high less than a turn above.
+    segment : one segment on it; positions are its parameters.
+    spans : (low, high) positions; on a circle low is in [-pi, pi) and high less than a turn above it.
     cuts : positions.
-    owners : for every span the number of the segment that covers it, by the order in which they were given.
+    owners : for each span, the number of the segment that covers it.
     """
 
     segment: Segment
@@ -80,11 +81,11 @@ class CutCarrier:
 
     @property
     def slack(self) -> float:
-        """The position's change that is ``ONE`` long."""
+        """Change of position, in mm or radians, that corresponds to a length of ``ONE``."""
         return ONE if isinstance(self.segment, Line) else ONE / self.segment.radius
 
-    def holds(self, other: Segment) -> bool:
-        """Whether another segment lies on the same line or circle."""
+    def is_carrier_of(self, other: Segment) -> bool:
+        """Return whether another segment lies on the same infinite line or circle, within ``ONE`` mm."""
         own = self.segment
         if isinstance(own, Line) and isinstance(other, Line):
             (x, y), (tx, ty) = own.middle, own.tangent
@@ -93,27 +94,30 @@ class CutCarrier:
             return dist(own.center, other.center) <= ONE and abs(own.radius - other.radius) <= ONE
         return False
 
-    def position(self, point: Point) -> float:
-        """The position of the carrier's point nearest to a point."""
-        return self.segment.parameter(point)
+    def find_position(self, point: Point) -> float:
+        """Return the position of the point of the carrier nearest to ``point``."""
+        return self.segment.find_parameter(point)
 
-    def at(self, position: float) -> Point:
-        return self.segment.at(position)
+    def compute_point(self, position: float) -> Point:
+        """Return the point at a position."""
+        return self.segment.compute_point(position)
 
-    def left(self, position: float) -> Point:
-        """Unit vector to the left when positions grow; on a circle it points to the centre."""
+    def compute_left_normal(self, position: float) -> Point:
+        """Return the unit vector to the left of the direction
+        of growing positions; on a circle, to the centre.
+        """
         if isinstance(self.segment, Line):
             tx, ty = self.segment.tangent
             return -ty, tx
         angle = self.segment.mid_angle + position
         return -cos(angle), -sin(angle)
 
-    def add(self, segment: Segment) -> None:
-        """Covers the span of a segment on this carrier, and cuts at its ends."""
+    def cover_segment(self, segment: Segment) -> None:
+        """Add the span of a segment on this carrier, and cuts at its ends."""
         if isinstance(segment, Arc) and segment.is_full:
             self.spans.append((-pi, pi))
             return
-        first, last = self.position(segment.start), self.position(segment.end)
+        first, last = self.find_position(segment.start), self.find_position(segment.end)
         if isinstance(segment, Arc):
             if segment.sign < 0:
                 first, last = last, first
@@ -122,10 +126,12 @@ class CutCarrier:
         self.spans.append((min(first, last), max(first, last)))
         self.cuts += [first, last]
 
-    def ends_near(self, segment: Segment) -> list[Point]:
-        """Ends of spans that lie within twice ``ONE`` of a segment's line or circle."""
+    def list_ends_near(self, segment: Segment) -> list[Point]:
+        """Return the ends of spans that lie within 2 ``ONE`` mm of the line or circle of ``segment``."""
         if self.ends is None or self.ends[0] != len(self.spans):
-            found = [self.at(position) for position in {end for span in self.spans for end in span}]
+            found = [
+                self.compute_point(position) for position in {end for span in self.spans for end in span}
+            ]
             self.ends = len(self.spans), np.array(found).reshape(-1, 2)
         points = self.ends[1]
         if isinstance(segment, Line):
@@ -136,21 +142,24 @@ class CutCarrier:
             away = np.abs(np.hypot(points[:, 0] - x, points[:, 1] - y) - segment.radius)
         return [(float(px), float(py)) for px, py in points[away <= 2 * ONE]]
 
-    def covers(self, position: float) -> bool:
-        """Whether a span holds a position, ends included."""
+    def is_covered(self, position: float) -> bool:
+        """Return whether any span contains a position, ends included."""
         turns = (0.0,) if isinstance(self.segment, Line) else (-tau, 0.0, tau)
         slack = self.slack
         return any(
             low - slack <= position + turn <= high + slack for low, high in self.spans for turn in turns
         )
 
-    def apart(self, one: float, other: float) -> float:
-        """How far two positions are apart, on a circle the shorter way round."""
+    def measure_distance(self, one: float, other: float) -> float:
+        """Return the difference of two positions, in mm or radians; on a circle the shorter way round."""
         away = abs(one - other)
         return away if isinstance(self.segment, Line) else abs((away + pi) % tau - pi)
 
-    def pieces(self) -> list[tuple[float, float]]:
-        """Pieces between neighbouring cuts that are covered."""
+    def list_covered_pieces(self) -> list[tuple[float, float]]:
+        """Return the (low, high) positions of the pieces between neighbouring cuts that a span covers.
+
+        Pieces as short as rounding errors are left out; a circle is in at least two pieces.
+        """
         slack = self.slack
         cuts = np.array(self.cuts)
         if isinstance(self.segment, Arc):
@@ -163,7 +172,7 @@ class CutCarrier:
                 distinct.pop()
             distinct.append(distinct[0] + tau)
             for before, after in pairwise(distinct):
-                # All of a circle, or almost, would end where it begins.
+                # A piece that is a whole circle, or almost, would end where it begins, so it is cut in two.
                 if tau - (after - before) <= REACH / self.segment.radius:
                     distinct.append(before + pi)
             distinct.sort()
@@ -171,12 +180,12 @@ class CutCarrier:
         return [
             (low, high)
             for low, high in pairwise(distinct)
-            if high - low > least and self.covers((low + high) / 2)
+            if high - low > least and self.is_covered((low + high) / 2)
         ]
 
 
 def sort_distinct(values: NDArray[np.float64], slack: float) -> list[float]:
-    """Sorted values without those that lie within the slack above another."""
+    """Return the values in ascending order, without those within ``slack`` above one that is kept."""
     distinct: list[float] = []
     for value in np.sort(values):
         if not distinct or value - distinct[-1] > slack:
@@ -187,137 +196,149 @@ def sort_distinct(values: NDArray[np.float64], slack: float) -> list[float]:
 def subdivide(
     segments: Iterable[Segment],
     cuts: Iterable[tuple[Segment, Point]] = (),
-    comparisons: Comparisons | None = None,
-) -> list[CutCarrier]:
-    """Carriers of some segments, cut wherever two of them meet.
+    comparisons: ComparisonBudget | None = None,
+) -> list[CutCurve]:
+    """Return the carriers of segments, each once, cut wherever two of them meet.
 
     Parameters
     ----------
     segments : in any order and direction; they may overlap.
-    cuts : further points at which the carrier of a segment is to be cut.
-    comparisons : how many pairs may still be compared; None is no limit.
+    cuts : further points at which the carrier of a segment is cut.
+    comparisons : how many pairs may be compared; None for no limit.
 
     Raises
     ------
     InputError
         For more pairs than that.
     """
-    carriers: list[CutCarrier] = []
-    found: dict[tuple[int, ...], list[CutCarrier]] = {}
+    carriers: list[CutCurve] = []
+    found: dict[tuple[int, ...], list[CutCurve]] = {}
     for number, segment in enumerate(segments):
         carrier = find_or_make_carrier(segment, carriers, found, comparisons)
-        carrier.add(segment)
+        carrier.cover_segment(segment)
         carrier.owners.append(number)
     further = []
     for segment, point in cuts:
         carrier = find_or_make_carrier(segment, carriers, found)
-        carrier.cuts.append(carrier.position(point))
+        carrier.cuts.append(carrier.find_position(point))
         further.append((carrier, point))
     carriers = [carrier for carrier in carriers if carrier.spans]
     if comparisons is not None:
-        # Every piece is asked for all spans.
+        # Every piece is tested against all spans.
         comparisons.spend(sum(len(one.spans) * (len(one.cuts) // 32 + 1) for one in carriers))
     boxes = np.array([bound_covered(carrier) for carrier in carriers]).reshape(-1, 4)
     for a, b in find_near_pairs(boxes, boxes):
         if comparisons is not None:
-            # It takes about as long as so many others.
+            # Cutting two carriers takes as long as about ten comparisons.
             comparisons.spend(10)
         if a < b:
             cut_each_other(carriers[a], carriers[b])
-    cut_twins(Carriers.of(carriers), further)
+    cut_twins(CutCurveIndex.from_cut_carriers(carriers), further)
     return carriers
 
 
-def cut_twins(carriers: Carriers, cuts: Sequence[tuple[CutCarrier, Point]]) -> None:
-    """Cuts what runs beside a carrier where that is cut besides, so that twins have the same ends."""
-    for number, other in carriers.near(np.array([point for _, point in cuts]).reshape(-1, 2), THIN):
+def cut_twins(carriers: CutCurveIndex, cuts: Sequence[tuple[CutCurve, Point]]) -> None:
+    """Cut carriers that run beside a further cut of another carrier, so that twins have the same ends."""
+    for number, other in carriers.iterate_pairs_near(
+        np.array([point for _, point in cuts]).reshape(-1, 2), THIN
+    ):
         own, point = cuts[number]
-        if other is own or carriers.distance(other, point) > THIN:
+        if other is own or carriers.measure_distance(other, point) > THIN:
             continue
-        position = other.position(point)
-        if all(other.apart(position, cut) > other.slack for cut in other.cuts):
+        position = other.find_position(point)
+        if all(other.measure_distance(position, cut) > other.slack for cut in other.cuts):
             other.cuts.append(position)
 
 
 def find_or_make_carrier(
     segment: Segment,
-    carriers: list[CutCarrier],
-    found: dict[tuple[int, ...], list[CutCarrier]],
-    comparisons: Comparisons | None = None,
-) -> CutCarrier:
-    """The carrier of a segment, made if it is not there; ``found`` holds carriers by rough place."""
+    carriers: list[CutCurve],
+    found: dict[tuple[int, ...], list[CutCurve]],
+    comparisons: ComparisonBudget | None = None,
+) -> CutCurve:
+    """Return the carrier of a segment from ``found``; if
+    there is none, add one to ``carriers`` and ``found``.
+
+    ``found`` maps rough keys to carriers.
+    """
     keys = list_rough_keys(segment)
     for key in keys:
         if comparisons is not None:
             comparisons.spend(len(found.get(key, ())))
         for carrier in found.get(key, ()):
-            if carrier.holds(segment):
+            if carrier.is_carrier_of(segment):
                 return carrier
-    carrier = CutCarrier(segment)
+    carrier = CutCurve(segment)
     carriers.append(carrier)
     found.setdefault(keys[0], []).append(carrier)
     return carrier
 
 
 def list_rough_keys(segment: Segment) -> list[tuple[int, ...]]:
-    """Where a carrier may be kept: the cell of its place first, then the neighbouring cells."""
+    """Return the keys under which the carrier of a segment
+    may be found: its own cell first, then neighbouring cells.
+    """
     around = (0, -1, 1)
     if isinstance(segment, Arc):
         x, y, r = (round(value / 1e-3) for value in (*segment.center, segment.radius))
         return [(x + a, y + b, r + c) for a, b, c in product(around, repeat=3)]
     tx, ty = segment.tangent
-    # A short segment leaves its direction open; the cells of lines are therefore by direction only.
+    # The direction of a short segment is uncertain, so cells of lines are wide in direction and ignore the
+    # distance.
     cell, last = round(atan2(ty, tx) % pi / 1e-2), round(pi / 1e-2)
     return [((cell + a) % last, 0) for a in around]
 
 
-def bound_covered(carrier: CutCarrier) -> tuple[float, float, float, float]:
-    """A box around all that is covered, grown by ``ONE``."""
+def bound_covered(carrier: CutCurve) -> tuple[float, float, float, float]:
+    """Return a box (smallest x, smallest y, largest x, largest
+    y) around a carrier's spans, enlarged by ``ONE`` mm.
+
+    For circles it is that of the whole circle.
+    """
     own = carrier.segment
     if isinstance(own, Arc):
         (x, y), r = own.center, own.radius + ONE
         return x - r, y - r, x + r, y + r
     low, high = min(a for a, _ in carrier.spans), max(b for _, b in carrier.spans)
-    x0, y0, x1, y1 = bounding_box(own.part(low, high))
+    x0, y0, x1, y1 = compute_bounding_box(own.cut_part(low, high))
     return x0 - ONE, y0 - ONE, x1 + ONE, y1 + ONE
 
 
-def cut_each_other(a: CutCarrier, b: CutCarrier) -> None:
-    """Cuts two carriers where both are covered and meet, or where a span of one ends on the other.
+def cut_each_other(a: CutCurve, b: CutCurve) -> None:
+    """Add cuts to two carriers where covered parts meet, and where a span of one ends on the other.
 
-    A circle that passes another or a line by so little that the two points are one gap touches it in the
-    middle between them: the piece between would be closed like a gap, and move the ends of those beside it.
+    Two crossings at most ``REACH`` mm apart become one in the middle between them.
     """
     points = list(find_carrier_crossings(a.segment, b.segment))
     if len(points) == 2 and SHORT < dist(*points) <= REACH:
         (x0, y0), (x1, y1) = points
         points = [((x0 + x1) / 2, (y0 + y1) / 2)]
     for one, other in ((a, b), (b, a)):
-        for point in one.ends_near(other.segment):
-            if dist(point, other.at(other.position(point))) <= ONE:
+        for point in one.list_ends_near(other.segment):
+            if dist(point, other.compute_point(other.find_position(point))) <= ONE:
                 points.append(point)
     for point in points:
-        first, second = a.position(point), b.position(point)
-        if a.covers(first) and b.covers(second):
+        first, second = a.find_position(point), b.find_position(point)
+        if a.is_covered(first) and b.is_covered(second):
             a.cuts.append(first)
             b.cuts.append(second)
 
 
 @frozen(eq=False)
-class Carriers:
-    """Some carriers, asked together which of them run near points.
+class CutCurveIndex:
+    """An index of carriers that finds those near points.
 
     Parameters
     ----------
     every : the carriers.
-    lines, circles : the numbers of those that are lines, and of the others.
-    across : (3, L) of each line the numbers that give the distance of (x, y, 1) from it.
-    powers : (4, C) of each circle those that give of (x² + y², x, y, 1) the square of the distance from its
-        centre, less that of its radius.
+    lines, circles : indices of those that are lines, and of the others.
+    across : (3, L) coefficients of the distance of (x, y, 1) from each line.
+    powers : (4, C) coefficients of (x² + y², x, y, 1) for the squared distance from each circle's centre,
+        minus the squared radius.
     radii : (C,) of the circles, in mm.
     """
 
-    every: Sequence[CutCarrier]
+    every: Sequence[CutCurve]
     lines: NDArray[np.int64]
     circles: NDArray[np.int64]
     across: NDArray[np.float64]
@@ -325,7 +346,8 @@ class Carriers:
     radii: NDArray[np.float64]
 
     @classmethod
-    def of(cls, carriers: Sequence[CutCarrier]) -> Carriers:
+    def from_cut_carriers(cls, carriers: Sequence[CutCurve]) -> CutCurveIndex:
+        """Return the index of carriers."""
         is_line = np.array([isinstance(one.segment, Line) for one in carriers], dtype=bool)
         across, powers, radii = [], [], []
         for carrier in carriers:
@@ -346,8 +368,10 @@ class Carriers:
             np.array(radii),
         )
 
-    def near(self, points: NDArray[np.float64], reach: float) -> Iterator[tuple[int, CutCarrier]]:
-        """Numbers of points (N, 2), each with a carrier that may be no farther than a reach in mm from it."""
+    def iterate_pairs_near(self, points: NDArray[np.float64], reach: float) -> Iterator[tuple[int, CutCurve]]:
+        """Yield (index of a point, carrier) for points (N, 2) and
+        carriers whose infinite line or circle is within ``reach`` mm.
+        """
         step = max(1, AT_ONCE // max(1, len(self.every)))
         for first in range(0, len(points), step):
             x, y = points[first : first + step].T
@@ -359,10 +383,12 @@ class Carriers:
                 for row, column in zip(*np.nonzero(is_near), strict=True):
                     yield first + int(row), self.every[numbers[column]]
 
-    def distance(self, carrier: CutCarrier, point: Point) -> float:
-        """How far a point is from what is covered of a carrier, in mm; endless where its foot is not."""
-        position = carrier.position(point)
-        return dist(point, carrier.at(position)) if carrier.covers(position) else inf
+    def measure_distance(self, carrier: CutCurve, point: Point) -> float:
+        """Return the distance in mm of a point from a carrier;
+        inf where its foot on the carrier is not covered.
+        """
+        position = carrier.find_position(point)
+        return dist(point, carrier.compute_point(position)) if carrier.is_covered(position) else inf
 
 
 @frozen
@@ -373,39 +399,44 @@ class BorderPiece:
     ----------
     carrier : the line or circle that it lies on.
     low, high : positions on the carrier, in mm or radians.
-    forward : whether positions grow along the run.
+    forward : whether positions grow in running order.
     """
 
-    carrier: CutCarrier
+    carrier: CutCurve
     low: float
     high: float
     forward: bool
 
     @property
     def start(self) -> Point:
-        return self.carrier.at(self.low if self.forward else self.high)
+        """First point in running order."""
+        return self.carrier.compute_point(self.low if self.forward else self.high)
 
     @property
     def end(self) -> Point:
-        return self.carrier.at(self.high if self.forward else self.low)
+        """Last point in running order."""
+        return self.carrier.compute_point(self.high if self.forward else self.low)
 
     @property
     def middle(self) -> Point:
-        return self.carrier.at((self.low + self.high) / 2)
+        return self.carrier.compute_point((self.low + self.high) / 2)
 
     @property
     def length(self) -> float:
-        """Length of the run in mm."""
+        """Length in mm."""
         own = self.carrier.segment
         return (self.high - self.low) * (1.0 if isinstance(own, Line) else own.radius)
 
-    def heading(self, *, at_end: bool) -> float:
-        """Direction of the run in radians, at its first point or its last."""
-        nx, ny = self.carrier.left(self.high if at_end == self.forward else self.low)
+    def compute_heading(self, *, at_end: bool) -> float:
+        """Return the direction in radians in which the piece
+        runs, at its last point if ``at_end``, else at its first.
+        """
+        nx, ny = self.carrier.compute_left_normal(self.high if at_end == self.forward else self.low)
         return atan2(-nx, ny) if self.forward else atan2(nx, -ny)
 
     @property
     def bulge(self) -> float:
+        """Bulge in running order, tan(sweep / 4); 0 for a line."""
         if isinstance(self.carrier.segment, Line):
             return 0.0
         quarter = (self.high - self.low) / 4
@@ -413,24 +444,29 @@ class BorderPiece:
 
 
 def find_border_pieces(
-    carriers: Sequence[CutCarrier], inside: Inside, beside: float = BESIDE
+    carriers: Sequence[CutCurve], inside: Inside, beside: float = BESIDE
 ) -> list[BorderPiece]:
-    """Pieces with a region on one side only.
+    """Return the pieces of carriers that have a region on exactly one side, run with it on their left.
 
     Parameters
     ----------
-    carriers : see :func:`subdivide`; they hold the region's whole border.
-    inside : which of some points (x, y) that lie on no carrier belong to the region.
-    beside : how far beside a piece its two sides are looked at, in mm, where nothing else is near.
+    carriers : see :func:`subdivide`; they contain the region's whole border.
+    inside : returns which of some points (x, y) belong to the region; no point lies on a carrier.
+    beside : distance in mm from a piece of the two points that are tested, where nothing else is near.
     """
-    known = Carriers.of(carriers)
-    every = [BorderPiece(carrier, low, high, True) for carrier in carriers for low, high in carrier.pieces()]
+    known = CutCurveIndex.from_cut_carriers(carriers)
+    every = [
+        BorderPiece(carrier, low, high, True)
+        for carrier in carriers
+        for low, high in carrier.list_covered_pieces()
+    ]
     middles = np.array([piece.middle for piece in every]).reshape(-1, 2)
     crowded = {
         number
-        for number, other in known.near(middles, 2 * beside)
+        for number, other in known.iterate_pairs_near(middles, 2 * beside)
         if other is not every[number].carrier
-        and known.distance(other, (float(middles[number, 0]), float(middles[number, 1]))) <= 2 * beside
+        and known.measure_distance(other, (float(middles[number, 0]), float(middles[number, 1])))
+        <= 2 * beside
     }
     clear = find_clearest_positions({number: every[number] for number in sorted(crowded)}, known, beside)
     thin = {number: every[number] for number, (_, clearance) in clear.items() if clearance <= THIN}
@@ -440,17 +476,19 @@ def find_border_pieces(
         places.append((piece.carrier, position, min(choose_side_distance(piece, beside), clearance / 2)))
     found = [
         evolve(piece, forward=left) if left != right else None
-        for piece, (left, right) in zip(every, sides(places, inside), strict=True)
+        for piece, (left, right) in zip(every, find_inside_sides(places, inside), strict=True)
     ]
-    for group in twins(thin):
+    for group in group_twins(thin):
         first = thin[group[0]]
         position = (first.low + first.high) / 2
-        ((left, right),) = sides([(first.carrier, position, choose_side_distance(first, beside))], inside)
+        ((left, right),) = find_inside_sides(
+            [(first.carrier, position, choose_side_distance(first, beside))], inside
+        )
         for number in group:
             found[number] = None
         if left != right:
             outer = evolve(first, forward=left)
-            (x, y), (nx, ny) = outer.middle, outer.carrier.left(position)
+            (x, y), (nx, ny) = outer.middle, outer.carrier.compute_left_normal(position)
             away = (-nx, -ny) if left else (nx, ny)
             number = max(
                 group,
@@ -462,25 +500,27 @@ def find_border_pieces(
     return [piece for piece in found if piece is not None]
 
 
-def sides(places: Sequence[tuple[CutCarrier, float, float]], inside: Inside) -> list[tuple[bool, bool]]:
-    """Whether points beside positions of carriers, on the left and the right of each, are inside.
-
-    A place is a carrier, a position, and how far beside it in mm.
+def find_inside_sides(
+    places: Sequence[tuple[CutCurve, float, float]], inside: Inside
+) -> list[tuple[bool, bool]]:
+    """Return, for each (carrier, position, distance in mm),
+    whether the points to the left and to the right are inside.
     """
     points: list[Point] = []
     for carrier, position, beside in places:
-        (x, y), (nx, ny) = carrier.at(position), carrier.left(position)
+        (x, y), (nx, ny) = carrier.compute_point(position), carrier.compute_left_normal(position)
         points += [(x + beside * nx, y + beside * ny), (x - beside * nx, y - beside * ny)]
     found = inside(points)
     return list(zip(found[0::2], found[1::2], strict=True))
 
 
 def find_clearest_positions(
-    pieces: Mapping[int, BorderPiece], carriers: Carriers, beside: float
+    pieces: Mapping[int, BorderPiece], carriers: CutCurveIndex, beside: float
 ) -> dict[int, tuple[float, float]]:
-    """By a piece's number its first position that is clear enough, else that with the most clearance.
+    """Return, by a piece's number, the position on it with enough
+    clearance, else with the most, and that clearance in mm.
 
-    With it the clearance in mm, as far as it is looked at.
+    Only carriers within twice ``beside`` mm count.
     """
     found: dict[int, tuple[float, float]] = {}
     enough = {number: 2 * choose_side_distance(piece, beside) for number, piece in pieces.items()}
@@ -490,12 +530,12 @@ def find_clearest_positions(
             break
         own = [pieces[number] for number in left]
         places = [piece.low + share * (piece.high - piece.low) for piece in own]
-        points = [piece.carrier.at(place) for piece, place in zip(own, places, strict=True)]
+        points = [piece.carrier.compute_point(place) for piece, place in zip(own, places, strict=True)]
         clearances = [enough[number] for number in left]
         # No piece asks for more than twice what is looked at beside it.
-        for row, other in carriers.near(np.array(points), 2 * beside):
+        for row, other in carriers.iterate_pairs_near(np.array(points), 2 * beside):
             if other is not own[row].carrier:
-                clearances[row] = min(clearances[row], carriers.distance(other, points[row]))
+                clearances[row] = min(clearances[row], carriers.measure_distance(other, points[row]))
         for number, place, clearance in zip(left, places, clearances, strict=True):
             if number not in found or clearance > found[number][1]:
                 found[number] = place, clearance
@@ -504,12 +544,14 @@ def find_clearest_positions(
 
 
 def choose_side_distance(piece: BorderPiece, beside: float) -> float:
-    """How far beside a piece its two sides are looked at, in mm, where nothing is near."""
+    """Return the distance in mm from a piece of the points to test on both sides, where nothing is near."""
     return min(beside, BESIDE_SHARE * piece.length)
 
 
-def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
-    """The numbers of pieces that are twins, all of the same ends together; none of a piece without one."""
+def group_twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
+    """Return groups of the numbers of pieces with the same two
+    ends but different carriers; single pieces are left out.
+    """
     groups: list[list[int]] = []
     for number, piece in pieces.items():
         for group in groups:
@@ -527,11 +569,11 @@ def twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
 
 
 def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> list[list[BorderPiece]]:
-    """Pieces of a border joined to closed loops, each run with the region on the left.
+    """Return the pieces of a border joined to closed loops, each with the region on its left.
 
-    Where several runs leave a point, the one that turns farthest to the left is taken. So two corners of a
-    region that touch stay corners of one loop each. Pieces shorter than a gap are no loop, and may be left
-    out.
+    Where several pieces leave a point, the one that turns farthest to the left is taken, so that two corners
+    of a region that touch stay in separate loops. Loops are not begun with pieces shorter than ``reach``, so
+    these may be left out.
 
     Parameters
     ----------
@@ -555,13 +597,15 @@ def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> li
             x, y = pieces[loop[-1]].end
             away = np.hypot(starts[:, 0] - x, starts[:, 1] - y)
             free = [int(k) for k in np.flatnonzero(away <= reach) if k in left or k == first]
-            # A short piece that begins here is not passed over for the next one.
+            # A short piece that begins here is taken before the next one.
             least = min((away[k] for k in free), default=0.0)
             free = [k for k in free if away[k] <= least + SHORT]
             if not free:
                 raise InputError(f"the outline does not close at ({x:.6g}, {y:.6g})")
-            heading = pieces[loop[-1]].heading(at_end=True)
-            following = max(free, key=lambda k: turn_left(heading, pieces[k].heading(at_end=False)))
+            heading = pieces[loop[-1]].compute_heading(at_end=True)
+            following = max(
+                free, key=lambda k: measure_left_turn(heading, pieces[k].compute_heading(at_end=False))
+            )
             if following == first:
                 break
             left.discard(following)
@@ -570,6 +614,6 @@ def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> li
     return loops
 
 
-def turn_left(before: float, after: float) -> float:
-    """Turn from one direction to another in radians, in (-pi, pi], positive to the left."""
+def measure_left_turn(before: float, after: float) -> float:
+    """Return the turn from one direction to another in radians, in (-pi, pi], positive to the left."""
     return -((before - after + pi) % tau - pi)

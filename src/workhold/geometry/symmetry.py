@@ -1,8 +1,8 @@
-"""Vectors of the plane turned, and the rotations and mirror images that carry an outline onto itself.
+"""Rotation of vectors of the plane, and the rotations and mirror images that carry an outline onto itself.
 
-The rotations form a cyclic group (those of a bounded figure do; H. S. M. Coxeter, *Introduction to Geometry*,
-1969, section 2.7), so the smallest of them makes all others by being repeated; and one mirror image makes all
-others by being turned.
+The rotations form a cyclic group (as those of a bounded figure do; H. S. M. Coxeter, *Introduction to
+Geometry*, 1969, section 2.7), so the smallest generates all others, and one mirror image with the rotations
+all mirror images.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ __all__ = [
     "Rotation",
     "find_centroid_of_joints",
     "is_own_mirror_image",
-    "middle_of",
+    "find_middle",
     "rotate_vectors",
     "find_rotations_onto_itself",
-    "symmetries",
+    "find_symmetries",
 ]
 
 
 def rotate_vectors(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
-    """Vectors turned counter-clockwise by angles in radians; numbers or arrays of matching shapes.
+    """Return the vectors turned counter-clockwise by angles in radians; numbers or arrays of matching shapes.
 
     >>> [round(float(v), 12) for v in rotate_vectors(3.0, 1.0, np.pi / 2)]
     [-1.0, 3.0]
@@ -61,27 +61,29 @@ class Rotation:
 
 
 def find_centroid_of_joints(segments: Sequence[Segment]) -> Point:
-    """Mean of the segments' middles, weighted by length: every rotation onto itself keeps this point."""
+    """Return the mean of the segments' middles, weighted by
+    length, in mm; every rotation onto itself keeps this point.
+    """
     total = sum(s.length for s in segments)
-    middles = [middle_of(s) for s in segments]
+    middles = [find_middle(s) for s in segments]
     x = sum(s.length * m[0] for s, m in zip(segments, middles, strict=True)) / total
     y = sum(s.length * m[1] for s, m in zip(segments, middles, strict=True)) / total
     return x, y
 
 
-def middle_of(segment: Segment) -> Point:
-    """A point that moves with a segment: its middle, or the centre of a whole circle."""
-    return segment.center if isinstance(segment, Arc) and segment.is_full else segment.at(0.0)
+def find_middle(segment: Segment) -> Point:
+    """Return the middle of a segment, or the centre of a whole circle: a point that moves along with it."""
+    return segment.center if isinstance(segment, Arc) and segment.is_full else segment.compute_point(0.0)
 
 
 @define(frozen=True, eq=False)
 class CenteredOutline:
-    """N segments about a point that every rotation onto itself keeps.
+    """N segments relative to a point that every rotation of the outline onto itself keeps.
 
     Parameters
     ----------
-    points : (N, 4, 2) anchor, start, end and centre. The anchor is the middle, or the centre of a whole
-        circle, of which all four are the centre. The centre of a line is its middle.
+    points : (N, 4, 2) anchor, start, end and centre, in mm. The anchor is the middle; for a whole circle all
+        four are the centre, for a line the centre is the middle.
     kinds : (N, 3) signed radius (0 for a line), 1 for a whole circle, and the mark.
     """
 
@@ -89,51 +91,63 @@ class CenteredOutline:
     kinds: Array
 
     @classmethod
-    def of(cls, segments: Sequence[Segment], marks: Sequence[int] = ()) -> CenteredOutline:
-        """The outline of some segments; those of different marks are never images of each other."""
+    def from_segments(cls, segments: Sequence[Segment], marks: Sequence[int] = ()) -> CenteredOutline:
+        """Return the outline of segments; with marks, one for each,
+        segments of different marks are no images of each other.
+        """
         points, kinds = [], []
         for s, mark in zip(segments, marks or [0] * len(segments), strict=True):
             if isinstance(s, Arc):
-                points.append((s.center,) * 4 if s.is_full else (s.at(0.0), s.start, s.end, s.center))
+                points.append(
+                    (s.center,) * 4 if s.is_full else (s.compute_point(0.0), s.start, s.end, s.center)
+                )
                 kinds.append((s.sign * s.radius, float(s.is_full), mark))
             else:
-                points.append((s.at(0.0), s.start, s.end, s.at(0.0)))
+                points.append((s.compute_point(0.0), s.start, s.end, s.compute_point(0.0)))
                 kinds.append((0.0, 0.0, mark))
         return cls(np.array(points) - find_centroid_of_joints(segments), np.array(kinds))
 
     @cached_property
     def levels(self) -> tuple[Array, NDArray[np.int64]]:
-        """The anchors' places (N,) along one direction in ascending order, and whose they are."""
+        """Anchors' coordinates (N,) along one direction in
+        ascending order, and the indices (N,) of their segments.
+        """
         level = self.points[:, 0] @ ALONG
         order = np.argsort(level, kind="stable")
         return level[order], order
 
     @property
     def first(self) -> int | None:
-        """The first segment whose anchor is not in the middle; None where all are."""
+        """Index of the first segment whose anchor is not at the kept point; None where all are."""
         off_center = np.flatnonzero(np.hypot(*self.points[:, 0].T) > SAME_AFTER_TURN)
         return int(off_center[0]) if len(off_center) else None
 
-    def angles(self, other: CenteredOutline) -> Array:
-        """Angles (M,) in [0, 2 pi) that may carry the first segment's anchor to anchors of another."""
+    def list_candidate_angles(self, other: CenteredOutline) -> Array:
+        """Return the angles (M,) in [0, 2 pi) that carry the anchor
+        of the first segment in direction of anchors of ``other``.
+        """
         assert self.first is not None
         x, y = other.points[np.hypot(*other.points[:, 0].T) > SAME_AFTER_TURN, 0].T
         return np.asarray((np.arctan2(y, x) - np.arctan2(*self.points[self.first, 0, ::-1])) % tau)
 
-    def image(self, other: CenteredOutline, angle: float) -> NDArray[np.int64] | None:
-        """The segment of another outline that a rotation carries each to, or None when one has no image."""
+    def find_image(self, other: CenteredOutline, angle: float) -> NDArray[np.int64] | None:
+        """Return the index (N,) of the segment of ``other`` that
+        a rotation carries each to; None if any has no image.
+        """
         assert self.first is not None
         # One segment rules most angles out.
-        one = self.images(other, angle, slice(self.first, self.first + 1))
-        found = one if (one < 0).any() else self.images(other, angle, slice(None))
+        one = self.find_images_of(other, angle, slice(self.first, self.first + 1))
+        found = one if (one < 0).any() else self.find_images_of(other, angle, slice(None))
         return None if (found < 0).any() else found
 
-    def images(self, other: CenteredOutline, angle: float, chosen: slice) -> NDArray[np.int64]:
-        """Segments of another outline that a rotation carries each of some to; -1 without an image."""
+    def find_images_of(self, other: CenteredOutline, angle: float, chosen: slice) -> NDArray[np.int64]:
+        """Return the index (M,) of the segment of ``other`` that a
+        rotation carries each chosen segment to; -1 without an image.
+        """
         points, kinds = self.points[chosen], self.kinds[chosen]
         turned = np.stack(rotate_vectors(points[..., 0], points[..., 1], angle), axis=-1)
         level, order = other.levels
-        # The anchor of an image is at most so far off, and so is its level, the direction being no longer
+        # The anchor of an image is within SAME_AFTER_TURN, and so is its level, as the direction is no longer
         # than 1.
         first, end = (
             np.searchsorted(level, turned[:, 0] @ ALONG + hair)
@@ -151,18 +165,22 @@ class CenteredOutline:
 
 
 def find_rotations_onto_itself(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[Rotation]:
-    """All rotations that carry an outline, given by its faces, onto itself; the identity comes first.
+    """Return all rotations that carry an outline onto itself, the identity first, then ascending by angle.
 
-    An outline of concentric circles alone turns onto itself at every angle; only the identity is returned for
-    it. Of several outlines marks say of which each face is, and every one is carried onto itself.
+    An outline of concentric circles alone has only the identity here.
+
+    Parameters
+    ----------
+    segments : the faces of the outline.
+    marks : one for each face, such as the number of its outline; faces only map to faces of the same mark.
     """
-    outline = CenteredOutline.of(segments, marks)
+    outline = CenteredOutline.from_segments(segments, marks)
     rotations = [Rotation(0.0, np.arange(len(segments), dtype=np.int64))]
     if outline.first is None:
         return rotations
-    angles = outline.angles(outline)
+    angles = outline.list_candidate_angles(outline)
     orders = (n for n in range(len(segments), 1, -1) if np.abs(angles - tau / n).min() <= SAME_AFTER_TURN)
-    found = ((order, outline.image(outline, tau / order)) for order in orders)
+    found = ((order, outline.find_image(outline, tau / order)) for order in orders)
     order, generator = next(((order, image) for order, image in found if image is not None), (1, None))
     for k in range(1, order):
         assert generator is not None
@@ -171,35 +189,40 @@ def find_rotations_onto_itself(segments: Sequence[Segment], marks: Sequence[int]
     return rotations
 
 
-def symmetries(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[NDArray[np.int64]]:
-    """Indices (N,) of segments' images under every rotation and mirror image of an outline onto itself.
+def find_symmetries(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[NDArray[np.int64]]:
+    """Return the images, index arrays (N,), of segments under
+    every rotation and mirror image of an outline onto itself.
 
-    The identity comes first. Of concentric circles alone, which every motion about their centre carries, it
-    is the only one. Marks are those of :func:`find_rotations_onto_itself`.
+    The identity comes first, then rotations, then mirror images. Concentric circles alone have only the
+    identity here. Marks are those of :func:`find_rotations_onto_itself`.
     """
     images = [rotation.image for rotation in find_rotations_onto_itself(segments, marks)]
-    outline = CenteredOutline.of(segments, marks)
+    outline = CenteredOutline.from_segments(segments, marks)
     mirror = None if outline.first is None else match_mirror_image(outline, segments, marks)
     return images if mirror is None else [*images, *(image[mirror] for image in images)]
 
 
 def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
-    """Whether an outline turned over looks as before, once it is turned round as well."""
-    outline = CenteredOutline.of(segments)
+    """Return whether an outline has a mirror symmetry, about any axis."""
+    outline = CenteredOutline.from_segments(segments)
     return outline.first is None or match_mirror_image(outline, segments) is not None
 
 
 def match_mirror_image(
     outline: CenteredOutline, segments: Sequence[Segment], marks: Sequence[int] = ()
 ) -> NDArray[np.int64] | None:
-    """Indices of segments' mirror images in an outline; None where no mirror image maps it onto itself."""
-    mirrored = CenteredOutline.of([mirror_image(segment) for segment in segments], marks)
-    found = (mirrored.image(outline, angle) for angle in mirrored.angles(outline).tolist())
+    """Return the index (N,) of each segment's image under
+    one mirror symmetry of an outline; None without one.
+    """
+    mirrored = CenteredOutline.from_segments([mirror_image(segment) for segment in segments], marks)
+    found = (
+        mirrored.find_image(outline, angle) for angle in mirrored.list_candidate_angles(outline).tolist()
+    )
     return next((image for image in found if image is not None), None)
 
 
 def mirror_image(segment: Segment) -> Segment:
-    """A segment reflected in the x axis, with the material on its left again."""
+    """Return a segment reflected in the x axis and run the other way, so that the material is on its left."""
 
     def over(point: Point) -> Point:
         return point[0], -point[1]

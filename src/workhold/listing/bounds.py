@@ -1,18 +1,18 @@
-"""Bounds of the rank of fixtures that are not proven yet: of pairs of clamps, and of all that is tilted.
+"""Bounds of the rank of fixtures that are not proven yet: by pairs of clamps, and for all tilted fixtures.
 
-Contacts of three locators and one clamp already say what the locators take up of the clamp's force. So of
-any two at one seat it is known to some digits whether they close, how far their forces may differ, and what
-the strongest peg carries. ``listing.seat_order`` asks for it where a figure of the clamps is ranked by.
+Contacts of three locators and one clamp determine the locators' reactions to the clamp's force. So of any two
+clamps at one seat it is known approximately whether they close, how far their forces may differ, and how much
+the strongest peg carries. ``listing.order_seats`` uses this where a figure of the clamps is ranked by.
 
-How far forces may be off: a clamp's contact is as far off as its record says. That turns a normal by so much
-over the radius of its arc, and changes a moment by so much over L. The reactions are off by that times the
-inverse of the locators' wrenches, over the clamp's push where it moves along its line. All of it is taken
-generously, and to first order; where it is not small, the forces are taken as not known.
+Errors of the forces. The place of a clamp's contact is uncertain by what its record says. An error of place e
+turns a normal by e over the radius of its arc, and changes a moment by e / L. The error of the reactions is
+that times the inverse of the locators' wrenches, divided by the clamp's push, since the clamp moves along its
+line. All is to first order, and generous; where it is not small, the forces count as unknown.
 
-A tilt costs points, and no location error is small. Pegs are off by p and faces by f, so that a contact is
-off by t = p + f along its normal. Along the tangent it is off by p or more as well, and by t where no arc is
-touched by two pegs. So the location error is no less than sqrt(t^2 + p^2), or t sqrt 2 (theorem "tilted
-fixtures" of docs/method-theorems.md).
+A tilt costs points, and the location error has a lower bound. Pegs are off by p and faces by f, so a contact
+is off by t = p + f along its normal. Along the tangent it is off by p or more as well, and by t where no two
+pegs touch one arc. So the location error is at least sqrt(t^2 + p^2), or t sqrt 2 (theorem "tilted fixtures"
+of docs/method-theorems.md).
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ from workhold.kernels.contact.seats import (
     FREEDOM,
     MARGIN,
     OFF,
-    bounds_of_pairs,
+    write_pair_bounds,
 )
-from workhold.listing.canonical_form import Candidates, make_candidates
+from workhold.listing.canonical_form import CandidateFixtures, make_candidates
 from workhold.listing.clamp_placement import DIRECTION_NAMES, find_direction_number
 from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP
@@ -56,9 +56,9 @@ from workhold.model.quality import (
     TILT,
 )
 from workhold.model.query import Query
-from workhold.statics.contact_matrix import compute_outward_normals, invert_locator_matrices, wrenches
-from workhold.statics.judging import Judging
-from workhold.statics.quality import main_direction, measure_faces
+from workhold.statics.contact_matrix import compute_outward_normals, compute_wrenches, invert_locator_matrices
+from workhold.statics.judging import JudgingLimits
+from workhold.statics.quality import find_main_direction, measure_faces
 
 __all__ = [
     "BOUNDED",
@@ -71,17 +71,19 @@ __all__ = [
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# The figures that pairs bound, by where they stand in a row of bounds.
+# Figures that pairs of clamps bound, each with its column in a row of bounds.
 BOUNDED = {CLAMP_FREEDOM: FREEDOM, CLOSURE_MARGIN: MARGIN, CLAMP_AMPLIFICATION: AMPLIFICATION}
-# What forces may be off by besides, as a part of the largest, and most with which they are known at all.
-# Location errors are rounded by less than the first.
+# Further error of forces as a part of the largest, and the largest error with which forces count as known.
+# Location errors are rounded by less than SHARE.
 SHARE, MOST_SHARE = 1e-6, 1e-2
 # Larger than any step of holes.
 MANY = 1 << 20
 
 
 def find_first_clamp_figure(query: Query) -> int | None:
-    """Return the place in a ranking of the first figure that pairs of clamps bound; None if no figure is."""
+    """Return the index in the query's ranking of the first figure
+    that pairs of clamps bound (:data:`BOUNDED`); None without one.
+    """
     keys = {FIGURES[number].key for number in BOUNDED}
     return next((place for place, key in enumerate(query.rank_by) if key in keys), None)
 
@@ -93,10 +95,14 @@ def bound_pairs(
     problems: Sequence[Problem],
     query: Query,
 ) -> Array:
-    """Return the bounds (S, 3) of the pairs of clamps at seats, see ``kernels.contact.seats``.
+    """Return bounds (S, 3) of figures over all pairs of
+    clamps at each of S seats, see ``kernels.contact.seats``.
 
-    ``order`` (M,) are numbers of contacts, counted through all directions, seat by seat, and ``starts`` (S,)
-    where each seat begins. Records and problems are those of each direction.
+    Parameters
+    ----------
+    order : (M,) indices of contacts, seat by seat, counted through the records of all directions.
+    starts : (S,) index in ``order`` at which each seat begins.
+    records, problems : one of each for each direction of the clamp.
     """
     forces, directions = np.empty((len(order), FORCE_LENGTH)), np.empty(len(order), np.int64)
     seat = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
@@ -104,7 +110,7 @@ def bound_pairs(
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         there = np.flatnonzero((order >= edges[number]) & (order < edges[number + 1]))
         some = part.take(order[there] - edges[number])
-        forces[there] = clamp_forces(some, make_candidates(some, problem), problem)
+        forces[there] = compute_clamp_forces(some, make_candidates(some, problem), problem)
         directions[there] = find_direction_number(problem.toolkit)
     kept = np.flatnonzero(forces[:, OFF] >= 0.0)
     ends = np.searchsorted(seat[kept], np.arange(len(starts) + 1))
@@ -114,23 +120,24 @@ def bound_pairs(
         asked[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = 1
     out, place = np.empty((len(starts), BOUND_LENGTH)), find_first_clamp_figure(query)
     wants_margin = place is not None and query.rank_by[place] == FIGURES[CLOSURE_MARGIN].key
-    bounds_of_pairs(ends, directions[kept], forces[kept], asked, wants_margin, out, np.empty((2, LOCATORS)))
+    write_pair_bounds(ends, directions[kept], forces[kept], asked, wants_margin, out, np.empty((2, LOCATORS)))
     return out
 
 
-def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
+def compute_clamp_forces(records: Array, c: CandidateFixtures, problem: Problem) -> Array:
     """Return the forces (N, 5) of contacts of three locators and a clamp, see ``kernels.contact.seats``.
 
-    Locators are in the order of their holes, whatever the direction of the clamp. Less than no doubt stands
-    for a clamp that surely holds the part alone, and needs no other.
+    Columns: the locators' forces in the order of their holes on the plate, the force at the clamp's face, and
+    an error bound. The bound is inf where forces are not known, and -1 for a clamp that surely holds the part
+    alone.
     """
-    column, row = problem.frame.step_back(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
+    column, row = problem.frame.map_step_to_toolkit(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
     places = np.argsort(column * MANY + row, axis=1)
     out = np.empty((len(records), FORCE_LENGTH))
     out[:, :LOCATORS] = np.take_along_axis(c.force[:, LOCATOR_CONTACTS], places, axis=1)
     out[:, FACE] = c.force[:, TIP]
     rows = problem.rows[c.feature]
-    each = wrenches(c.point, compute_outward_normals(rows, c.point), problem.wrench_length)
+    each = compute_wrenches(c.point, compute_outward_normals(rows, c.point), problem.wrench_length)
     norm = np.abs(invert_locator_matrices(each)).sum(axis=2).max(axis=1, initial=0.0)
     curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
     place = 16.0 * (records[:, record.LARGEST_RADIUS] + records[:, record.REACH] * problem.wrench_length)
@@ -145,44 +152,49 @@ def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
     return out
 
 
-# Degrees beside preferred orientations that count as such: far more than any orientation is off.
+# Degrees by which preferred ranges are widened: far more than any orientation is off.
 BESIDE = 1e-3
 
 
 def list_preferred_angles(query: Query) -> list[tuple[float, float]]:
-    """Return the ranges in degrees of the part's angle in which the order prefers it: square, as drawn or by
-    quarters.
+    """Return the four ranges (low, high) in degrees of the
+    part's angle that the ranking prefers, a quarter turn apart.
 
-    In the usual order these are quarters of a turn as written, else where the part's main direction is square.
+    In the usual ranking they are at multiples of 90 degrees, else where the part's main direction is square.
+    They are as narrow as ``SQUARE_TILT``.
     """
-    direction = 0.0 if query.has_house_order else main_direction(query.workpiece)
+    direction = 0.0 if query.has_house_order else find_main_direction(query.workpiece)
     beside = SQUARE_TILT + BESIDE
     middles = [90.0 * k - direction for k in range(4)]
     return [(middle - beside, middle + beside) for middle in middles]
 
 
 def bound_keys_when_tilted(query: Query, problem: Problem) -> OrderKeys | None:
-    """Return the least keys, one row, that fixtures at other than the preferred angles can have.
+    """Return lower bounds, one row, of the ranking keys of fixtures at other than the preferred angles.
 
-    None where angles have no say, or nothing is bounded.
+    None where the angle makes no difference, or there is no bound: for flat jaws or fences, and parts with
+    several outlines.
 
     Parameters
     ----------
-    problem : the search of it, or of one of its directions.
+    problem : of the query, or of one direction of its clamps.
     """
     toolkit, part = query.toolkit, query.workpiece
     if toolkit.has_flats or part.outlines:
         return None
     if query.has_house_order:
         # Where the drawing lies aslant, other angles may be square.
-        tilt = SQUARE_TILT if main_direction(part) == 0.0 else 0.0
+        tilt = SQUARE_TILT if find_main_direction(part) == 0.0 else 0.0
         return bound_keys_of_tilt(query, problem, tilt)
     tilted, square = (bound_keys_of_tilt(query, problem, tilt) for tilt in (SQUARE_TILT, 0.0))
     return None if (tilted.first == square.first).all() else tilted
 
 
 def list_shared_arcs(query: Query) -> list[int]:
-    """Return the numbers of the arcs that two pegs which fix the part may touch: pegs are a pitch or the gap apart."""
+    """Return the numbers of the arcs that two locating pegs may touch, ascending.
+
+    Pegs are at least a pitch or the gap apart, so the arc must have such a chord.
+    """
     carriers, gap = query.toolkit.carriers, query.toolkit.gap
     least = min((*(min(one.pitch) for one in carriers if one.has_lattice), *(() if gap is None else (gap,))))
     radius = max(one.peg_radius for one in carriers)
@@ -198,7 +210,10 @@ def list_shared_arcs(query: Query) -> list[int]:
 
 
 def bound_keys_of_tilt(query: Query, problem: Problem, tilt: float) -> OrderKeys:
-    """Return the least keys that fixtures of a tilt in degrees or more, at other than preferred angles, can have."""
+    """Return lower bounds, one row, of the ranking keys of fixtures tilted by ``tilt`` degrees or more.
+
+    The fixtures are at other than the preferred angles.
+    """
     part, tolerance = query.workpiece, query.tolerance
     sizes, off = measure_faces(part), tolerance.peg + tolerance.face
     arcs = list_shared_arcs(query)
@@ -210,12 +225,14 @@ def bound_keys_of_tilt(query: Query, problem: Problem, tilt: float) -> OrderKeys
     quality[:, LOCATION_ERROR], quality[:, SMALLEST_FACE] = np.transpose(cases)
     quality[:, LOCATION_ERROR] *= 1.0 - SHARE
     quality[:, TILT] = tilt
-    quality[:, PENALTY] = Judging.of(problem.wrench_length, query.toolkit, tolerance).penalty(quality)
+    quality[:, PENALTY] = JudgingLimits.from_toolkit(
+        problem.wrench_length, query.toolkit, tolerance
+    ).compute_penalty(quality)
     aslant = next(factor.times for factor in FACTORS if factor.key == "other_angle")
     error = quality[:, LOCATION_ERROR] * aslant if query.has_house_order else None
     keys = make_order_keys(quality, query, error, np.full(len(cases), 2))
     if keys.error is None:
-        return keys.take(keys.order(None)[:1])
-    # No one of them need have all that is least.
+        return keys.take(keys.sort(None)[:1])
+    # The least values of the keys may belong to different cases.
     rest = keys.rest[np.lexsort(keys.rest.T[::-1])[:1]]
     return OrderKeys(keys.first[:1], keys.error.min(keepdims=True), rest)

@@ -1,4 +1,4 @@
-"""Fixtures on their way to a table: in the form they are listed in, listed once."""
+"""Candidates for fixtures: arrays of them in canonical form, each once, before they become a table."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from workhold.conventions import END_SLACK, JOINT, SAME_PLACE, SAME_POSE
 from workhold.geometry.segment import find_row_ends
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
-from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
-from workhold.listing.runs import make_keys, order_of
+from workhold.kernels.proof.canonical_form import to_canonical_form, write_contacts
+from workhold.listing.runs import make_keys, sort_keys
 from workhold.proof.deciding import read_peg_integers
 
 __all__ = [
     "NEAR_END",
-    "Candidates",
-    "Rows",
+    "CandidateFixtures",
+    "RowArrays",
     "are_lowest",
     "make_candidates",
     "make_canonical",
@@ -33,7 +33,7 @@ __all__ = [
     "assign_contacts_to_faces",
     "pack_integers",
     "pack_holes",
-    "place_number",
+    "number_places",
 ]
 
 Array = NDArray[np.float64]
@@ -47,35 +47,36 @@ NEAR_END = 1e-4
 
 
 @define(frozen=True, eq=False)
-class Rows:
-    """Arrays of as many rows each: the fields of a class."""
+class RowArrays:
+    """A base for classes whose fields are arrays with the same number of rows; its length is that number."""
 
     def __len__(self) -> int:
         return len(getattr(self, fields(type(self))[0].name))
 
     def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Self:
+        """Return the rows that an index array or a mask selects."""
         indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
         return type(self)(*(getattr(self, one.name).take(indices, axis=0) for one in fields(type(self))))
 
     @classmethod
     def concatenate(cls, parts: Sequence[Self]) -> Self:
-        """Return the rows of several, at least one."""
+        """Return the rows of several objects, at least one, in order."""
         return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
 
 @define(frozen=True, eq=False)
-class Candidates(Rows):
-    """N fixtures on their way to a table; standing pegs first, (N, 4) unless said otherwise.
+class CandidateFixtures(RowArrays):
+    """N fixtures not yet in a table; arrays are (N, 4), standing pegs first, unless said otherwise.
 
     Parameters
     ----------
-    standing : (N,) how many of the pegs stand on the carrier that stands still.
-    feature, column, row : touched feature and lattice place; columns count on each carrier, rows on both
-        alike.
+    standing : (N,) how many of the four pegs are on the carrier that stands still.
+    feature : index of the feature that each peg touches.
+    column, row : each peg's hole; columns count on each carrier by itself, rows on both carriers together.
     theta : (N,) orientation of the workpiece in radians.
-    point : (N, 4, 2) peg centres in the workpiece's frame about the centre of the part, in mm.
+    point : (N, 4, 2) centres of pegs in the part's frame, relative to the centre of the part, in mm.
     gap : (N,) x distance in mm from the rightmost standing to the leftmost moving peg.
-    null, force : null vector and forces per unit of clamping force.
+    null, force : null vector, and forces per unit of the clamping force.
     """
 
     standing: IntArray
@@ -89,35 +90,39 @@ class Candidates(Rows):
     force: Array
 
 
-def make_candidates(records: Array, problem: Problem) -> Candidates:
+def make_candidates(records: Array, problem: Problem) -> CandidateFixtures:
+    """Return the candidates that kernel records (N, 19) describe, row by row."""
     count = len(records)
     feature, column, row = read_peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
     work = np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2))
-    contacts_of(records, problem.rows, problem.setting, point, gap, null, force, *work)
+    write_contacts(records, problem.rows, problem.setting, point, gap, null, force, *work)
     standing = records[:, record.STANDING].astype(np.int64)
-    return Candidates(standing, feature, column, row, -records[:, record.PSI], point, gap, null, force)
+    return CandidateFixtures(standing, feature, column, row, -records[:, record.PSI], point, gap, null, force)
 
 
-def make_canonical(c: Candidates, swapped: int) -> Candidates:
-    """Return the candidates in the one form each fixture is listed in, see ``kernels.proof.canonical_form``."""
+def make_canonical(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
+    """Return the candidates each in its canonical form, row by row; see ``kernels.proof.canonical_form``.
+
+    ``swapped`` is the number of pegs on each carrier with which a half turn exchanges the carriers.
+    """
     theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
     order = np.empty((len(c.standing), 4), np.int64)
     to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
     place = 4 * np.arange(len(order))[:, None] + order
     point = c.point.reshape(-1, 2).take(place, axis=0)
     feature, null, force = c.feature.take(place), c.null.take(place), c.force.take(place)
-    return Candidates(c.standing, feature, column, row, theta, point, c.gap, null, force)
+    return CandidateFixtures(c.standing, feature, column, row, theta, point, c.gap, null, force)
 
 
 def assign_contacts_to_faces(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
-    """Return which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M,
-    19).
+    """Return every way to assign the contacts of records (N, 19) near joints to the features that meet there.
 
-    Of the first ``pegs`` those at a joint may touch either feature.
+    Only the first ``pegs`` contacts of a record vary. Returned are indices (M,) into the records, ascending,
+    and records (M, 19), the originals included.
     """
     ends = find_row_ends(problem.rows)
-    # A feature shorter than that has others beside it that do not begin where it ends.
+    # Features shorter than this have neighbours that do not begin where they end.
     one, other = find_joints(problem, 4.0 * NEAR_END)
     points, numbers = make_candidates(records, problem).point, np.arange(len(records))
     for k in range(pegs):
@@ -133,11 +138,11 @@ def assign_contacts_to_faces(records: Array, problem: Problem, pegs: int) -> tup
 
 
 def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.bool_]:
-    """Return whether contacts (N, P) at joints are on the features of the lowest numbers there, where they
-    are listed.
+    """Return whether (N,) all contacts that lie at a joint are on the feature with the lowest index there.
 
-    Up to a limit of the location error the contact on another feature alone may be found, where fewer or more
-    contacts share a face. The one that is listed is beyond the limit then.
+    ``feature`` is (N, P), ``point`` (N, P, 2) in mm from the part's centre. Up to a limit of the location
+    error a contact may be found on another feature alone; the same contact on the lowest feature is then
+    beyond the limit.
     """
     one, other = find_joints(problem, JOINT)
     is_lowest = np.ones((len(problem.rows), 2), np.bool_)
@@ -147,7 +152,12 @@ def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.
 
 
 def find_joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
-    """Return pairs of feature ends (two numbers each) that meet within ``within`` mm and that the same pegs touch."""
+    """Return pairs (J,), (J,) of ends of features that meet
+    within ``within`` mm and can be touched by the same pegs.
+
+    Feature f has the ends 2 f and 2 f + 1. Each pair comes in both orders as ``find_meeting_ends`` gives
+    them.
+    """
     one, other = find_meeting_ends(find_row_ends(problem.rows).reshape(-1, 2), within)
     begin, last = problem.moving
     alike = ((one // 2 >= begin) & (one // 2 < last)) == ((other // 2 >= begin) & (other // 2 < last))
@@ -155,11 +165,12 @@ def find_joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
 
 
 def pack_integers(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
-    """Return the whole numbers packed into as few numbers (N,) as hold them, in lexicographic order.
+    """Return int64 words (N,) that sort lexicographically
+    as the given columns do, as few as have room for them.
 
     Parameters
     ----------
-    columns : (N, K) numbers from 0 upward, each time with the largest there may be.
+    columns : pairs of integers (N, K) from 0 up, and the largest value possible among them.
     """
     words: list[IntArray] = []
     free = 0
@@ -175,24 +186,26 @@ def pack_integers(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArr
 
 
 def bound_holes(problem: Problem) -> tuple[int, int]:
-    """Return the largest column and row that candidates in the listed form can have: no two pegs are farther
-    apart than the part is wide.
+    """Return the largest column and row that a candidate
+    in canonical form can have, from the width of the part.
     """
     lattice = problem.frame.lattice
     reach = problem.diameter + abs(lattice.row_offset)
     return int(reach / lattice.pitch_x) + 2, int(reach / lattice.pitch_y) + 2
 
 
-def pack_holes(c: Candidates, most: tuple[int, int] | None = None) -> list[IntArray]:
-    """Return the arrangements and holes of candidates, packed; ``most`` are the largest column and row that
-    may be packed alike.
+def pack_holes(c: CandidateFixtures, most: tuple[int, int] | None = None) -> list[IntArray]:
+    """Return packed words (N,) of the candidates' arrangements and holes.
+
+    ``most`` are the largest column and row; give them if words of several calls are compared. None for those
+    of these candidates.
     """
     column, row = (c.column.max(initial=0), c.row.max(initial=0)) if most is None else most
     return pack_integers((c.standing[:, None], MOST_PEGS), (c.column, column), (c.row, row))
 
 
 def mark_changes(words: list[IntArray]) -> NDArray[np.bool_]:
-    """Return which entries (N,) of packed numbers differ from the one before; the first does."""
+    """Return which rows (N,) differ from the row before in any word; the first row does."""
     fresh = np.zeros(len(words[0]), np.bool_)
     fresh[:1] = True
     for word in words:
@@ -203,7 +216,15 @@ def mark_changes(words: list[IntArray]) -> NDArray[np.bool_]:
 def split_into_clusters(
     order: IntArray, fresh: NDArray[np.bool_], *values: tuple[Array, float]
 ) -> tuple[IntArray, NDArray[np.bool_]]:
-    """Return the groups (N,) in an order, beginning where ``fresh``, split where one value after the other leaps."""
+    """Return an order (N,) and a mask of group starts (N,), with groups split at leaps of values.
+
+    Parameters
+    ----------
+    order : (N,) indices, group by group.
+    fresh : (N,) where in the order a group begins.
+    values : pairs of numbers (N,) and a leap; in turn, each group is sorted by the numbers and split where
+        neighbours differ by more than the leap.
+    """
     for numbers, leap in values:
         group = np.cumsum(fresh)
         again = np.lexsort([numbers[order], group])
@@ -213,23 +234,23 @@ def split_into_clusters(
     return order, fresh
 
 
-def order_by_same_holes(c: Candidates) -> tuple[IntArray, IntArray]:
-    """Return the order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in
-    all these."""
+def order_by_same_holes(c: CandidateFixtures) -> tuple[IntArray, IntArray]:
+    """Return an order (N,) by type, holes and orientation, and in that order the group number (N,) from 1.
+
+    A group has the same type and holes, and orientations within ``SAME_POSE`` of the neighbour.
+    """
     words = pack_holes(c)
-    order = order_of(make_keys(*words, c.theta))
+    order = sort_keys(make_keys(*words, c.theta))
     fresh = mark_changes([word[order] for word in words])
     fresh[1:] |= np.diff(c.theta[order]) > SAME_POSE
     return order, np.cumsum(fresh)
 
 
-def list_each_once(c: Candidates) -> Candidates:
-    """Return the candidates sorted by type, holes, orientation, faces and place, without those of the same
-    holes and pose.
+def list_each_once(c: CandidateFixtures) -> CandidateFixtures:
+    """Return the candidates without repetitions, sorted by type, holes, orientation, faces and place.
 
-    A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same
-    holes and the same orientation may still differ in where the workpiece lies; one number that mixes all
-    that distinguishes them.
+    A contact at a tangent joint is found on both faces that meet there; the lower feature is kept. Candidates
+    with the same holes and orientation may differ in where the part lies; they are all kept.
     """
     if len(c.standing) == 0:
         return c
@@ -245,23 +266,27 @@ def list_each_once(c: Candidates) -> Candidates:
     return c.take(first[kept[np.argsort(group[kept], kind="stable")]])
 
 
-def place_number(point: Array, gap: Array) -> Array:
-    """Return a number (N,) that distinguishes places of the workpiece.
+def number_places(point: Array, gap: Array) -> Array:
+    """Return one number (N,) in mm that distinguishes places of the part at equal holes and orientation.
 
-    It mixes a peg's centre (N, 2) in the workpiece's frame and gaps (N,), both in mm.
+    It mixes the centre of a peg (N, 2) in the part's frame and the gap (N,), in mm, with fixed irrational
+    factors.
     """
     return np.asarray(point @ np.array([1.0, 0.7548776662]) + 0.5698402910 * gap)
 
 
-def are_at_different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
-    """Return which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no
-    repetitions, in the order of group, faces and place; see :func:`list_each_once`."""
-    place = place_number(c.point[first, 0], c.gap[first])
+def are_at_different_places(c: CandidateFixtures, first: IntArray, group: IntArray) -> IntArray:
+    """Return positions in ``first`` of one candidate for
+    each place, in the order of group, place and features.
+
+    ``first`` (K,) are indices of candidates, ``group`` (K,) their group of equal holes and orientation. Of
+    candidates at the same place the one with the lowest features is kept.
+    """
+    place = number_places(c.point[first, 0], c.gap[first])
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
     new[1:] = (group[order][1:] != group[order][:-1]) | (np.diff(place[order]) >= SAME_PLACE)
-    # Of the same fixture on several faces, the one on the lowest is kept, whatever rounding makes of its
-    # place.
+    # Of the same fixture on several faces, the one on the lowest is kept, whichever way its place is rounded.
     run = np.empty(len(order), np.int64)
     run[order] = np.cumsum(new)
     features = (c.feature[first], c.feature.max())

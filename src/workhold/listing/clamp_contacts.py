@@ -20,12 +20,12 @@ from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
-from workhold.listing.canonical_form import Candidates
+from workhold.listing.canonical_form import CandidateFixtures
 from workhold.listing.clamp_placement import find_axis, find_direction_number
-from workhold.listing.placing import LOCATOR_CONTACTS, TIP, clamp_placement
+from workhold.listing.placing import LOCATOR_CONTACTS, TIP, make_clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
-from workhold.statics.contact_matrix import compute_outward_normals, wrenches
+from workhold.statics.contact_matrix import compute_outward_normals, compute_wrenches
 
 if TYPE_CHECKING:
     from workhold.proof.ball_contacts import CandidateBox
@@ -36,30 +36,31 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# mm. Proven contacts are this near to where they are said to be.
+# mm. Proven contacts are this near to their computed places.
 BESIDE = 1e-8
 
 
 @define(frozen=True, eq=False)
 class ClampContacts:
-    """M contacts of L locators and a clamp; columns and rows count from the locators' lowest, but rows from a
-    wall.
+    """M contacts of L locators and one clamp. Columns and rows
+    count from the locators' lowest; rows from a wall, if any.
 
     Parameters
     ----------
-    direction : (M,) number of the clamp's.
-    feature, column, row : (M, L) of the locators, in the order of columns and rows.
-    face : (M, 3) numbers of the faces that locators touch, those on a wall last.
-    theta : (M,) orientation of the workpiece on the plate in radians.
+    direction : (M,) number of the clamp's direction in ``DIRECTION_NAMES``.
+    feature, column, row : (M, L) of the locators, sorted by column, then row.
+    face : (M, 3) numbers of the faces that locators and wall touch, those on a wall last.
+    theta : (M,) orientation of the part on the plate in radians.
     point : (M, 2) a point of the part in its own coordinates, in mm.
-    start : (M, 2) the first locator's centre from that point, on the plate.
-    clamp_feature, line : (M,) of the clamp.
-    tip : (M, 2) place of the tip on the plate in mm; beside a wall along it from the locator.
-    taken : (M, 3) forces of locators and wall per unit of the clamp's on its face.
-    push : (M,) share of the clamp's own force that a unit on its face is.
-    doubt : (M,) how far ``taken`` may be off.
-    holes : (H, 2) in which clamps may be bolted, and which of them: (H,) numbers of contacts.
-    hole_of : (H,) number of the contact.
+    start : (M, 2) vector on the plate from that point to the first locator's centre.
+    clamp_feature : (M,) index of the feature that the clamp touches.
+    line : (M,) row or column along which the clamp moves.
+    tip : (M, 2) centre of the tip on the plate in mm; beside a wall x counts from the locator.
+    taken : (M, 3) forces of locators and wall per unit of the force at the clamp's face.
+    push : (M,) share of the clamp's own force per unit of that at its face.
+    doubt : (M,) error bound of ``taken``.
+    holes : (H, 2) columns and rows in which clamps may be bolted.
+    hole_of : (H,) index of the contact that each of these holes belongs to.
     """
 
     direction: IntArray
@@ -81,6 +82,7 @@ class ClampContacts:
 
     @classmethod
     def concatenate(cls, parts: Sequence[ClampContacts]) -> ClampContacts:
+        """Return the contacts of several objects in order, with ``hole_of`` renumbered."""
         names = [one.name for one in fields(ClampContacts) if one.name != "hole_of"]
         starts = np.cumsum([0, *(len(part.theta) for part in parts)])
         hole_of = np.concatenate([part.hole_of + start for part, start in zip(parts, starts, strict=False)])
@@ -91,7 +93,11 @@ class ClampContacts:
 
 
 def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
-    """Return the contacts of a wall, a locator and a clamp that the search of one direction proved."""
+    """Return, each once, the contacts with a wall and a
+    locator whose clamp may be one of two and can be bolted.
+
+    ``found`` are the proven pairs of one direction.
+    """
     found = found.list_each_once()
     found = found.take(is_one_of_two(found.null[:, :3], found.push))
     index, hole = found.make_clamp_placement(problem).choose_holes(problem, every=True)
@@ -120,11 +126,14 @@ def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContact
     )
 
 
-def make_contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
-    """Return the contacts of three locators and a clamp that the search of one direction proved."""
+def make_contacts_of_candidates(c: CandidateFixtures, problem: Problem) -> ClampContacts:
+    """Return the contacts of three locators and a clamp whose clamp may be one of two and can be bolted.
+
+    ``c`` are the proven candidates of one direction.
+    """
     frame = problem.frame
     rows = problem.rows[c.feature]
-    wrench = wrenches(c.point, compute_outward_normals(rows, c.point), problem.wrench_length)
+    wrench = compute_wrenches(c.point, compute_outward_normals(rows, c.point), problem.wrench_length)
     inverse = np.asarray(np.linalg.inv(np.swapaxes(wrench[:, LOCATOR_CONTACTS], 1, 2)), np.float64)
     taken = -(inverse @ wrench[:, TIP, :, None])[..., 0]
     axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping
@@ -133,18 +142,20 @@ def make_contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContact
     taken, push, doubt = sharpen_reactions(
         c, taken, push, *bound_rounding_doubts(inverse, taken, rows, push, problem), problem
     )
-    column, row = frame.step_back(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
+    column, row = frame.map_step_to_toolkit(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
     lowest = np.stack([column.min(axis=1, initial=1 << 30), row.min(axis=1, initial=1 << 30)], axis=1)
     column, row = column - lowest[:, :1], row - lowest[:, 1:]
-    placement = clamp_placement(c, problem)
+    placement = make_clamp_placement(c, problem)
     index, hole = placement.choose_holes(problem, every=True)
     pitch = np.array(frame.toolkit.carriers[0].pitch)
     cosine, sine = QUARTERS[frame.quarters]
     along, height = placement.tip.T
     tip = np.stack([cosine * along - sine * height, sine * along + cosine * height], axis=1) - lowest * pitch
     across = 1 if frame.quarters % 2 == 0 else 0
-    line = np.stack(frame.step_back(np.zeros(len(along), np.int64), c.row[:, TIP]), axis=1)[:, across]
-    holes = np.stack(frame.step_back(hole, c.row[index, TIP]), axis=1) - lowest[index]
+    line = np.stack(frame.map_step_to_toolkit(np.zeros(len(along), np.int64), c.row[:, TIP]), axis=1)[
+        :, across
+    ]
+    holes = np.stack(frame.map_step_to_toolkit(hole, c.row[index, TIP]), axis=1) - lowest[index]
     is_bolted = np.zeros(len(push), np.bool_)
     is_bolted[index] = True
     kept = is_one_of_two(taken, push) & is_bolted
@@ -178,17 +189,18 @@ def make_contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContact
 
 
 def sharpen_reactions(
-    c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
+    c: CandidateFixtures, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
 ) -> tuple[Array, Array, Array]:
-    """Return the forces of the locators (N, 3), pushes and doubts (N,) of contacts.
+    """Return the forces of the locators (N, 3), the clamp's
+    pushes (N,) and error bounds (N,), improved where too rough.
 
-    They are computed in balls where doubles leave forces in doubt. ``push_off`` and ``doubt`` (N,) are how
-    far pushes and forces may be off.
+    Those are computed in ball arithmetic. ``push_off`` and ``doubt`` (N,) are error bounds of the given
+    pushes and forces.
     """
     from workhold.proof.exact_contacts import bound_reactions
 
     taken, push, doubt = taken.copy(), push.copy(), doubt.copy()
-    # Per unit of the clamp's own force, as parts of one and the largest force.
+    # Errors per unit of the clamp's own force, relative to one plus the largest force.
     most = np.abs(taken).max(axis=1, initial=0.0)
     off = (doubt + most * push_off / push) / (push + most) + push_off / push
     chosen = np.flatnonzero(off > FORCES_OFF).tolist()
@@ -200,8 +212,10 @@ def sharpen_reactions(
     return taken, push, doubt
 
 
-def make_candidate_box(c: Candidates, number: int, problem: Problem) -> CandidateBox:
-    """Return a contact of three locators and a clamp in the frame of the search."""
+def make_candidate_box(c: CandidateFixtures, number: int, problem: Problem) -> CandidateBox:
+    """Return candidate ``number``, three locators and a clamp,
+    as a box about its solution in the frame of the search.
+    """
     column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
     x, y = (column[LOCATOR_CONTACTS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
     separation = float(x.max() + c.gap[number])
@@ -216,8 +230,15 @@ def make_box_beside(
     middle: tuple[float, float, float, float],
     problem: Problem,
 ) -> CandidateBox:
-    """Return a box about a proven contact of three locators and a clamp, as drawn, see
-    ``proof.ball_contacts.CandidateBox``."""
+    """Return a box about a proven contact of three locators
+    and a clamp, see ``proof.ball_contacts.CandidateBox``.
+
+    Parameters
+    ----------
+    features : indices of the four features, the clamp's last.
+    offsets : x and y in mm of each peg from the first; of the clamp x is 0, its position being unknown.
+    middle : approximate psi in radians, x and y of the first peg in the part's frame, and separation, in mm.
+    """
     from flint import ctx
 
     from workhold.proof.ball_contacts import CandidateBox
@@ -232,11 +253,10 @@ def make_box_beside(
 
 
 def is_one_of_two(taken: Array, push: Array) -> BoolArray:
-    """Return which clamps (N,) may be one of two: they neither hold the part alone nor press a locator too
-    hard.
+    """Return which clamps (N,) may be one of two: they do not hold the part alone, nor overload a locator.
 
-    That is with more than ``MOST_FORCE`` times their own force. Forces ``taken`` (N, 3) of the locators and
-    ``push`` (N,) of the clamp are per unit of that on the clamp's face.
+    A locator is overloaded beyond ``MOST_FORCE`` times the clamp's own force. ``taken`` (N, 3) are locators'
+    forces and ``push`` (N,) the clamp's, per unit of the force at the clamp's face.
     """
     needs_another = taken.min(axis=1, initial=inf) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
     return np.asarray(needs_another & (np.abs(taken).max(axis=1, initial=0.0) <= MOST_FORCE * push))
@@ -245,12 +265,17 @@ def is_one_of_two(taken: Array, push: Array) -> BoolArray:
 def bound_rounding_doubts(
     inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem
 ) -> tuple[Array, Array]:
-    """Return how far clamps' pushes (N,) and forces of the locators (N, 3) may be off by the rounding of
-    places and products.
+    """Return error bounds (N,) of the clamp's push, and (N,) of the locators' forces, from rounding.
 
-    A polished place is off by the inverse of the contact equations times their rounding, and a tip along its
-    line by that over its push. A normal is turned by so much over its radius, and moments are off by so much
-    over L. The bound is of first order, and doubled.
+    The error of a place is that of the contact equations times their inverse; along a clamp's line it is
+    divided by the push. An error turns a normal by itself over the radius, and changes a moment by itself
+    over L. The bounds are to first order, doubled.
+
+    Parameters
+    ----------
+    inverse : (N, 3, 3) inverses of the locators' wrenches.
+    taken, push : as of :func:`is_one_of_two`.
+    rows : (N, 4, 12) kernel rows of the features touched.
     """
     size = float(np.abs(problem.rows[:, [X, Y, RADIUS]]).max()) + problem.wrench_length
     norm = np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)

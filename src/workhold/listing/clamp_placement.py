@@ -1,11 +1,11 @@
 """Where a clamp is bolted: in a hole of its line, behind its tip.
 
-A clamp slides along a line of the plate's own holes. With a travel it is bolted in the nearest hole behind
-its tip that will do. From there its body, a capsule from the hole to the tip, clears locators and part.
-Without a travel the clamp is its tip alone, which has no hole.
+A clamp slides along a line of the plate's holes. With a longest travel it is bolted in the nearest hole
+behind its tip from which its body, a capsule from the hole to the tip, is clear of locators and part. Without
+one the clamp is its tip alone, without a hole.
 
-The body from a hole lies in that from any hole farther back. So where a program's tool comes too near to the
-one from the nearest hole that the other rules leave, it does so to all.
+The body from a farther hole contains that from a nearer one. So if a program's tool comes too near to the
+body from the nearest hole that the other rules allow, it does so for all holes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from workhold.conventions import BODY_SLACK, GAP_SLACK
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.toolkit import Carrier, Toolkit, Travel
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.kernels.base.distance import piece_distances
+from workhold.kernels.base.distance import write_piece_distances
 
 __all__ = [
     "DIRECTION_NAMES",
@@ -39,52 +39,57 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Farther than any hole.
+# A hole number larger than any.
 FAR = 1 << 30
-# Clamps are listed in this order of directions; unit vectors along which the travel of each is counted.
+# Names of directions in the order in which clamps are listed, and unit vectors along which the travel of each
+# is counted.
 DIRECTION_NAMES = tuple(DIRECTIONS)
 OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values()])
 
 
 def find_direction_number(toolkit: Toolkit) -> int:
+    """Return the index in :data:`DIRECTION_NAMES` of the direction of a toolkit with one clamp direction."""
     return DIRECTION_NAMES.index(toolkit.arrangements[0].direction or "")
 
 
 def is_upright(direction: IntArray) -> BoolArray:
-    """Return which directions, by their numbers, are along columns."""
+    """Return which directions, by their index in :data:`DIRECTION_NAMES`, are along columns (y)."""
     return np.asarray(direction >= DIRECTION_NAMES.index("-y"))
 
 
 def find_axis(carrier: Carrier) -> int:
-    """Return 0 for a carrier that slides along its rows, 1 for one that slides along its columns."""
+    """Return the axis along which a carrier slides: 0 for x, also if it stands still, 1 for y."""
     return 0 if carrier.travel is None or carrier.travel.unit[0] != 0.0 else 1
 
 
 def is_bolted(clamp: Carrier) -> bool:
-    """Return whether a clamp stands in a hole; without a longest travel it is its tip alone."""
+    """Return whether a clamp is bolted in a hole; one without a longest travel is its tip alone."""
     return clamp.travel is not None and clamp.travel.most is not None
 
 
 def find_last_holes(plate: Carrier) -> tuple[float, float]:
-    """Return the most columns and rows that holes of a plate are apart; infinite where it has no end."""
+    """Return the largest differences of columns and of
+    rows between holes of a plate; inf where it has no end.
+    """
     columns, rows = (inf if count is None else count - 1.0 for count in (plate.columns, plate.rows))
     return columns, rows
 
 
 @frozen(eq=False)
 class ClampPlacement:
-    """The clamps of N fixtures, in a frame whose axes the lines of holes follow; lengths in mm.
+    """The clamps of N fixtures, in a frame with axes along the rows and columns of holes; lengths in mm.
 
     Parameters
     ----------
     clamp : the carrier that slides, for its radius and its travel.
-    axis, back : 0 where it slides along x and 1 along y, and the sign of the way in which it opens.
+    axis : 0 where it slides along x, 1 along y.
+    back : sign of the direction in which it opens, 1 or -1.
     tip, locators : (N, 2) and (N, K, 2) centres.
-    place : (N,) where tips are along their lines, from hole 0.
+    place : (N,) coordinate of the tip along its line, from hole 0.
     pitch : distance of holes along the lines.
-    first, last : (N,) the lowest and the highest hole that the plate has.
-    fits : (N,) whether the plate has the locators' holes and the lines.
-    seen : (N, 2) tips in the part's frame, about its centre.
+    first, last : (N,) the lowest and the highest hole that the plate has on the line.
+    fits : (N,) whether the plate has the locators' holes and the clamp's line.
+    seen : (N, 2) centres of tips in the part's frame, relative to its centre.
     theta : (N,) orientations of the part in radians.
     """
 
@@ -102,8 +107,9 @@ class ClampPlacement:
     theta: Array
 
     def find_nearest_holes(self, problem: Problem) -> tuple[IntArray, BoolArray]:
-        """Return the nearest hole (N,) of each clamp, 0 without a travel, and whether (N,) there is one that
-        will do.
+        """Return the nearest permitted hole (N,) on each clamp's line, and whether (N,) there is one.
+
+        The hole is 0 for a clamp without longest travel, and where there is none.
         """
         index, number = self.choose_holes(problem, every=False)
         hole, fits = np.zeros(len(self.tip), np.int64), np.zeros(len(self.tip), np.bool_)
@@ -115,11 +121,11 @@ class ClampPlacement:
 
         Parameters
         ----------
-        every : all holes of a clamp, the nearest first, or the nearest alone.
+        every : True for all permitted holes of each clamp, nearest first; False for the nearest alone.
 
         Returns
         -------
-        numbers (M,) of fixtures, in order; numbers (M,) of holes on their lines, 0 without a travel
+        indices (M,) of fixtures, ascending; holes (M,) on their lines, 0 for a clamp without longest travel
         """
         travel, waiting = self.clamp.travel, np.flatnonzero(self.fits)
         assert travel is not None
@@ -143,8 +149,10 @@ class ClampPlacement:
         return index[order], numbers[order]
 
     def is_clear(self, index: IntArray, stroke: Array, problem: Problem) -> BoolArray:
-        """Return which clamps of an index (M,), from their tips to holes a stroke (M,) behind them, clear
-        locators, part and what a program sweeps.
+        """Return whether (M,) clamps' bodies, from tip to hole,
+        are clear of locators, part, and the program's tools.
+
+        ``index`` (M,) selects fixtures, ``stroke`` (M,) is the distance in mm from tip to hole.
         """
         radius, behind = self.clamp.peg_radius, np.zeros((len(index), 2))
         behind[:, self.axis] = self.back * stroke
@@ -159,11 +167,13 @@ class ClampPlacement:
             x, y = behind[chosen].T
             ends = starts + np.stack(rotate_vectors(x, y, -self.theta[index[chosen]]), axis=1)
             distances = np.empty(len(chosen))
-            piece_distances(starts, ends, problem.outlines[1], distances)
+            write_piece_distances(starts, ends, problem.outlines[1], distances)
             clear[chosen] = distances >= radius - BODY_SLACK
-            passing = problem.swept(self.clamp)
+            passing = problem.find_swept_spans(self.clamp)
             if passing is not None:
                 swept, clearance = passing
-                reach, _ = swept.nearest(starts + problem.workpiece.center, ends + problem.workpiece.center)
+                reach, _ = swept.find_nearest_spans(
+                    starts + problem.workpiece.center, ends + problem.workpiece.center
+                )
                 clear[chosen] &= reach >= clearance + radius - GAP_SLACK
         return clear

@@ -1,12 +1,13 @@
 """Fixtures collected while a search goes on, all or the best: decided, listed once, measured and ranked.
 
-Records of the kernels are decided, brought to the listed form, placed in the toolkit and listed once. Of the
-best alone as many are kept as the query asks for, and they say which closure margin a further one must reach.
+Records of the kernels are decided, brought to canonical form, placed in the toolkit and listed once. If the
+query asks for the best, only as many are kept, and they determine which closure margin further ones must
+reach.
 
-Of all, records come in the order of the search. Those decided are sorted by holes, so that fixtures found
-twice lie together. Each part of that order is listed and measured on some thread, and the parts are sorted by
-rank. Rows of equal rank stay in the order of their identities. With a folder no more than a few parts are in
-memory at a time; the outcome does not depend on it.
+If it asks for all, the fixtures are sorted by holes, so that repetitions are neighbours. Each part of that
+order is listed and measured on some thread, and the parts are sorted by rank. Fixtures of equal rank stay in
+the order of their identities. With a folder only a few parts are in memory at a time; the outcome is the
+same.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from workhold.conventions import MARGIN_SLACK
 from workhold.kernels.contact import record
 from workhold.listing.asked import are_as_asked
 from workhold.listing.canonical_form import (
-    Candidates,
+    CandidateFixtures,
     are_lowest,
     bound_holes,
     list_each_once,
@@ -37,28 +38,28 @@ from workhold.listing.canonical_form import (
     make_canonical,
     pack_holes,
 )
-from workhold.listing.identity import Identity
+from workhold.listing.identity import FixtureIdentity
 from workhold.listing.placing import are_placeable, place_candidates
 from workhold.listing.ranking import (
     A_STEP,
     OrderKeys,
     find_usual_errors,
     make_order_keys,
+    make_table_keys,
     measure_table,
-    order_keys,
 )
-from workhold.listing.runs import Runs, SortedRun, make_keys, map_in_order
+from workhold.listing.runs import ExternalSort, SortedRun, make_keys, map_in_order
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
-from workhold.proof.deciding import Account, Course, decided
+from workhold.proof.deciding import DecidingProgress, SearchReport, decide_records
 from workhold.statics.effective_error import EffectiveErrors, classify_angles
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
 __all__ = [
     "BLOCK",
-    "Batches",
+    "RecordBlocks",
     "BestFixtures",
-    "Needed",
+    "InterestLimits",
     "ResultCollector",
     "split_into_blocks",
     "finish",
@@ -71,39 +72,44 @@ Array = NDArray[np.float64]
 BLOCK = 1 << 14
 
 
-def finish(records: list[Array], problem: Problem, cancel: Event | None = None) -> tuple[Candidates, Account]:
-    """Decide records, bring them to the listed form and list them once, on this thread.
+def finish(
+    records: list[Array], problem: Problem, cancel: Event | None = None
+) -> tuple[CandidateFixtures, SearchReport]:
+    """Decide records on this thread; return their fixtures in
+    canonical form, each once, and a report on all records.
 
     Parameters
     ----------
     records : (N, 19) arrays from the kernels.
-    cancel : when set, only what needs no ball arithmetic and the like is decided.
-
-    Returns
-    -------
-    (the fixtures, an account of all records)
+    cancel : when set, records that need slow methods such as ball arithmetic are left undecided.
     """
-    course = Course(sum(map(len, records)), cancel=cancel)
+    course = DecidingProgress(sum(map(len, records)), cancel=cancel)
     parts, accounts = zip(
         *(decide_and_list(block, problem, course) for block in split_into_blocks(records)), strict=True
     )
-    return list_each_once(Candidates.concatenate(parts)), Account.together(list(accounts))
+    return list_each_once(CandidateFixtures.concatenate(parts)), SearchReport.sum_up(list(accounts))
 
 
 def split_into_blocks(records: Iterable[Array]) -> Iterator[Array]:
-    """Yield the records (N, 19) in blocks, of which there is at least one."""
-    batches = Batches()
+    """Yield the records (N, 19), regrouped in blocks of about
+    :data:`BLOCK` rows; at least one block, perhaps empty.
+    """
+    batches = RecordBlocks()
     for array in records:
         yield from batches.add(array)
-    yield batches.rest()
+    yield batches.take_rest()
 
 
-def decide_and_list(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
-    """Return the records (N, 19) decided: the fixtures among them that fit the toolkit and are as asked, in
-    the form they are listed in, and an account of all.
+def decide_and_list(
+    records: Array, problem: Problem, course: DecidingProgress
+) -> tuple[CandidateFixtures, SearchReport]:
+    """Decide records (N, 19); return the fixtures that fit
+    the toolkit and are as asked, and a report on all records.
+
+    The fixtures are in canonical form; repetitions are not removed.
     """
-    proven, account = decided(records, problem, course)
-    candidates = make_canonical(make_candidates(proven, problem), problem.frame.swapped)
+    proven, account = decide_records(records, problem, course)
+    candidates = make_canonical(make_candidates(proven, problem), problem.frame.swapped_peg_count)
     fits = are_placeable(candidates, problem)
     if not fits.all():
         candidates = candidates.take(fits)
@@ -115,13 +121,15 @@ def decide_and_list(records: Array, problem: Problem, course: Course) -> tuple[C
 
 
 @define(eq=False)
-class Batches:
-    """Records put together and cut into blocks, for fewer steps of array arithmetic."""
+class RecordBlocks:
+    """A buffer that regroups arrays of records into blocks of :data:`BLOCK` rows."""
 
     waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
 
     def add(self, records: Array) -> list[Array]:
-        """Take records (N, 19); return the blocks that are full."""
+        """Take records (N, 19); return blocks once at least
+        :data:`BLOCK` rows wait, the last one perhaps shorter, else none.
+        """
         self.waiting.append(records)
         if sum(map(len, self.waiting)) < BLOCK:
             return []
@@ -129,18 +137,20 @@ class Batches:
         self.waiting = [together[:0]]
         return [together[k : k + BLOCK] for k in range(0, len(together), BLOCK)]
 
-    def rest(self) -> Array:
-        """Return the records that fill no block, which may be none."""
+    def take_rest(self) -> Array:
+        """Return the records still waiting, perhaps none; they are not removed."""
         return np.concatenate(self.waiting)
 
 
-# Records are decided when so many are waiting, or as many as are to be kept if that is more: soon where they
-# give a margin that further ones must reach, else in blocks that cost the least.
+# Number of waiting records, or of fixtures to keep if that is larger, at which records are decided: early
+# where they raise the margin that further ones must reach, else in blocks that cost the least.
 WAITING, WAITING_LONG = 64, 1 << 13
 
 
-class Needed(NamedTuple):
-    """What fixtures must reach to be of interest: a closure margin, and an effective location error in mm."""
+class InterestLimits(NamedTuple):
+    """Limits that fixtures must reach to be of interest: a least
+    closure margin, and a largest effective location error in mm.
+    """
 
     margin: float = 0.0
     error: float = inf
@@ -148,40 +158,43 @@ class Needed(NamedTuple):
 
 @define(eq=False)
 class BestFixtures:
-    """The best of the fixtures added so far, as many as the query asks for, and those that tie with the last
-    of them.
+    """The best of the fixtures added so far, as many as the query asks for, with ties for the last place.
 
     Parameters
     ----------
     problem : what is searched.
-    cancel : when set, only what needs no ball arithmetic and the like is decided, and soon after nothing.
-    is_limited : whether what comes was found up to a limit of the location error.
-    needed : what further fixtures must reach; may be known beforehand.
-    keys : of those kept, once more were decided than are.
+    cancel : when set, records that need slow methods are left undecided.
+    is_limited : whether the search has a limit of the location error.
+    needed : what further fixtures must reach to be among the best; may be set beforehand.
+    keys : ranking keys of those kept, once more fixtures are known than are asked for; None before.
     """
 
     problem: Problem
     cancel: Event | None = None
     is_limited: bool = False
-    needed: Needed = field(factory=Needed, init=False)
+    needed: InterestLimits = field(factory=InterestLimits, init=False)
     keys: OrderKeys | None = field(default=None, init=False)
     has_dropped: bool = field(default=False, init=False)
     waiting: list[NDArray[np.float64]] = field(factory=list, init=False)
-    kept: Candidates | None = field(default=None, init=False)
-    accounts: list[Account] = field(factory=list, init=False)
-    course: Course = field(init=False)
+    kept: CandidateFixtures | None = field(default=None, init=False)
+    accounts: list[SearchReport] = field(factory=list, init=False)
+    course: DecidingProgress = field(init=False)
     effective: EffectiveErrors | None = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.course, self.effective = Course(0, cancel=self.cancel), find_usual_errors(self.problem.query)
+        self.course, self.effective = (
+            DecidingProgress(0, cancel=self.cancel),
+            find_usual_errors(self.problem.query),
+        )
 
     @property
     def most(self) -> int:
+        """Number of fixtures that the query asks for."""
         assert self.problem.query.best is not None
         return self.problem.query.best
 
-    def add(self, records: NDArray[np.float64]) -> Needed:
-        """Take records (N, 19) from the search; what further ones must reach."""
+    def add(self, records: NDArray[np.float64]) -> InterestLimits:
+        """Take records (N, 19) from the search; return what further fixtures must reach."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
         if sum(map(len, self.waiting)) >= max(least, self.most):
@@ -189,6 +202,7 @@ class BestFixtures:
         return self.needed
 
     def decide(self) -> None:
+        """Decide all waiting records, and keep those that may be among the best."""
         waiting, self.waiting = self.waiting, []
         parts = [] if self.kept is None else [self.kept]
         fresh = 0
@@ -199,76 +213,84 @@ class BestFixtures:
             self.accounts.append(account)
             parts.append(part)
             fresh += len(part.standing)
-            # Measured a share at a time, so that one who asks to stop does not wait for all.
+            # Measured in parts, so that a user who cancels does not wait for all.
             if fresh >= max(BLOCK, self.most):
-                parts, fresh = [self.cut(list_each_once(Candidates.concatenate(parts)))], 0
-        self.kept = self.cut(list_each_once(Candidates.concatenate(parts)))
+                parts, fresh = [self.drop_beaten(list_each_once(CandidateFixtures.concatenate(parts)))], 0
+        self.kept = self.drop_beaten(list_each_once(CandidateFixtures.concatenate(parts)))
 
-    def cut(self, everything: Candidates) -> Candidates:
-        """Return the fixtures of those listed once that may be among the best, or tie with the last of these."""
+    def drop_beaten(self, everything: CandidateFixtures) -> CandidateFixtures:
+        """Return the candidates that may be among the best, or tie
+        with the last of these; updates ``keys`` and ``needed``.
+
+        ``everything`` must be free of repetitions.
+        """
         if len(everything.standing) <= self.most:
             return everything
         table = measure_table(place_candidates(everything, self.problem), self.problem)
         query = self.problem.query
-        keys = order_keys(table, query, self.effective)
+        keys = make_table_keys(table, query, self.effective)
         chosen = keys.are_among_best(self.most)
         self.has_dropped |= not chosen.all()
         self.keys = keys.take(chosen)
-        # One that is none for a workshop is worse than any that is, whatever its margin.
-        if query.by_margin_alone and not unfit(table.quality[chosen], query.tolerance).any():
+        # An unfit fixture is worse than any fit one, whatever its margin.
+        if query.by_margin_alone and not are_unfit(table.quality[chosen], query.tolerance).any():
             margin = float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK
-            self.needed = Needed(margin=max(margin, 0.0))
-        # What is surely a step behind so many is not among the best.
+            self.needed = InterestLimits(margin=max(margin, 0.0))
+        # A fixture that is surely a step behind as many as are asked for is not among the best.
         if (last := self.keys.find_last_fine_error(self.most)) is not None:
-            self.needed = Needed(error=min(A_STEP * last, self.needed.error))
+            self.needed = InterestLimits(error=min(A_STEP * last, self.needed.error))
         return everything.take(chosen)
 
     @property
     def found_keys(self) -> OrderKeys:
+        """Ranking keys of all fixtures kept, after deciding what waits."""
         self.decide()
         assert self.kept is not None
         table = measure_table(place_candidates(self.kept, self.problem), self.problem)
-        return order_keys(table, self.problem.query, self.effective)
+        return make_table_keys(table, self.problem.query, self.effective)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Return whether a fixture with keys no less than a bound cannot be among the best; True only once
-        some were dropped.
+        """Return whether a fixture with keys no less than ``bound`` is surely not among the best.
+
+        False until more fixtures are known than are asked for.
         """
         self.decide()
-        return self.keys is not None and bool(bound.are_beaten(self.keys, self.most, bound.lowest).all())
+        return self.keys is not None and bool(
+            bound.are_beaten(self.keys, self.most, bound.lowest_error).all()
+        )
 
-    def finish(self) -> tuple[Candidates, Account]:
-        """Return all that may be among the best, and the account of all records, once the search is over."""
+    def finish(self) -> tuple[CandidateFixtures, SearchReport]:
+        """Return all candidates that may be among the best, and the report on all records."""
         self.decide()
         assert self.kept is not None
         self.has_dropped |= len(self.kept.standing) > self.most
-        return self.kept, Account.together(self.accounts)
+        return self.kept, SearchReport.sum_up(self.accounts)
 
 
 # Bits of a fixture's place in its part.
 PLACE_BITS = 40
 # Seconds between looks at how far the threads have come.
 NAP = 0.1
-# After somebody asked to stop: fixtures that are listed, unless more are already.
+# Largest number of fixtures listed after a cancel, unless more are listed already.
 LISTED_LATE = 50_000
 
 
 @define(eq=False)
 class ResultCollector:
-    """The fixtures of a search.
+    """The fixtures of a whole search: decided, listed once, measured and ranked, in part on disk.
 
     Parameters
     ----------
     problem : what was searched.
-    pool : of threads that share the work.
+    pool : threads that share the work.
     ahead : how many pieces of work may be under way.
-    cancel : when set, records that cannot be decided quickly are left, fixtures that are not measured soon
-        are, and of those measured no more than the best ``LISTED_LATE`` are listed.
-    folder : of what does not stay in memory; None for memory alone.
-    is_part : whether this is a part of a search, from which steps do not count: then fixtures come in the
-        order of their identities.
-    course : how far the deciding has come.
-    found, distinct : numbers of fixtures and of sets of each arrangement, once they are measured.
+    cancel : when set, records that need slow methods are left undecided, remaining fixtures are not measured,
+        and at most the best ``LISTED_LATE`` measured ones are listed.
+    folder : for temporary files; None to keep all in memory.
+    is_part : whether this is one of several searches that are joined and ranked later; fixtures then come in
+        the order of their identities where the ranking counts steps of error.
+    course : progress of deciding.
+    found, distinct : (A,) fixtures, and sets up to symmetry, of each arrangement, once measured.
     """
 
     problem: Problem
@@ -277,90 +299,100 @@ class ResultCollector:
     cancel: Event | None = None
     folder: Path | None = None
     is_part: bool = False
-    course: Course = field(init=False)
+    course: DecidingProgress = field(init=False)
     found: NDArray[np.int64] = field(init=False)
     distinct: NDArray[np.int64] = field(init=False)
-    accounts: list[Account] = field(factory=list, init=False)
-    batches: Batches = field(factory=Batches, init=False)
-    deciding: deque[Future[tuple[SortedRun, Account]]] = field(factory=deque, init=False)
-    by_holes: Runs = field(init=False)
-    by_turn: Runs = field(init=False)
-    by_rank: Runs = field(init=False)
-    identity: Identity = field(init=False)
+    accounts: list[SearchReport] = field(factory=list, init=False)
+    batches: RecordBlocks = field(factory=RecordBlocks, init=False)
+    deciding: deque[Future[tuple[SortedRun, SearchReport]]] = field(factory=deque, init=False)
+    by_holes: ExternalSort = field(init=False)
+    by_turn: ExternalSort = field(init=False)
+    by_rank: ExternalSort = field(init=False)
+    identity: FixtureIdentity = field(init=False)
     effective: EffectiveErrors | None = field(init=False)
     fine: OrderKeys | None = field(default=None, init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.course, self.effective = Course(0, cancel=self.cancel), find_usual_errors(self.problem.query)
-        self.by_holes, self.by_turn, self.by_rank = (Runs(self.folder) for _ in range(3))
-        self.identity = Identity(self.problem.query.toolkit, self.problem.workpiece)
+        self.course, self.effective = (
+            DecidingProgress(0, cancel=self.cancel),
+            find_usual_errors(self.problem.query),
+        )
+        self.by_holes, self.by_turn, self.by_rank = (ExternalSort(self.folder) for _ in range(3))
+        self.identity = FixtureIdentity(self.problem.query.toolkit, self.problem.workpiece)
         kinds = len(self.problem.query.toolkit.arrangements)
         self.found, self.distinct = np.zeros(kinds, np.int64), np.zeros(kinds, np.int64)
 
     @contextmanager
     def give_up_on_errors(self) -> Iterator[None]:
-        """End soon what is being decided when the block ends by an error or a signal: the pool waits for
-        it."""
+        """Yield a context that, on any exception, makes deciding end soon, and raises the exception again."""
         try:
             yield
         except BaseException:
             self.course.give_up()
             raise
 
-    def take(self, records: NDArray[np.float64]) -> Needed:
-        """Take records (N, 19) of the search, in its order; what further ones must reach, which is
-        nothing."""
+    def take_records(self, records: NDArray[np.float64]) -> InterestLimits:
+        """Take records (N, 19), in the order of the search;
+        return limits that require nothing of further ones.
+        """
         self.course.total += len(records)
         for block in self.batches.add(records):
-            self.decide(block)
-        return Needed()
+            self.submit_block(block)
+        return InterestLimits()
 
-    def decide(self, block: NDArray[np.float64]) -> None:
+    def submit_block(self, block: NDArray[np.float64]) -> None:
+        """Begin to decide a block of records on the pool;
+        wait if more than ``ahead`` blocks are under way.
+        """
         self.deciding.append(self.pool.submit(self.decide_block, block))
         while len(self.deciding) > self.ahead:
-            self.keep(*self.deciding.popleft().result())
+            self.keep_run(*self.deciding.popleft().result())
 
-    def decide_block(self, block: NDArray[np.float64]) -> tuple[SortedRun, Account]:
-        """Return the fixtures of a block sorted by their holes, and what became of its records."""
+    def decide_block(self, block: NDArray[np.float64]) -> tuple[SortedRun, SearchReport]:
+        """Return the fixtures of a block as a run sorted by holes, and the report on its records."""
         candidates, account = decide_and_list(block, self.problem, self.course)
         return self.sort_by_holes(candidates), account
 
-    def sort_by_holes(self, candidates: Candidates) -> SortedRun:
+    def sort_by_holes(self, candidates: CandidateFixtures) -> SortedRun:
+        """Return candidates as a run sorted by packed holes."""
         key = make_keys(*pack_holes(candidates, bound_holes(self.problem)))
         return SortedRun.from_columns(key, astuple(candidates, recurse=False))
 
-    def keep(self, run: SortedRun, account: Account) -> None:
-        self.by_holes.add(run)
+    def keep_run(self, run: SortedRun, account: SearchReport) -> None:
+        """Add a run sorted by holes and its report to what is collected."""
+        self.by_holes.add_run(run)
         self.accounts.append(account)
 
-    def add(self, candidates: Candidates, account: Account) -> None:
-        """Take fixtures that are decided already."""
-        self.keep(self.sort_by_holes(candidates), account)
+    def add_candidates(self, candidates: CandidateFixtures, account: SearchReport) -> None:
+        """Add candidates that are decided already, with the report on them."""
+        self.keep_run(self.sort_by_holes(candidates), account)
 
-    def finish_deciding(self, progress: Progress | None = None) -> Account:
-        """Wait for what is being decided; the account of all records."""
-        self.decide(self.batches.rest())
+    def finish_deciding(self, progress: Progress | None = None) -> SearchReport:
+        """Decide the rest, wait for all that is under way, and return the report on all records."""
+        self.submit_block(self.batches.take_rest())
         while self.deciding:
             wait([self.deciding[0]], timeout=NAP)
             if progress is not None:
                 progress(self.course.fraction, self.course.kept)
             if self.deciding[0].done():
-                self.keep(*self.deciding.popleft().result())
-        return Account.together(self.accounts)
+                self.keep_run(*self.deciding.popleft().result())
+        return SearchReport.sum_up(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """List once, measure and count; return whether nothing was left because the user asked to stop."""
+        """List each fixture once, measure, count and rank; return
+        whether all of them were measured before ``cancel``.
+        """
         parts, done = self.by_holes.list_parts(), 0
-        course = Course(len(parts), cancel=self.cancel)
+        course = DecidingProgress(len(parts), cancel=self.cancel)
         for table, turned, least in map_in_order(
             self.pool, self.ahead, self.measure_part, list(enumerate(parts))
         ):
             done += 1
-            self.fine = least if self.fine is None else self.fine.concatenate(least).least_of_all
-            self.by_rank.add(table)
+            self.fine = least if self.fine is None else self.fine.concatenate(least).least_keys
+            self.by_rank.add_run(table)
             self.found += np.bincount(table.columns[0], minlength=len(self.found))
             if turned is not None:
-                self.by_turn.add(turned)
+                self.by_turn.add_run(turned)
             if progress is not None:
                 progress(done / len(parts), len(self.by_rank))
             if course.is_late:
@@ -370,7 +402,7 @@ class ResultCollector:
         if self.identity.is_symmetric:
             for part in map_in_order(self.pool, self.ahead, take_run, self.by_turn.list_parts()):
                 arrangement, pose, *words = part.columns
-                self.distinct += self.identity.count(words, pose, arrangement)
+                self.distinct += self.identity.count_sets(words, pose, arrangement)
             self.by_turn.close()
         else:
             self.distinct += self.found
@@ -379,43 +411,53 @@ class ResultCollector:
     def measure_part(
         self, numbered: tuple[int, Callable[[], SortedRun]]
     ) -> tuple[SortedRun, SortedRun | None, OrderKeys]:
-        """Return the fixtures of a part in the order of their ranks, as far as these depend on no other part.
+        """Return a part's fixtures listed once, measured and
+        sorted by rank as far as known without other parts.
 
-        Beside them, of a symmetric workpiece the smallest of the forms that its turns give them, and the keys
-        of the one with the least effective error.
+        With it come, for a symmetric part, the smallest images of the fixtures under its rotations, else
+        None; and the ranking keys of the fixture with the least effective error.
+
+        Parameters
+        ----------
+        numbered : number of the part, and a function that reads it.
         """
         number, part = numbered
-        candidates = list_each_once(Candidates(*part().columns))
+        candidates = list_each_once(CandidateFixtures(*part().columns))
         table = measure_table(place_candidates(candidates, self.problem), self.problem)
-        # However many rank alike, each has a key of its own, so that parts stay small.
+        # Each fixture has a key of its own, however many rank alike, so that parts stay small.
         identity = np.arange(len(table)) + (number << PLACE_BITS)
-        keys, columns = order_keys(table, self.problem.query, self.effective), table.columns
+        keys, columns = make_table_keys(table, self.problem.query, self.effective), table.columns
         if keys.error is None:
             ranked = SortedRun.from_columns(make_keys(*keys.first.T, identity), columns)
         else:
-            # Steps are known when all are measured.
+            # The steps of errors are known only when all are measured.
             ranked = SortedRun(make_keys(identity), (*columns, keys.error))
         if not self.identity.is_symmetric:
-            return ranked, None, keys.least_of_all
+            return ranked, None, keys.least_keys
         words, pose = self.identity.find_smallest_images(table)
         turned = SortedRun.from_columns(make_keys(*words), (table.arrangement, pose, *words))
-        return ranked, turned, keys.least_of_all
+        return ranked, turned, keys.least_keys
 
     @property
-    def least(self) -> int | None:
-        """The least effective error of all in billionths of a mm; None where none counts."""
-        return None if self.fine is None else self.fine.least
+    def least_error(self) -> int | None:
+        """Least effective error that steps count from, in
+        billionths of a mm; None where steps do not count.
+        """
+        return None if self.fine is None else self.fine.least_error
 
     def rank(self) -> None:
-        """Order what is measured by the steps above the least error of all."""
+        """Sort the measured fixtures by the final keys, in
+        which errors count in steps above the least error.
+        """
         if self.effective is None:
             return
-        measured, self.by_rank = self.by_rank, Runs(self.folder)
+        measured, self.by_rank = self.by_rank, ExternalSort(self.folder)
         for run in map_in_order(self.pool, self.ahead, self.rank_run, measured.iterate_runs()):
-            self.by_rank.add(run)
+            self.by_rank.add_run(run)
         measured.close()
 
     def rank_run(self, part: Callable[[], SortedRun]) -> SortedRun:
+        """Return a measured run sorted by the final keys, without the column of errors."""
         run = part()
         *columns, error = run.columns
         if self.is_part and not self.course.is_stopped:
@@ -424,20 +466,22 @@ class ResultCollector:
         keys = make_order_keys(table.quality, self.problem.query, error, classify_angles(table.theta))
         identity = run.keys.view(">u8").astype(np.int64)
         return SortedRun.from_columns(
-            make_keys(*keys.make_order_numbers(self.least).T, identity), table.columns
+            make_keys(*keys.make_order_numbers(self.least_error).T, identity), table.columns
         )
 
     @property
-    def listed(self) -> int:
-        """How many of the measured fixtures are listed, unless somebody asks to stop after this."""
+    def listed_count(self) -> int:
+        """Number of measured fixtures that are listed; at most ``LISTED_LATE`` once cancelled."""
         found = int(self.found.sum())
         return min(found, LISTED_LATE) if self.course.is_stopped else found
 
     def iterate_tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
-        """Yield the fixtures, best first, in tables; when the user asks to stop, the first fixtures alone."""
+        """Yield the fixtures, best first, in tables, up to
+        ``listed_count`` in all; the collector is then empty.
+        """
         parts, listed = self.by_rank.list_parts(), 0
         for number, part in enumerate(map_in_order(self.pool, self.ahead, take_run, parts), 1):
-            rows = min(len(part), max(self.listed - listed, 0))
+            rows = min(len(part), max(self.listed_count - listed, 0))
             listed += rows
             yield FixtureTable(*part.columns).take(slice(rows))
             if rows < len(part):
@@ -448,4 +492,5 @@ class ResultCollector:
 
 
 def take_run(part: Callable[[], SortedRun]) -> SortedRun:
+    """Return the run that a function reads."""
     return part()

@@ -1,6 +1,7 @@
-"""Contacts of three locators and a clamp, packed as they wait, and in groups that hold whole seats.
+"""Contacts of three locators and a clamp, in packed form, and groups of them that contain whole seats.
 
-Packed they take half the room of records, since all of a range wait to be ordered (``listing.seat_order``).
+Packed they need half the memory of records; all contacts of a range wait to be ordered
+(``listing.order_seats``).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ __all__ = ["PackedContacts", "SeatGroups"]
 
 Array = NDArray[np.float64]
 
-# Numbers below this are kept in 16 bits.
+# Integers below this fit 16 bits.
 SMALL = 1 << 15
 # Records that are unpacked together.
 TOGETHER = 1 << 16
@@ -27,11 +28,12 @@ TOGETHER = 1 << 16
 
 @frozen(eq=False)
 class PackedContacts:
-    """Records (N, 19), see ``kernels.contact.record``, whole numbers apart from others.
+    """Kernel records (N, 19), see ``kernels.contact.record``,
+    with integer columns stored apart to save memory.
 
     Parameters
     ----------
-    whole : (N, 13) columns that are whole numbers.
+    whole : (N, 13) the columns that hold integers, in 16 bits where these suffice.
     reals : (N, 6) the other columns.
     """
 
@@ -40,7 +42,9 @@ class PackedContacts:
 
     @classmethod
     def from_blocks(cls, blocks: list[Array]) -> PackedContacts:
-        """Return the records of blocks, each (N, 19); the list is emptied, since there is no room for both."""
+        """Return the records of blocks, each (N, 19), in
+        order; the list ``blocks`` is emptied to save memory.
+        """
         end = sum(map(len, blocks))
         small = all(np.abs(block[:, :PSI]).max(initial=0.0) < SMALL for block in blocks)
         whole = np.empty((end, PSI), np.int16 if small else np.int64)
@@ -56,34 +60,35 @@ class PackedContacts:
         return len(self.reals)
 
     def take(self, chosen: NDArray[np.int64] | slice) -> Array:
-        """Return the records (M, 19) of an index array or slice."""
+        """Return the records (M, 19) that an index array or slice selects."""
         return np.hstack([self.whole[chosen], self.reals[chosen]])
 
     def iterate_parts(self) -> Iterator[Array]:
-        """Yield all records in parts; one empty part if there are no records."""
+        """Yield all records as arrays (N, 19) of at most
+        :data:`TOGETHER` rows; one empty array if there are none.
+        """
         for first in range(0, max(len(self), 1), TOGETHER):
             yield self.take(slice(first, first + TOGETHER))
 
 
 IntArray = NDArray[np.int64]
 
-# Contacts of the first seats that are looked at together; then twice as many each time.
+# Contacts in the first batch of seats; each further batch has twice as many.
 FIRST_CONTACTS = 1 << 12
 
 
 @frozen(eq=False)
 class SeatGroups:
-    """Contacts of all directions in groups that hold whole seats.
+    """Contacts of all directions in groups; every seat lies wholly in one group.
 
     Parameters
     ----------
-    order : (M,) numbers of the contacts, counted through all directions, group by group.
-    starts : (G,) where each group begins in the order.
-    bounds : of each of G groups the keys that no fixture in it has less than: before, at and after steps each
-        by itself.
-    sharpened : the bounds of groups, given with their contacts, by the pairs of their clamps; None where
-        these bound nothing that is ranked by, or all are known already.
-    alike : how many numbers that order, the first ones, no pairs bound.
+    order : (M,) indices of contacts, group by group, counted through the records of all directions.
+    starts : (G,) index in ``order`` at which each group begins.
+    bounds : (G,) lower bounds of the ranking keys of fixtures in each group.
+    sharpened : called with the contacts and starts of some groups; returns better bounds, from pairs of
+        clamps. None where these cannot improve bounds, or bounds are final.
+    alike : how many leading key numbers pairs of clamps do not change.
     """
 
     order: IntArray
@@ -98,28 +103,33 @@ class SeatGroups:
     def iterate_batches(
         self, kept: RankedTable, floor: int, together: int = FIRST_CONTACTS
     ) -> Iterator[IntArray]:
-        """Yield the numbers of contacts, sorted, of more and more groups, until what is kept cannot get
-        better.
+        """Yield ascending indices of contacts of more and more groups,
+        best bound first, until no group can be among the best.
 
-        Those come first that may have the least error of all, then those that may rank first.
+        The caller adds what it finds in a batch to ``kept`` before the next. Groups that may hold the least
+        error come first.
 
         Parameters
         ----------
-        floor : an error that nothing beside these groups has less than which is not found yet.
+        floor : a lower bound of the errors, in billionths of a mm, of fixtures not yet found outside these
+            groups.
+        together : how many contacts the first batch has, about; it doubles each time.
         """
         left = np.arange(len(self))
         sizes = np.diff(self.starts, append=len(self.order))
         while len(left):
             bounds = self.bounds.take(left)
-            lowest = min(floor, bounds.lowest)
+            lowest = min(floor, bounds.lowest_error)
             left, keys = left[~(out := kept.are_beaten(bounds, lowest))], kept.keys
             kept.has_dropped |= bool(out.any())
             if len(left) == 0:
                 return
             bounds = bounds.take(~out)
-            numbers = bounds.make_order_numbers(keys.least if keys.is_fine.any() else bounds.lowest)
-            if bounds.error is not None and not keys.is_known_above(bounds.lowest):
-                # First what may have the least error.
+            numbers = bounds.make_order_numbers(
+                keys.least_error if keys.is_fine.any() else bounds.lowest_error
+            )
+            if bounds.error is not None and not keys.is_known_above(bounds.lowest_error):
+                # Groups that may have the least error come first.
                 numbers = np.column_stack([bounds.first, bounds.error, numbers])
             by_bound = np.lexsort(numbers.T[::-1])
             left, numbers = left[by_bound], numbers[by_bound]
@@ -130,26 +140,29 @@ class SeatGroups:
                 shift = numbers.shape[1] - self.bounds.width
                 same = (numbers[:, : self.alike + shift] == numbers[0, : self.alike + shift]).all(axis=1)
                 end = max(end, int(np.flatnonzero(same)[-1]) + 1)
-                rest = self.bounds.take(left[end:]).lowest
+                rest = self.bounds.take(left[end:]).lowest_error
                 yield from self.select_groups_between(left[:end]).iterate_batches(
                     kept, min(floor, rest), together
                 )
             left, together = left[end:], 2 * together
 
     def select_contacts(self, groups: IntArray) -> tuple[IntArray, IntArray]:
-        """Return the contacts of some groups one after the other, and where each begins."""
+        """Return the contacts of some groups, concatenated, and the index at which each group begins."""
         sizes = np.diff(self.starts, append=len(self.order))[groups]
         starts = np.cumsum(sizes) - sizes
         return self.order[np.arange(sizes.sum()) + np.repeat(self.starts[groups] - starts, sizes)], starts
 
     def append_group(self, last: IntArray) -> SeatGroups:
-        """Return the groups, and one after them of contacts (N,) that hold nothing."""
+        """Return the groups with one more at the end: contacts
+        (N,) that surely make no fixture, with the worst bounds.
+        """
         if len(last) == 0:
             return self
         order, starts = np.concatenate([self.order, last]), np.append(self.starts, len(self.order))
-        return SeatGroups(order, starts, self.bounds.concatenate(self.bounds.nothing))
+        return SeatGroups(order, starts, self.bounds.concatenate(self.bounds.keys_of_nothing))
 
     def select_groups_between(self, groups: IntArray) -> SeatGroups:
+        """Return some groups with bounds by pairs of clamps; groups without a bound stay so."""
         assert self.sharpened is not None
         order, starts = self.select_contacts(groups)
         sharp, bounds = self.sharpened(order, starts), self.bounds.take(groups)

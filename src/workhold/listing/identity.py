@@ -1,9 +1,9 @@
 """When two fixtures are the same or near duplicates, and how many sets they form under rotations of a part.
 
-A fixture is named by whole numbers for its holes and lines, and by the pose, which says what is touched.
+A fixture is identified by integers for its holes and lines, and by the pose, which determines the contacts.
 Faces are left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that
-a rotation of the part, or half a turn of the toolkit, carries into each other share the smallest of their
-images, which stands for the set.
+a rotation of the part, or half a turn of the toolkit, carries into each other have the same smallest image,
+which identifies the set.
 
 Glossary
 --------
@@ -30,8 +30,8 @@ from workhold.geometry.symmetry import (
     Rotation,
     find_centroid_of_joints,
     find_rotations_onto_itself,
+    find_symmetries,
     rotate_vectors,
-    symmetries,
 )
 from workhold.listing.canonical_form import mark_changes, pack_integers, split_into_clusters
 from workhold.listing.clamp_placement import find_axis
@@ -39,12 +39,12 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import TILT
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
 __all__ = [
-    "Entries",
-    "Identity",
-    "SetCount",
+    "ShownEntries",
+    "FixtureIdentity",
+    "SetCounter",
     "make_entries",
     "find_first_of_each",
     "allows_half_turns",
@@ -56,19 +56,20 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Columns and rows from the lowest of a fixture are fewer than this, lines as many to either side.
+# Upper bound of columns and rows counted from the lowest of a fixture, and of lines to either side.
 MOST_HOLES = (1 << 20) - 1
 
 
 @frozen(eq=False)
-class Identity:
-    """What names the fixtures of a toolkit that hold a part.
+class FixtureIdentity:
+    """The identities of a toolkit's fixtures of a part.
 
     Parameters
     ----------
     toolkit, part : what holds, and what is held.
-    every : whether each choice of clamps is a fixture; else one stands for all of its directions.
-    rotations : those of the part onto itself, the identity first.
+    every : whether each choice of clamps is a fixture of its own; if False, one fixture stands for all clamps
+        with its directions.
+    rotations : rotations of the part onto itself, the identity first.
     """
 
     toolkit: Toolkit
@@ -77,18 +78,22 @@ class Identity:
     rotations: tuple[Rotation, ...] = field(init=False)
 
     @rotations.default
-    def onto_itself(self) -> tuple[Rotation, ...]:
+    def find_own_rotations(self) -> tuple[Rotation, ...]:
+        """Return the rotations that carry the part onto itself, the identity first."""
         every = self.part.numbered
         return tuple(find_rotations_onto_itself([face.segment for face in every.faces], every.marks))
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether a fixture need not be a set of its own."""
+        """Whether some rotation, apart from the identity, carries the part onto itself."""
         return len(self.rotations) > 1
 
     def find_smallest_images(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
-        """Return the smallest images of fixtures under the rotations: packed whole numbers (N,), and
-        orientations and places (N, P).
+        """Return the smallest image of each fixture under the
+        part's rotations and allowed half turns of the toolkit.
+
+        It is made of packed words, each (N,), and poses (N, P): orientation in radians and places in mm.
+        Fixtures with the same image are one set.
         """
         x, y = self.toolkit.compute_hole_places(
             table.arrangement, table.column, table.row, table.jaw_separation
@@ -129,17 +134,19 @@ class Identity:
     def make_form(
         self, table: FixtureTable, x: Array, y: Array, sign: int
     ) -> tuple[list[IntArray], Array, Array]:
-        """Return what names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the
-        first peg, and how far (N, M) ahead of it what moves is.
+        """Return the identity of fixtures without their pose: packed
+        words (N,), the first peg's place (N, 2), and offsets (N, M).
+
+        The offsets in mm are how far moving pegs or clamps are along their direction from the first peg.
 
         Parameters
         ----------
         x, y : (N, K) places of pegs in mm.
-        sign : -1 for fixtures after half a turn of everything, which turns the order of pegs round, else 1.
+        sign : 1, or -1 for the fixtures after half a turn of everything, which reverses the order of pegs.
         """
         carriers, on = self.toolkit.carriers, self.toolkit.find_peg_carriers(table.arrangement)
         pegs = [carriers[number] for number in self.toolkit.arrangements[0].carriers][::sign]
-        # Whole numbers of pegs: of those in holes of their own, of clamps, and of what moves.
+        # Indices of contacts: in holes of their own, of clamps, and of what moves.
         places = np.arange(len(pegs))[::sign]
         clamps = places[[peg.on is not None for peg in pegs]]
         own = places[[peg.has_lattice for peg in pegs]]
@@ -163,9 +170,10 @@ class Identity:
         anchor = np.stack([x[:, own[0]], y[:, own[0]]], axis=1)
         return pack_integers(*numbers), anchor, sign * away[:, : None if self.every else 0]
 
-    def count(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
-        """Return how many sets of each arrangement (A,) there are among fixtures with these smallest images,
-        of arrangements (N,).
+    def count_sets(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
+        """Return the number of sets of each arrangement (A,) among fixtures, given their smallest images.
+
+        ``words`` and ``pose`` are as of :meth:`find_smallest_images`, ``arrangement`` is (N,).
         """
         order = np.lexsort(words[::-1])
         fresh = mark_changes([word[order] for word in words])
@@ -174,15 +182,15 @@ class Identity:
 
 
 def allows_half_turns(toolkit: Toolkit) -> bool:
-    """Return whether half a turn of everything leaves a plate as it is, which a wall does not allow."""
+    """Return whether half a turn of everything leaves the toolkit as it is, as without a wall."""
     return WALL_END not in toolkit.contacts
 
 
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
-    """Return whether half a turn of everything makes an arrangement the same again.
+    """Return whether half a turn of everything maps an arrangement to itself.
 
-    It does with as many pegs on either jaw, or with two clamps in opposite directions on a plate without a
-    wall.
+    So it is with equally many pegs on both jaws, and with two clamps in opposite directions on a plate
+    without a wall.
     """
     ways = [
         toolkit.carriers[number].travel
@@ -199,8 +207,10 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
 def precedes(
     words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array
 ) -> BoolArray:
-    """Return which (N,) of some whole numbers (N,) each and poses (N, P) come before others in lexicographic
-    order."""
+    """Return whether (N,) each row of words and pose comes before the same row of others lexicographically.
+
+    Poses that differ by at most ``SAME_IMAGE`` count as equal.
+    """
     before = np.zeros(len(pose), np.bool_)
     for one, other in zip(pose.T[::-1], other_pose.T[::-1], strict=True):
         before = (one < other - SAME_IMAGE) | ((one <= other + SAME_IMAGE) & before)
@@ -210,16 +220,16 @@ def precedes(
 
 
 @define(eq=False)
-class SetCount:
-    """How many fixtures there are, and how many sets they form, as they come.
+class SetCounter:
+    """A running count of fixtures, and of the sets that they form under symmetry.
 
     Parameters
     ----------
-    identity : what names them.
-    found : (A,) fixtures of each arrangement so far.
+    identity : the identities of the fixtures.
+    found : (A,) number of fixtures of each arrangement so far.
     """
 
-    identity: Identity
+    identity: FixtureIdentity
     found: IntArray = field(init=False)
     images: list[tuple[NDArray[np.generic], ...]] = field(factory=list, init=False)
 
@@ -227,6 +237,7 @@ class SetCount:
         self.found = np.zeros(len(self.identity.toolkit.arrangements), np.int64)
 
     def add(self, table: FixtureTable) -> None:
+        """Count the fixtures of a table."""
         self.found += np.bincount(table.arrangement, minlength=len(self.found))
         if self.identity.is_symmetric and len(table):
             words, pose = self.identity.find_smallest_images(table)
@@ -234,48 +245,51 @@ class SetCount:
 
     @property
     def distinct(self) -> IntArray:
-        """Sets (A,) of each arrangement so far."""
+        """Number of sets (A,) of each arrangement so far."""
         if not self.images:
             return self.found
         arrangement, pose, *words = (np.concatenate(values) for values in zip(*self.images, strict=True))
-        return self.identity.count(words, pose, arrangement)
+        return self.identity.count_sets(words, pose, arrangement)
 
     def count_by_type(self, counts: IntArray) -> dict[str, int]:
+        """Return counts (A,) of arrangements as a dict by
+        the name of the type, summed over its arrangements.
+        """
         toolkit = self.identity.toolkit
         each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
         return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}
 
 
 def order_by_identity(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArray[np.intp]:
-    """Return the order of fixtures by type, holes, orientation, faces and place.
+    """Return the indices (N,) that sort fixtures by type, holes, orientation, faces and place.
 
-    Where the toolkit has a wall with ends, columns count from the first peg's, as on an endless one.
+    Give the toolkit if it may have a wall with ends; columns then count from the first peg's.
     """
     position, column = table.position, table.column
-    if toolkit is not None and toolkit.reaching is not None:
+    if toolkit is not None and toolkit.wall_with_ends is not None:
         (ends,) = toolkit.ends_on_walls
         pegs = np.delete(np.arange(column.shape[1]), ends)
         first = column[:, pegs].min(axis=1, keepdims=True, initial=1 << 30)
         column = np.where(np.isin(np.arange(column.shape[1]), pegs), column - first, column)
-        position = position - np.hstack([first * toolkit.reaching.pitch[0], 0 * first])
+        position = position - np.hstack([first * toolkit.wall_with_ends.pitch[0], 0 * first])
     place = position @ np.array([1.0, 0.7548776662])
     columns = [*column.T, *table.row.T, np.round(table.theta / SAME_POSE), *table.face.T, place]
     return np.lexsort([*reversed(columns), table.arrangement])
 
 
-# Fixtures judged together, and those, from the best on, among which near duplicates are sought.
+# Number of fixtures judged together, and of the best fixtures among which near duplicates are sought.
 BLOCK, MOST_LOOKED_AT = 1 << 14, 200_000
 
 
 @frozen(eq=False)
-class Entries:
-    """What to show of a list of fixtures.
+class ShownEntries:
+    """The entries to show of a list of fixtures, near duplicates left out.
 
     Parameters
     ----------
-    index : (E,) of the fixture that stands for each entry, in the order of the list.
-    like : (E,) how many near duplicates come after it.
-    unfit : how many fixtures are left out because they are none for a workshop.
+    index : (E,) index of the fixture that stands for each entry, ascending.
+    like : (E,) how many near duplicates follow it.
+    unfit : how many fixtures are left out as unfit for a workshop.
     """
 
     index: IntArray
@@ -283,47 +297,58 @@ class Entries:
     unfit: int
 
 
-def make_entries(result: Result, with_unfit: bool = False) -> Entries:
-    """Return the entries of a result's best; fixtures unfit for a workshop are entries only if asked for, or
-    if all are unfit.
+def make_entries(result: Result, with_unfit: bool = False) -> ShownEntries:
+    """Return the entries of a result: the first of each group of near duplicates among its best fixtures.
+
+    Fixtures unfit for a workshop are left out, unless ``with_unfit`` or all are unfit. Only the first
+    :data:`MOST_LOOKED_AT` fixtures are compared.
     """
     table = result.table
     if result.toolkit.holds_by_friction:
         return make_entries_of_holds(result, with_unfit)
     blocks = (table.take(slice(start, start + BLOCK)) for start in range(0, len(table), BLOCK))
     bad = np.concatenate(
-        [np.zeros(0, np.bool_), *(unfit(block.quality, result.query.tolerance) for block in blocks)]
+        [np.zeros(0, np.bool_), *(are_unfit(block.quality, result.query.tolerance) for block in blocks)]
     )
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
     looked_at = shown[:MOST_LOOKED_AT]
     index, like = find_first_of_each(
         number_near_duplicates(table.take(looked_at), result.workpiece, result.toolkit)
     )
-    return Entries(shown[index], like, len(bad) - len(shown))
+    return ShownEntries(shown[index], like, len(bad) - len(shown))
 
 
-def make_entries_of_holds(result: Result, with_unfit: bool) -> Entries:
-    """The entries of what friction holds: each by itself, as they differ in parallels, stop, side or holes."""
+def make_entries_of_holds(result: Result, with_unfit: bool) -> ShownEntries:
+    """Return the entries of a result that holds by friction:
+    every fixture by itself; see :func:`make_entries`.
+    """
     bad = np.array([hold.is_unfit for hold in result.holds], np.bool_)
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
-    return Entries(shown, np.zeros(len(shown), np.int64), len(bad) - len(shown))
+    return ShownEntries(shown, np.zeros(len(shown), np.int64), len(bad) - len(shown))
 
 
 def find_first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the places (E,) of the first member of each group, in order, and how many more members (E,) it has."""
+    """Return the indices (E,), ascending, of the first member
+    of each group, and how many further members (E,) it has.
+
+    ``groups`` (N,) numbers the group of each item.
+    """
     _, first, count = np.unique(groups, return_index=True, return_counts=True)
     order = np.argsort(first)
     return first[order], count[order] - 1
 
 
 def number_near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """Return a number (N,) for each fixture, the same for near duplicates."""
+    """Return a group number (N,) for each fixture, equal for near duplicates.
+
+    Without pegs (flat jaws, straps) every fixture is a group.
+    """
     if len(table) == 0 or table.column.shape[1] == 0:
-        # What flat jaws hold differs in side, parallels or stop.
+        # Fixtures of flat jaws differ in side, parallels or stop.
         return np.arange(len(table), dtype=np.int64)
     carriers = toolkit.find_peg_carriers(table.arrangement)
-    # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where
-    # they belong.
+    # The faces of each carrier's pegs, sorted, the first carrier's in front; so pegs of each carrier keep
+    # their columns.
     order = np.lexsort((table.face, carriers), axis=-1)
     faces = np.take_along_axis(table.face.astype(np.int64), order, axis=1)
     tilted = (table.quality[:, TILT] > 0.0).astype(np.int64)
@@ -334,8 +359,10 @@ def number_near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: T
 
 
 def find_distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
-    """Return where each distinct row of whole numbers (N, 6) from 0 upward comes first, in their order, and
-    which (N,) each is.
+    """Return the index at which each distinct row of integers
+    (N, K) from 0 up first occurs, and which (N,) each row is.
+
+    Distinct rows are in lexicographic order.
     """
     words = np.column_stack(pack_integers((keys, int(keys.max()))))
     # One word, which is enough for most parts, is sorted far sooner than rows.
@@ -346,7 +373,11 @@ def find_distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def find_smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """Return the first image of each row (K, 6) of arrangement, tilt and faces under the symmetries of the part."""
+    """Return the lexicographically smallest image of each row (K, 2 + P) of arrangement, tilt and faces.
+
+    Images are those under the part's rotations and mirror images, and under a half turn that swaps the
+    carriers, if that is a symmetry.
+    """
     every = workpiece.numbered
     numbers = np.array([face.number for face in every.faces])
     carriers = toolkit.find_peg_carriers(keys[:, 0].astype(np.int8))
@@ -354,11 +385,11 @@ def find_smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit)
     swaps = ((carriers.max(axis=1) == 1) & ((carriers == 1).sum(axis=1) * 2 == carriers.shape[1]))[:, None]
     # Jaws whose pegs have different heights are no images of each other.
     swaps &= len({carrier.heights for carrier in toolkit.carriers}) == 1
-    images = np.array(symmetries([face.segment for face in every.faces], every.marks))
+    images = np.array(find_symmetries([face.segment for face in every.faces], every.marks))
     to = np.zeros((len(images), int(numbers.max()) + 1), np.int64)
     to[:, numbers] = numbers[images]
-    # The first image begins with the lowest number that one of the faces can have, so of many symmetries only
-    # those are tried that give one of them its lowest.
+    # The smallest image begins with the lowest number that a face can get, so only symmetries are tried that
+    # give one of the faces its lowest.
     lowest = to == to.min(axis=0)
     few = np.argsort(~lowest, axis=0, kind="stable")[: lowest[:, numbers].sum(axis=0).max()]
     tried = few[:, keys[:, 2:]].transpose(0, 2, 1).reshape(-1, len(keys))

@@ -3,7 +3,7 @@
 Pegs stand in the columns nearest to those of the other carrier. The largest travel or a blocked hole may
 demand that they move outward, first the standing ones, then the moving ones. Rows are shifted so that the
 lowest is 0, or centred where the carriers have an end; a blocked hole shifts them no farther than it must. A
-clamp on a plate of locators is bolted in a hole of its line instead (``listing.clamp_placement``). All this
+clamp on a plate of locators is bolted in a hole of its line instead (``listing.make_clamp_placement``). All this
 is in the frame of the search; the way back to the toolkit's own is the last step.
 """
 
@@ -15,10 +15,10 @@ import numpy as np
 from attrs import define, evolve, fields
 from numpy.typing import NDArray
 
-from workhold.contact.problem import Frame, Problem
+from workhold.contact.problem import Problem, SearchFrame
 from workhold.conventions import GAP_SLACK
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.listing.canonical_form import Candidates
+from workhold.listing.canonical_form import CandidateFixtures
 from workhold.listing.clamp_placement import ClampPlacement, find_axis, find_last_holes, is_bolted
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.requirements import lie_in_angle_ranges
@@ -26,10 +26,10 @@ from workhold.proof.deciding import is_standing
 from workhold.rowwise import find_largest, find_smallest
 
 __all__ = [
-    "Arranged",
+    "PlacedCandidates",
     "arrange_candidates",
     "are_at_angle",
-    "clamp_placement",
+    "make_clamp_placement",
     "are_placeable",
     "place_candidates",
 ]
@@ -38,36 +38,40 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Of candidates on a plate with a clamp.
+# Indices of the contacts of candidates on a plate with a clamp.
 LOCATOR_CONTACTS, TIP = slice(0, 3), 3
 
 
 @define(frozen=True, eq=False)
-class Arranged:
-    """N fixtures as they stand on the carriers.
+class PlacedCandidates:
+    """N fixtures in the holes of the carriers.
 
     Parameters
     ----------
-    candidates : the fixtures, those that a half turn leaves in their arrangement turned half way round where
-        only that fits.
-    standing, moving : (N,) columns that each carrier's pegs stand outward.
-    lift : (N,) rows that all pegs are shifted up.
-    fits : (N,) whether there is such a place at all.
+    candidates : the fixtures, turned by half a turn where they fit only so.
+    standing, moving : (N,) by how many columns each carrier's pegs stand outward of the innermost place.
+    lift : (N,) by how many rows all pegs are shifted up.
+    fits : (N,) whether there is such a place.
     """
 
-    candidates: Candidates
+    candidates: CandidateFixtures
     standing: IntArray
     moving: IntArray
     lift: IntArray
     fits: BoolArray
 
-    def compute_travel(self, frame: Frame) -> Array:
+    def compute_travel(self, frame: SearchFrame) -> Array:
         """Return the travel (N,) of the moving carrier in mm."""
         outward = (self.standing + self.moving) * frame.lattice.pitch_x
         return np.asarray(self.candidates.gap - outward + frame.travel_at_rest)
 
 
-def arrange_candidates(c: Candidates, problem: Problem) -> Arranged:
+def arrange_candidates(c: CandidateFixtures, problem: Problem) -> PlacedCandidates:
+    """Return the places of candidates in the holes of both
+    carriers; ``fits`` says which have one at an allowed angle.
+
+    Half turns that swap the carriers are tried where a candidate does not fit otherwise.
+    """
     angles, frame = problem.restrictions.angles, problem.frame
     clear = are_bodies_clear(c, frame)
     found = place_as_is(c, frame)
@@ -75,26 +79,33 @@ def arrange_candidates(c: Candidates, problem: Problem) -> Arranged:
     if not (angles or any(carrier.blocked for carrier in frame.carriers)):
         return found
     # What does not fit may fit after the half turn that swaps the carriers.
-    again = np.flatnonzero(~found.fits & (c.standing == frame.swapped) & clear)
-    turned = turn_half(c.take(again), frame.swapped)
+    again = np.flatnonzero(~found.fits & (c.standing == frame.swapped_peg_count) & clear)
+    turned = turn_half(c.take(again), frame.swapped_peg_count)
     other = place_as_is(turned, frame)
     good = other.fits & are_at_angle(turned.theta, angles, frame)
     return replace_rows(found, again[good], other, good)
 
 
-def replace_rows(one: Arranged, rows: IntArray, other: Arranged, chosen: BoolArray) -> Arranged:
-    names = [a.name for a in fields(Candidates)]
+def replace_rows(
+    one: PlacedCandidates, rows: IntArray, other: PlacedCandidates, chosen: BoolArray
+) -> PlacedCandidates:
+    """Return ``one`` with its rows ``rows`` replaced by
+    the rows of ``other`` that the mask ``chosen`` selects.
+    """
+    names = [a.name for a in fields(CandidateFixtures)]
     candidates = {name: getattr(one.candidates, name).copy() for name in names}
     for name, values in candidates.items():
         values[rows] = getattr(other.candidates, name)[chosen]
     moves = {name: getattr(one, name).copy() for name in ("standing", "moving", "lift", "fits")}
     for name, values in moves.items():
         values[rows] = getattr(other, name)[chosen]
-    return Arranged(Candidates(**candidates), **moves)
+    return PlacedCandidates(CandidateFixtures(**candidates), **moves)
 
 
-def turn_half(c: Candidates, swapped: int) -> Candidates:
-    """Return the fixtures after half a turn of everything, which swaps the carriers with ``swapped`` pegs each."""
+def turn_half(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
+    """Return the fixtures after half a turn of everything,
+    which swaps two carriers with ``swapped`` pegs each.
+    """
     column = c.column.copy()
     for carrier in (slice(0, swapped), slice(swapped, 2 * swapped)):
         column[:, carrier] = column[:, carrier].max(axis=1, keepdims=True, initial=0) - column[:, carrier]
@@ -103,11 +114,11 @@ def turn_half(c: Candidates, swapped: int) -> Candidates:
         np.ascontiguousarray(values[:, ::-1]) for values in (c.feature, column, row, c.point, c.null, c.force)
     ]
     feature, column, row, point, null, force = backward
-    return Candidates(c.standing, feature, column, row, c.theta + np.pi, point, c.gap, null, force)
+    return CandidateFixtures(c.standing, feature, column, row, c.theta + np.pi, point, c.gap, null, force)
 
 
-def are_bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
-    """Return which fixtures' pegs (N,) stand far enough apart for their bodies."""
+def are_bodies_clear(c: CandidateFixtures, frame: SearchFrame) -> BoolArray:
+    """Return which fixtures (N,) have pegs whose bodies do not overlap."""
     clear = np.ones(len(c.standing), np.bool_)
     if all(carrier.body_radius == carrier.peg_radius for carrier in frame.carriers):
         # Neighbouring holes are far enough apart for the pegs themselves.
@@ -120,15 +131,19 @@ def are_bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
     return clear
 
 
-def are_at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
-    """Return which orientations (N,) in radians lie, seen from the toolkit, in a range in degrees; all
-    without ranges.
+def are_at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: SearchFrame) -> BoolArray:
+    """Return which orientations (N,), in radians in the search
+    frame, are in a range of degrees in the toolkit's frame.
+
+    All where there are no ranges.
     """
     return np.asarray(lie_in_angle_ranges(np.degrees(theta) + 90.0 * frame.quarters, angles))
 
 
-def count_free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
-    """Return how many columns (N,) are free beyond the pegs of each carrier."""
+def count_free_columns(c: CandidateFixtures, frame: SearchFrame) -> tuple[IntArray, IntArray]:
+    """Return how many columns (N,) are free outward of the
+    pegs on the standing carrier, and on the moving one.
+    """
     standing = is_standing(c.standing)
     return (
         frame.standing.column_count - 1 - find_largest(np.where(standing, c.column, 0)),
@@ -136,8 +151,12 @@ def count_free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]
     )
 
 
-def count_free_rows(c: Candidates, frame: Frame) -> IntArray:
-    """Return how many rows (N,) are free above the pegs of a carrier with an end; 0 where none has."""
+def count_free_rows(c: CandidateFixtures, frame: SearchFrame) -> IntArray:
+    """Return how many rows (N,) are free above the pegs, the
+    fewer of both carriers; 0 where no carrier has an end.
+
+    Negative where the pegs do not fit.
+    """
     if all(carrier.rows is None for carrier in frame.carriers):
         return np.zeros(len(c.standing), np.int64)
     ends = np.where(
@@ -147,7 +166,10 @@ def count_free_rows(c: Candidates, frame: Frame) -> IntArray:
     return np.where(np.isinf(spare), 0, spare).astype(np.int64)
 
 
-def place_as_is(c: Candidates, frame: Frame) -> Arranged:
+def place_as_is(c: CandidateFixtures, frame: SearchFrame) -> PlacedCandidates:
+    """Return the places of candidates without half turns, with the
+    fewest columns outward; ``fits`` ignores angles and bodies.
+    """
     pitch, travel = frame.lattice.pitch_x, frame.moving.travel
     assert travel is not None
     free_standing, free_moving = count_free_columns(c, frame)
@@ -159,19 +181,24 @@ def place_as_is(c: Candidates, frame: Frame) -> Arranged:
     spare = count_free_rows(c, frame)
     fits = (least <= most) & (spare >= 0)
     move_standing = np.minimum(least, free_standing)
-    found = Arranged(c, move_standing, least - move_standing, spare // 2, fits)
+    found = PlacedCandidates(c, move_standing, least - move_standing, spare // 2, fits)
     if len(c.standing) == 0 or not any(carrier.blocked for carrier in frame.carriers):
         return found
     room = np.stack([least, most.astype(np.int64), free_standing, free_moving], axis=1)
-    return clear_of_blocked(found, frame, room, spare)
+    return move_clear_of_blocked(found, frame, room, spare)
 
 
-def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntArray) -> Arranged:
-    """Move fixtures on until no peg stands in a blocked hole.
+def move_clear_of_blocked(
+    found: PlacedCandidates, frame: SearchFrame, room: IntArray, spare: IntArray
+) -> PlacedCandidates:
+    """Return the places with fixtures moved on until no peg stands
+    in a blocked hole; ``fits`` is False where none is free.
 
-    ``room`` (N, 4) has the fewest and most columns outward in all, and the columns free on the standing and
-    on the moving carrier. ``spare`` (N,) has the rows free above the topmost peg, where the carriers have an
-    end.
+    Parameters
+    ----------
+    room : (N, 4) fewest and most columns outward in all, and free columns on the standing and on the moving
+        carrier.
+    spare : (N,) free rows above the topmost peg, where the carriers have an end.
     """
     c = found.candidates
     standing = is_standing(c.standing)
@@ -197,20 +224,26 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
             fits[good] = True
             kept = ~fits[open_]
             open_, may = open_[kept], may[kept]
-    return Arranged(c, out["standing"], out["moving"], out["lift"], fits)
+    return PlacedCandidates(c, out["standing"], out["moving"], out["lift"], fits)
 
 
 def list_outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
-    """Yield the columns to move outward on both carriers: the fewest in all first, then the most on the
-    standing one.
+    """Yield (standing, moving) columns to move outward:
+    smallest sum first, then most on the standing carrier.
+
+    The arguments are the numbers of columns of the carriers.
     """
     for total in range(standing + moving - 1):
         for two in range(max(0, total - standing + 1), min(total, moving - 1) + 1):
             yield total - two, two
 
 
-def list_row_offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
-    """Return the row shifts beyond the one without blocked holes, in the order they are tried: the smallest first."""
+def list_row_offsets(frame: SearchFrame, endless: bool, spare: IntArray) -> list[int]:
+    """Return the row shifts to try, smallest first.
+
+    On endless carriers from 0 to above the highest blocked row; else both ways by up to the largest of
+    ``spare``.
+    """
     if endless:
         blocked = [
             holes.row for carrier in frame.carriers for holes in carrier.blocked if holes.row is not None
@@ -220,7 +253,9 @@ def list_row_offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
     return sorted(range(-most, most + 1), key=lambda shift: (abs(shift), shift))
 
 
-def are_in_blocked_holes(column: IntArray, row: IntArray, standing: BoolArray, frame: Frame) -> BoolArray:
+def are_in_blocked_holes(
+    column: IntArray, row: IntArray, standing: BoolArray, frame: SearchFrame
+) -> BoolArray:
     """Return which fixtures (N,) have a peg in a blocked hole; column, row and standing are (N, 4)."""
     hit = np.zeros(column.shape, np.bool_)
     for carrier in frame.carriers:
@@ -230,8 +265,10 @@ def are_in_blocked_holes(column: IntArray, row: IntArray, standing: BoolArray, f
     return np.asarray(hit.any(axis=1))
 
 
-def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
-    """Return where the clamps of candidates on a plate may be bolted; columns count from the locators' first."""
+def make_clamp_placement(c: CandidateFixtures, problem: Problem) -> ClampPlacement:
+    """Return the placement problem of the clamps of candidates
+    on a plate; columns count from the locators' lowest.
+    """
     frame = problem.frame
     pitch_x, pitch_y = frame.lattice[:2]
     last_column, last_row = find_last_holes(frame.toolkit.carriers[0])[:: -1 if frame.quarters % 2 else 1]
@@ -255,16 +292,19 @@ def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
     )
 
 
-def are_placeable(c: Candidates, problem: Problem) -> BoolArray:
-    """Return which candidates (N,) have a place in the toolkit."""
+def are_placeable(c: CandidateFixtures, problem: Problem) -> BoolArray:
+    """Return which candidates (N,) have a place in the toolkit at an allowed angle."""
     if problem.frame.moving.on is None:
         return arrange_candidates(c, problem).fits
-    _, fits = clamp_placement(c, problem).find_nearest_holes(problem)
+    _, fits = make_clamp_placement(c, problem).find_nearest_holes(problem)
     return np.asarray(fits & are_at_angle(c.theta, problem.restrictions.angles, problem.frame))
 
 
-def place_candidates(c: Candidates, problem: Problem) -> FixtureTable:
-    """Return the table of candidates that fit; of their quality only the closure margin is known yet."""
+def place_candidates(c: CandidateFixtures, problem: Problem) -> FixtureTable:
+    """Return the table of candidates in the holes of the toolkit, row by row; all must have a place.
+
+    Of the figures of quality only the closure margin is known, the others are NaN.
+    """
     if problem.frame.moving.on is not None:
         return place_candidates_with_clamp(c, problem)
     frame = problem.frame
@@ -272,7 +312,7 @@ def place_candidates(c: Candidates, problem: Problem) -> FixtureTable:
     c = found.candidates
     standing = is_standing(c.standing)
     first = count_free_columns(c, frame)[0] - found.standing
-    column, row = frame.holes(
+    column, row = frame.map_holes_to_toolkit(
         standing,
         c.column + np.where(standing, first[:, None], found.moving[:, None]),
         c.row + found.lift[:, None],
@@ -280,34 +320,37 @@ def place_candidates(c: Candidates, problem: Problem) -> FixtureTable:
     return make_table(c, problem, column, row, found.compute_travel(frame))
 
 
-def place_candidates_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
-    frame, placement = problem.frame, clamp_placement(c, problem)
+def place_candidates_with_clamp(c: CandidateFixtures, problem: Problem) -> FixtureTable:
+    """Return the table of candidates on a plate with a bolted clamp, see :func:`place_candidates`."""
+    frame, placement = problem.frame, make_clamp_placement(c, problem)
     hole, _ = placement.find_nearest_holes(problem)
     column = np.concatenate([c.column[:, LOCATOR_CONTACTS], hole[:, None]], axis=1)
     column, row = (
         numbers - numbers.min(axis=1, keepdims=True, initial=1 << 30)
-        for numbers in frame.step_back(column, c.row)
+        for numbers in frame.map_step_to_toolkit(column, c.row)
     )
     travelled = placement.place - hole * frame.lattice.pitch_x
     clamp = frame.toolkit.moving
     if not is_bolted(clamp):
         # The tip is counted from the first column, or row, of the plate.
         across, along = frame.toolkit.moving_axis
-        x, y = clamp.place(column[:, TIP], row[:, TIP])
+        x, y = clamp.compute_hole_center(column[:, TIP], row[:, TIP])
         travelled += x * across + y * along
         (row if find_axis(clamp) else column)[:, TIP] = 0
     return make_table(c, problem, column, row, travelled)
 
 
 def make_table(
-    c: Candidates, problem: Problem, column: IntArray, row: IntArray, travel: Array
+    c: CandidateFixtures, problem: Problem, column: IntArray, row: IntArray, travel: Array
 ) -> FixtureTable:
-    """Return the table of candidates in holes of the toolkit, columns and rows (N, 4), with a travel (N,) in mm."""
+    """Return the table of candidates in holes ``column`` and
+    ``row`` (N, 4) of the toolkit, with a travel (N,) in mm.
+    """
     frame = problem.frame
     theta = c.theta if frame.quarters == 0 else (c.theta + frame.quarters * np.pi / 2) % (2 * np.pi)
     anchor = c.point[:, 0] + np.asarray(problem.workpiece.center)
     anchor = np.stack(rotate_vectors(anchor[:, 0], anchor[:, 1], theta), axis=1)
-    hole = frame.toolkit.carriers[0].place(column[:, 0], row[:, 0])
+    hole = frame.toolkit.carriers[0].compute_hole_center(column[:, 0], row[:, 0])
     return FixtureTable(
         arrangement=frame.toolkit.find_arrangement_numbers(c.standing).astype(np.int8),
         column=column.astype(np.int32),

@@ -1,24 +1,23 @@
-"""The order of fixtures, in keys of which the first count most.
+"""The ranking of fixtures by keys, the first of which count most.
 
-Where somebody names figures, these count: all but the last to two significant digits, so that the next one
-has a say among fixtures that are about as good, the last to nine decimals. A fixture's place depends on no
-other fixture then.
+If the query names figures, these are the keys: all but the last rounded to two significant digits, so that
+the next one decides among fixtures that are about as good; the last to nine decimals. Then a fixture's rank
+depends on no other fixture.
 
-In the usual order a warning counts first. Then steps count, of a tenth each, by which the effective location
-error is above the least one. That is the least of all fixtures that are fit and without warning, or as near
-to that as any is. Then comes the angle as written, and then the figures. So a place depends on the least
-error, which is known at the end. Parts of a list are kept and left out by what holds whatever it is
-(:meth:`OrderKeys.are_beaten`):
+In the usual ranking a warning counts first. Then come steps, of a tenth each, by which the effective location
+error is above the least error: that of all fixtures that are fit and without warning, or if there are none,
+of those nearest to that. Then comes the class of the angle, and then the figures. So a rank depends on the
+least error, which is known only at the end. Until then fixtures are kept or dropped by rules that hold
+whatever the least error is (:meth:`OrderKeys.are_beaten`):
 
 - One fixture comes before another one whose effective error is a tenth larger or more, if it is fit and has
   no warning: steps count from an error no larger than either, so that the other has a step more.
 - It does so, too, if its effective error is no larger, and all that comes after the steps is better.
 
-What as many fixtures come before as are asked for is not among the best. The fixture with the least error is
-never left out, for only one with an error no larger comes before it for certain.
+A fixture that surely comes after as many others as are asked for is not among the best. The fixture with the
+least error is never dropped, for only one with an error no larger surely comes before it.
 
-Fixtures that are none for a workshop come after all others. What is equal stays in the order of types, holes,
-poses and faces.
+Fixtures unfit for a workshop come last. Equal fixtures stay in the order of types, holes, poses and faces.
 """
 
 from __future__ import annotations
@@ -48,9 +47,9 @@ from workhold.model.quality import (
     find_ranked_number,
 )
 from workhold.model.query import Query
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.effective_error import EffectiveErrors, classify_angles
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 from workhold.statics.quality import measure_quality
 
 __all__ = [
@@ -66,7 +65,7 @@ __all__ = [
     "make_order_keys",
     "measure_table",
     "measure_table_as_touched",
-    "order_keys",
+    "make_table_keys",
     "find_usual_errors",
 ]
 
@@ -74,22 +73,28 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Effective errors are whole billionths of a millimetre, no more than an integer holds eleven times.
+# Effective errors are integers, billionths of a mm; eleven times the largest fits 64 bits.
 PER_MM, MOST_ERROR = 10.0**FIGURE_DECIMALS, 4 * 10**17
-# A location error so many times another, and more than rounding takes, is a step above it for certain.
+# An error this many times another is surely a step above it, rounding included.
 A_STEP = STEP_TENTHS[0] / STEP_TENTHS[1] * (1.0 + 1e-7)
 # Rows compared with others at a time.
 TOGETHER = 1 << 22
 
 
 def measure_table(table: FixtureTable, problem: Problem) -> FixtureTable:
-    touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
+    """Return a table with all figures of quality computed;
+    the search's closure margin and clamp freedom are kept.
+    """
+    touched = TouchableFeatures.from_workpiece(
+        problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length
+    )
     return measure_table_as_touched(table, problem.query, touched)
 
 
-def measure_table_as_touched(table: FixtureTable, query: Query, touched: Touched) -> FixtureTable:
-    """Return a table with all its figures of quality; those of closure are as the search found them, to the
-    last digit.
+def measure_table_as_touched(table: FixtureTable, query: Query, touched: TouchableFeatures) -> FixtureTable:
+    """Return a table with all figures of quality computed, given the touchable features.
+
+    The search's closure margin and clamp freedom are kept to the last digit.
     """
     quality = measure_quality(
         table,
@@ -108,13 +113,14 @@ def measure_table_as_touched(table: FixtureTable, query: Query, touched: Touched
 
 @frozen(eq=False)
 class OrderKeys:
-    """What N fixtures, or bounds of some, are ordered by.
+    """Ranking keys of N fixtures, or lower bounds of such keys; smaller is better.
 
     Parameters
     ----------
-    first : (N, A) numbers that count before any steps, smaller being better. In the usual order these are
-        whether a fixture is unfit, and whether there is a warning; else they are all numbers there are.
-    error : (N,) effective location errors in billionths of a millimetre; None where steps do not count.
+    first : (N, A) numbers that count first. In the usual ranking: whether the fixture is unfit, and whether
+        it has a warning, 0 or 1; in any other all numbers there are. -inf in a bound that says nothing.
+    error : (N,) effective location errors in billionths of a mm, which then count in steps above the least of
+        all; None where steps do not count.
     rest : (N, B) numbers that count after the steps.
     """
 
@@ -126,10 +132,12 @@ class OrderKeys:
         return len(self.first)
 
     def take(self, chosen: NDArray[np.integer] | BoolArray | slice) -> OrderKeys:
+        """Return the keys of the rows that an index array, mask or slice selects."""
         error = None if self.error is None else self.error[chosen]
         return OrderKeys(self.first[chosen], error, self.rest[chosen])
 
     def concatenate(self, other: OrderKeys) -> OrderKeys:
+        """Return these keys followed by other ones of the same kind."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.concatenate([self.error, other.error])
@@ -138,29 +146,31 @@ class OrderKeys:
 
     @property
     def width(self) -> int:
-        """How many numbers :meth:`make_order_numbers` gives."""
+        """Number of columns that :meth:`make_order_numbers` returns."""
         return int(self.first.shape[1] + self.rest.shape[1] + (self.error is not None))
 
     @property
-    def lowest(self) -> int:
-        """The least error of any that may be fit and without warning; the largest there is without one."""
+    def lowest_error(self) -> int:
+        """Least error in billionths of a mm of rows that may
+        be fit and without warning; ``MOST_ERROR`` without any.
+        """
         if self.error is None:
             return MOST_ERROR
         return int(min(self.error[(self.first <= 0.0).all(axis=1)].tolist(), default=MOST_ERROR))
 
     @property
     def is_known(self) -> BoolArray:
-        """Which (N,) bounds say anything."""
+        """Mask (N,) of the bounds that say anything."""
         return np.asarray(self.first[:, 0] != -inf)
 
     @property
-    def nothing(self) -> OrderKeys:
-        """The keys, in one row, of what holds nothing."""
+    def keys_of_nothing(self) -> OrderKeys:
+        """One row of the worst keys, for a group without fixtures."""
         error = None if self.error is None else np.full(1, MOST_ERROR)
         return OrderKeys(np.full((1, self.first.shape[1]), inf), error, np.full((1, self.rest.shape[1]), inf))
 
     def choose(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
-        """Return the keys of those chosen (N,), and other ones of the rest."""
+        """Return the keys of these where ``chosen`` (N,), and of ``other`` elsewhere."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.where(chosen, self.error, other.error)
@@ -170,19 +180,22 @@ class OrderKeys:
         return OrderKeys(first, error, rest)
 
     def drop_bounds_where(self, chosen: BoolArray) -> OrderKeys:
-        """Return the keys, those chosen (N,) without any bound."""
+        """Return the keys with those rows that ``chosen``
+        (N,) selects replaced by bounds that say nothing.
+        """
         error = None if self.error is None else np.where(chosen, 0, self.error)
         first, rest = (np.where(chosen[:, None], -inf, rows) for rows in (self.first, self.rest))
         return OrderKeys(first, error, rest)
 
     def find_least_of_groups(self, groups: IntArray) -> OrderKeys:
-        """Return the least numbers before steps, least error and least numbers after steps, of each of some
-        groups.
+        """Return one row for each group: the least ``first``,
+        the least error and the least ``rest``, each by itself.
 
-        The groups (N,) are numbered from 0 in ascending order.
+        ``groups`` (N,) are group numbers from 0; each group is contiguous and numbers ascend.
         """
 
         def least(rows: Array) -> Array:
+            """Return the lexicographically least row of each group."""
             ordered = np.lexsort([*rows.T[::-1], groups])
             return rows[ordered[np.diff(groups[ordered], prepend=-1) > 0]]
 
@@ -193,53 +206,61 @@ class OrderKeys:
 
     @property
     def is_fine(self) -> BoolArray:
-        """Which (N,) are fit and without a warning, as far as known; none where that does not count."""
+        """Mask (N,) of rows that are fit and without a warning; none where steps do not count."""
         return np.asarray((self.first <= 0.0).all(axis=1)) & (self.error is not None)
 
     @property
-    def least_of_all(self) -> OrderKeys:
-        """The keys, in one row if there is any, of one with the least error of those that count for it."""
+    def least_keys(self) -> OrderKeys:
+        """Keys, in one row, of the fixture with the least error;
+        no row without fixtures, and where steps do not count.
+        """
         if self.error is None:
             return self.take(slice(0))
         return self.take(np.lexsort([self.error, *self.first.T[::-1]])[:1])
 
     @property
-    def least(self) -> int | None:
-        """The least effective error of those that no other is better than before steps count; None if there
-        is none."""
+    def least_error(self) -> int | None:
+        """Least error, in billionths of a mm, among the rows
+        with the best ``first``; None without rows or steps.
+        """
         if self.error is None or len(self) == 0:
             return None
         best = self.first[np.lexsort(self.first.T[::-1])[0]]
         return int(self.error[(self.first == best).all(axis=1)].min())
 
     def find_last_fine_error(self, count: int) -> float | None:
-        """Return the ``count``-th least effective error in mm of the fit fixtures without a warning; None if
-        there are fewer.
+        """Return the ``count``-th least effective error in mm of
+        fit fixtures without a warning; None with fewer of them.
         """
         if self.error is None or (errors := self.error[self.is_fine]).size < count:
             return None
         return float(np.partition(errors, count - 1)[count - 1]) / PER_MM
 
     def make_order_numbers(self, least: int | None) -> Array:
-        """Return the numbers (N, R) to order by, given the least effective error of all."""
+        """Return the numbers (N, R) to sort by, with errors as steps
+        above ``least`` in billionths of a mm; None counts as 0.
+        """
         if self.error is None:
             return self.first
         steps = count_error_steps(self.error, 0 if least is None else least)
         return np.column_stack([self.first, steps.astype(np.float64), self.rest])
 
-    def order(self, least: int | None) -> NDArray[np.intp]:
-        """Return the best first: the order of fixtures that are given in the order of their identities."""
+    def sort(self, least: int | None) -> NDArray[np.intp]:
+        """Return the indices (N,) that put fixtures best first; equal ones keep their order.
+
+        ``least`` is the least error that steps count from, in billionths of a mm.
+        """
         return np.lexsort(self.make_order_numbers(least).T[::-1])
 
     def are_among_best(self, most: int) -> BoolArray:
-        """Return which (N,) may be among the best ``most``, or tie with the last of them, whatever the least
-        error is.
+        """Return which (N,) may be among the best ``most``, or tie
+        with the last, whatever the least error turns out to be.
         """
         if len(self) <= most:
             return np.ones(len(self), np.bool_)
         if self.error is None:
             numbers = self.first
-            return ~is_worse(numbers, numbers[self.order(None)[most - 1]])
+            return ~is_worse(numbers, numbers[self.sort(None)[most - 1]])
         rest, first = rank_rows(self.rest), rank_rows(self.first)
         out, before = np.zeros(len(self), np.bool_), 0
         for number in range(int(first.max()) + 1):
@@ -251,7 +272,10 @@ class OrderKeys:
         return out
 
     def are_among_best_of(self, there: NDArray[np.intp], rest: IntArray, most: int) -> BoolArray:
-        """Return the same of some (T,) that nothing distinguishes before the steps."""
+        """Return which (T,) of rows ``there`` with equal ``first`` may be among their best ``most``.
+
+        ``rest`` (T,) are the ranks of their ``rest``.
+        """
         assert self.error is not None
         error, out = self.error[there], np.ones(len(there), np.bool_)
         if len(there) <= most:
@@ -260,7 +284,8 @@ class OrderKeys:
             out = ~has_a_step_more(error, np.partition(error, most - 1)[most - 1])
         chosen = np.flatnonzero(out)
         chosen = chosen[np.argsort(rest[chosen], kind="stable")]
-        # The least errors, as many as are asked for, of all whose rest is better; a heap has the largest first.
+        # The ``most`` smallest errors of the fixtures with a better rest; the heap has the largest of them
+        # first.
         ranks, errors = rest[chosen].tolist(), error[chosen].tolist()
         heap, waiting, largest = [-MOST_ERROR - 1] * most, list[int](), MOST_ERROR + 1
         marks = np.ones(len(chosen), np.bool_)
@@ -276,16 +301,16 @@ class OrderKeys:
         return out
 
     def are_beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
-        """Return which (N,) of these bounds surely come after ``most`` of some fixtures.
+        """Return which (N,) of these bounds surely rank after at least ``most`` of the kept fixtures.
 
         Parameters
         ----------
-        kept : of the fixtures found so far that may be among the best.
-        floor : an error that no fixture has less than which is not found yet.
+        kept : keys of the fixtures found so far that may be among the best.
+        floor : a lower bound of the errors, in billionths of a mm, of all fixtures not yet found.
         """
         if len(kept) < most or len(self) == 0:
             return np.zeros(len(self), np.bool_)
-        least = kept.least
+        least = kept.least_error
         if self.error is None or kept.is_known_above(floor):
             numbers = kept.make_order_numbers(least)
             return is_worse(self.make_order_numbers(least), numbers[np.lexsort(numbers.T[::-1])[most - 1]])
@@ -306,20 +331,24 @@ class OrderKeys:
         return out
 
     def is_known_above(self, floor: int) -> bool:
-        """Return whether the least error of these is that of all, if no other has less than ``floor``."""
+        """Return whether the least error of these is that of
+        all, if all others have errors of at least ``floor``.
+        """
         if self.error is None or not self.is_fine.any():
             return False
-        return (self.least or 0) <= floor
+        return (self.least_error or 0) <= floor
 
 
 def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
-    """Return where an error surely is a step above others, none of which is below the least of all."""
+    """Return where ``error`` is surely a step (a tenth) or more above ``than``, whatever steps count from."""
     eleven, ten = STEP_TENTHS
     return np.asarray((ten * error >= eleven * than) & (than > 0))
 
 
 def rank_rows(rows: Array) -> IntArray:
-    """Return the ranks (N,) of rows (N, K) in lexicographic order, equal ones alike."""
+    """Return the dense ranks (N,) from 0 of rows (N, K)
+    in lexicographic order; equal rows have equal ranks.
+    """
     if len(rows) == 0 or rows.shape[1] == 0:
         return np.zeros(len(rows), np.int64)
     order = np.lexsort(rows.T[::-1])
@@ -334,7 +363,7 @@ def rank_rows(rows: Array) -> IntArray:
 def count_error_steps(error: IntArray, least: int) -> IntArray:
     """Return how many steps (N,) errors (N,) are above the least of all, both in billionths of a millimetre.
 
-    So many numbers j from 1 on have error >= 1.1^j least, in whole numbers.
+    The steps are the number of j from 1 up with error >= 1.1^j least, in exact arithmetic.
 
     Examples
     --------
@@ -342,7 +371,7 @@ def count_error_steps(error: IntArray, least: int) -> IntArray:
     [0, 0, 1, 2, 2, 0]
     """
     edges, most = list[int](), int(error.max(initial=0))
-    # Errors of nothing have no tenth; then steps count from the least that is something.
+    # Steps above a least error of 0 count from one billionth.
     step, edge = Fraction(*STEP_TENTHS), Fraction(max(least, 1))
     while (edge := edge * step) <= most:
         edges.append(ceil(edge))
@@ -350,40 +379,43 @@ def count_error_steps(error: IntArray, least: int) -> IntArray:
 
 
 def convert_to_billionths(error: Array) -> IntArray:
-    """Return the errors (N,) in mm as whole billionths; the largest there is for what is no number."""
+    """Return errors (N,) in mm as integer billionths of a mm; NaN and too large ones as ``MOST_ERROR``."""
     known = np.minimum(np.where(np.isnan(error), inf, error), MOST_ERROR / PER_MM)
     return np.rint(known * PER_MM).astype(np.int64)
 
 
 def convert_to_mm(error: int | None) -> float | None:
-    """Return an error in billionths as files have it, in mm."""
+    """Return an error in billionths of a mm as mm, rounded
+    as in files; None for None and for ``MOST_ERROR``.
+    """
     return None if error is None or error >= MOST_ERROR else round(error / PER_MM, FIGURE_DECIMALS)
 
 
 def find_usual_errors(query: Query) -> EffectiveErrors | None:
-    """Return what gives effective errors, where these count in the order of a query; else None."""
-    return EffectiveErrors.of(query) if query.has_house_order else None
+    """Return the calculator of effective errors for a query with the usual ranking; None for any other."""
+    return EffectiveErrors.from_query(query) if query.has_house_order else None
 
 
-def order_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | None) -> OrderKeys:
-    """Return the keys of a table of fixtures with all its figures; ``effective`` as of :func:`find_usual_errors`."""
-    error = None if effective is None else effective.errors(table)
+def make_table_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | None) -> OrderKeys:
+    """Return the ranking keys of a measured table; ``effective`` is as of :func:`find_usual_errors`."""
+    error = None if effective is None else effective.compute_errors(table)
     return make_order_keys(table.quality, query, error, classify_angles(table.theta))
 
 
 def make_order_keys(
     quality: Array, query: Query, error: Array | IntArray | None, angle: IntArray
 ) -> OrderKeys:
-    """Return the keys of N fixtures.
+    """Return the ranking keys of N fixtures.
 
     Parameters
     ----------
-    quality : (N, Q) figures.
-    error : (N,) effective errors, in mm or as whole billionths; None where they do not count.
-    angle : (N,) classes of angles.
+    quality : (N, Q) figures; NaN ranks worst.
+    error : (N,) effective errors, floats in mm or integers in billionths of a mm; None where they do not
+        count.
+    angle : (N,) class of the angle: 0 as drawn, 1 quarter turn, 2 other.
     """
-    bad = unfit(quality, query.tolerance).astype(np.float64)
-    # What is no number counts as the worst there is.
+    bad = are_unfit(quality, query.tolerance).astype(np.float64)
+    # NaN ranks worst.
     figures = [np.where(np.isnan(key), inf, key) for key in make_figure_keys(quality, query.rank_by)]
     if error is None:
         return OrderKeys(np.column_stack([bad, *figures]), None, np.zeros((len(bad), 0)))
@@ -396,12 +428,16 @@ def make_order_keys(
 
 
 def make_figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """Return the numbers (N,) to sort by for the figures of a ranking, the first counting most."""
+    """Return the arrays (N,) to sort by for the figures of
+    a ranking, smaller is better, the first counting most.
+
+    All but the last are rounded to two significant digits. ``quality`` is (N, Q).
+    """
     keys, ranking = [], list_ranking_figures(ranking)
     for place, key in enumerate(ranking):
         number = find_ranked_number(key)
         assert number is not None
-        # Rounding must not separate fixtures that are equal, so what is coarse is rounded finely first.
+        # Rounded finely before coarsely, so that rounding errors do not separate equal fixtures.
         column = PROGRAM_CLEARANCE if RANKED[number] is PROGRAM_FIGURE else number
         values = np.round(quality[:, column], FIGURE_DECIMALS)
         if place < len(ranking) - 1:
@@ -411,7 +447,7 @@ def make_figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> li
 
 
 def round_coarsely(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the values (N,) to two significant digits; infinite ones as they are."""
+    """Return the values (N,) rounded to two significant digits; 0, inf and NaN unchanged."""
     size = np.abs(values)
     known = np.isfinite(values) & (size > 0.0)
     exponent = np.floor(np.log10(np.where(known, size, 1.0)))
@@ -420,18 +456,18 @@ def round_coarsely(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def make_best_possible_figures(count: int, query: Query) -> NDArray[np.float64]:
-    """Return figures of quality (N, F) that no fixture of a query exceeds.
+    """Return (count, F) figures of quality at least as good as those of any fixture of a query.
 
-    The closure margin is a share of one, so of all pegs at most an equal one, and clamp freedom 90 degrees.
+    The closure margin is a share, so at most 1 / number of pegs; clamp freedom is at most 90 degrees.
     """
     best = np.array([inf if figure.more_is_better else 0.0 for figure in FIGURES])
     best[[CLOSURE_MARGIN, CLAMP_FREEDOM]] = 1.0 / query.toolkit.peg_count, 90.0
-    # With a program the clearance of its tools stands behind.
+    # With a program the last column is the clearance of its tools.
     return np.tile(best if query.program is None else np.append(best, inf), (count, 1))
 
 
 def is_worse(keys: NDArray[np.float64], last: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which keys (N, R) come after others (R,) in lexicographic order."""
+    """Return which rows (N, R) of keys come after the row ``last`` (R,) in lexicographic order."""
     worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
     for values, one in zip(keys.T, last.tolist(), strict=True):
         worse |= equal & (values > one)

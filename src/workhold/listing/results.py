@@ -1,7 +1,8 @@
-"""Results that a user sees: of the records of any engine, of fixtures found a few at a time, of several ways.
+"""Results for the user: of an engine's records, of fixtures found a few at a time, and joined from several
+directions.
 
-A search of a few fixtures at a time measures, counts and ranks those found so far, or the best of them. In
-each of a toolkit's ways one carrier moves, and their results are joined as one.
+Where fixtures are found a few at a time, those found so far, or the best of them, are measured, counted and
+ranked. For a toolkit with several directions, the results of all directions are joined.
 """
 
 from __future__ import annotations
@@ -17,29 +18,29 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem, Progress
 from workhold.listing.asked import are_as_asked
-from workhold.listing.canonical_form import Candidates
+from workhold.listing.canonical_form import CandidateFixtures
 from workhold.listing.collector import BestFixtures, ResultCollector
-from workhold.listing.identity import Identity, SetCount, order_by_identity
+from workhold.listing.identity import FixtureIdentity, SetCounter, order_by_identity
 from workhold.listing.ranking import (
     OrderKeys,
     convert_to_mm,
     find_usual_errors,
+    make_table_keys,
     measure_table_as_touched,
-    order_keys,
 )
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import STAGES, BestOnly, Cut, LeftUndecided, NoFixture, NoPlace, Note
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import Proof
-from workhold.proof.deciding import Account
-from workhold.statics.contact_matrix import Touched
+from workhold.model.search_report import ProofReport
+from workhold.proof.deciding import SearchReport
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.effective_error import EffectiveErrors
 
 __all__ = [
     "MEASURED",
     "RankedTable",
-    "Work",
+    "SearchWork",
     "make_best_result",
     "make_collected_result",
     "join_ways",
@@ -49,22 +50,22 @@ __all__ = [
     "sum_counts",
 ]
 
-# The shares of the work, as progress reports it, that are done when all is decided and when all is measured.
+# Fractions of the work, as progress reports it, at which all is decided and all is measured.
 DECIDED, MEASURED = 0.5, 0.8
 # Fixtures that wait to be measured together.
 WAITING = 1 << 14
 
 
 @frozen
-class Work:
-    """How the search went.
+class SearchWork:
+    """Statistics of a search.
 
     Parameters
     ----------
     complete : whether it came to its end.
     statistics : see ``Result.statistics``.
-    cells, examined : ranges of orientation and sets of four contacts that were examined for the records
-        (None: no more than the records).
+    cells : how many ranges of orientation were examined.
+    examined : how many sets of four contacts were examined; None for as many as there are records.
     """
 
     complete: bool
@@ -74,7 +75,9 @@ class Work:
 
 
 def make_stage_progress(progress: Progress | None, low: float, high: float) -> Progress | None:
-    """Return the progress of one stage of the work, from one fraction of the whole to another."""
+    """Return a progress callback for a stage that takes the
+    whole from fraction ``low`` to ``high``; None for None.
+    """
     if progress is None:
         return None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
@@ -83,35 +86,39 @@ def make_stage_progress(progress: Progress | None, low: float, high: float) -> P
 def list_result(
     problem: Problem,
     records: list[NDArray[np.float64]],
-    work: Work,
+    work: SearchWork,
     *,
     progress: Progress | None = None,
     cancel: Event | None = None,
     threads: int = 1,
     is_part: bool = False,
 ) -> Result:
-    """Check, lists once, ranks and count the fixtures that an engine found.
+    """Decide, list once, rank and count the fixtures that an engine found; return the result.
 
     Parameters
     ----------
     records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
-    cancel : when set, records that cannot be decided quickly are left, and the result is incomplete.
+    cancel : when set, records that need slow methods are left undecided, and the result is incomplete.
     threads : how many threads share the deciding.
-    is_part : whether others are joined with it before they are ranked.
+    is_part : whether the result is joined with others before ranking; then it lists more than the query's
+        ``best``.
     """
     with ThreadPoolExecutor(max_workers=threads) as pool:
         collector = ResultCollector(problem, pool, 2 * threads, cancel, is_part=is_part)
         with collector.give_up_on_errors():
             for array in records:
-                collector.take(array)
+                collector.take_records(array)
             result = make_collected_result(collector, work, make_stage_progress(progress, 0.0, MEASURED))
             result = add_table(result, collector, make_stage_progress(progress, MEASURED, 1.0))
     return result if is_part else evolve(result, table=result.table.take(slice(0, problem.query.best)))
 
 
-def make_collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
-    """Return the result of what a collector was given, without its fixtures; those it hands over.
+def make_collected_result(
+    collector: ResultCollector, work: SearchWork, progress: Progress | None = None
+) -> Result:
+    """Finish a collector's work; return the result without
+    fixtures in its table, which the collector yields afterwards.
 
     Parameters
     ----------
@@ -126,34 +133,34 @@ def make_collected_result(collector: ResultCollector, work: Work, progress: Prog
     )
     return Result(
         query=query,
-        table=FixtureTable.empty(query.toolkit),
+        table=FixtureTable.make_empty(query.toolkit),
         found=found,
         distinct=distinct,
         complete=work.complete and account.left == 0 and whole,
         notes=(LeftUndecided(len(account.undecided)),) if account.undecided else (),
         statistics=work.statistics,
         proof=make_proof(account, work),
-        least_effective_error=convert_to_mm(collector.least),
+        least_effective_error=convert_to_mm(collector.least_error),
     )
 
 
 def add_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
-    tables, listed = list(collector.iterate_tables(progress)), collector.listed
-    # If somebody asked to stop since, millions are not put together any more.
+    """Return the result with the collector's fixtures, marked as cut short if some are left out."""
+    tables, listed = list(collector.iterate_tables(progress)), collector.listed_count
+    # After a cancel in the meantime, millions of fixtures are not put together any more.
     enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
-    table = FixtureTable.joined(tables[:enough]).take(slice(listed))
+    table = FixtureTable.concatenate(tables[:enough]).take(slice(listed))
     result = evolve(result, table=table)
-    return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
+    return result if len(table) == sum(result.found.values()) else result.mark_cut_short(len(table))
 
 
 def make_best_result(
-    kept: BestFixtures, work: Work, is_part: bool = False, is_limited: bool = False
+    kept: BestFixtures, work: SearchWork, is_part: bool = False, is_limited: bool = False
 ) -> Result:
-    """Return the result of a search for the best fixtures only; of a part of one, all that may be among the
-    best.
+    """Return the result of a search for the best fixtures; with ``is_part`` all that may be among the best.
 
-    Where the search ``is_limited``, some were not even looked for. How many fixtures
-    there are in all is not known: those that could not be among the best were not examined.
+    With ``is_limited``, or once fixtures were dropped, only listed fixtures are counted, as the total is not
+    known.
     """
     candidates, account = kept.finish()
     kept.has_dropped |= is_limited
@@ -161,7 +168,7 @@ def make_best_result(
     if kept.has_dropped and not is_part:
         # Only those that are listed are counted.
         result = evolve(result, table=result.table.take(slice(kept.most)))
-        counted = SetCount(Identity(result.toolkit, result.workpiece))
+        counted = SetCounter(FixtureIdentity(result.toolkit, result.workpiece))
         counted.add(result.table)
         result = evolve(
             result,
@@ -174,68 +181,79 @@ def make_best_result(
 
 
 def make_result(
-    problem: Problem, candidates: Candidates, account: Account, work: Work, is_part: bool = False
+    problem: Problem,
+    candidates: CandidateFixtures,
+    account: SearchReport,
+    work: SearchWork,
+    is_part: bool = False,
 ) -> Result:
+    """Return the result of candidates that are decided already,
+    with the report on their records and the search's statistics.
+    """
     with ThreadPoolExecutor(max_workers=1) as pool:
         collector = ResultCollector(problem, pool, 1, is_part=is_part)
-        collector.add(candidates, account)
+        collector.add_candidates(candidates, account)
         return add_table(make_collected_result(collector, work), collector)
 
 
-def make_proof(account: Account, work: Work) -> Proof:
+def make_proof(account: SearchReport, work: SearchWork) -> ProofReport:
+    """Return the proof report from the report on records and the statistics of the search."""
     # A pair of chords that was given up counts as one candidate.
     examined = work.examined
     candidates = account.records if examined is None else examined + account.given_up - account.left
     kept = account.verified + len(account.undecided)
     # One candidate may hold two solutions, which then count as two.
     candidates = max(candidates, kept)
-    return Proof(
+    return ProofReport(
         work.cells, candidates, candidates - kept, account.verified, account.escalated, account.undecided
     )
 
 
 @define(eq=False)
 class RankedTable:
-    """Fixtures that are listed once, no more of them than are asked for.
+    """Fixtures added in tables without repetitions; where the query asks for the best, only those are kept.
 
     Parameters
     ----------
     query : what is asked.
-    problem : the search of one direction of the clamp, for what all have in common.
-    waiting : fixtures that are not measured yet.
-    has_dropped : whether some that cannot be among the best were left out, so that nobody counted all.
+    problem : of one direction of the clamp, for what all directions have in common.
+    waiting : tables not yet measured.
+    has_dropped : whether fixtures were skipped uncounted since they cannot be among the best.
     """
 
     query: Query
     problem: Problem
     waiting: list[FixtureTable] = field(factory=list, init=False)
-    touched: Touched = field(init=False)
+    touched: TouchableFeatures = field(init=False)
     effective: EffectiveErrors | None = field(init=False)
     known: OrderKeys | None = field(default=None, init=False)
-    count: SetCount = field(init=False)
+    count: SetCounter = field(init=False)
     tables: list[FixtureTable] = field(init=False)
     has_dropped: bool = field(default=False, init=False)
 
     def __attrs_post_init__(self) -> None:
         part, toolkit = self.query.workpiece, self.query.toolkit
-        self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
+        self.touched = TouchableFeatures.from_workpiece(part, toolkit, length=self.problem.wrench_length)
         self.effective = find_usual_errors(self.query)
-        self.count = SetCount(Identity(toolkit, part, self.query.listing != "best"))
-        self.tables = [FixtureTable.empty(toolkit)]
+        self.count = SetCounter(FixtureIdentity(toolkit, part, self.query.listing != "best"))
+        self.tables = [FixtureTable.make_empty(toolkit)]
 
     def __len__(self) -> int:
         return int(self.count.found.sum()) + sum(map(len, self.waiting))
 
     def add(self, table: FixtureTable) -> None:
+        """Add a table of fixtures, not yet measured."""
         self.waiting.append(table)
         if sum(map(len, self.waiting)) > WAITING:
             self.measure()
 
     def measure(self) -> None:
-        """Measure what waits; where only the best are asked for, keep what may be among them."""
+        """Measure and count the waiting fixtures; where only
+        the best are asked for, keep what may be among them.
+        """
         if not self.waiting:
             return
-        query, most, table = self.query, self.query.best, FixtureTable.joined(self.waiting)
+        query, most, table = self.query, self.query.best, FixtureTable.concatenate(self.waiting)
         self.waiting = []
         table = measure_table_as_touched(table, query, self.touched)
         if query.is_sifted:
@@ -244,55 +262,60 @@ class RankedTable:
         self.tables.append(table)
         if most is not None:
             together = self.concatenate()
-            keys = order_keys(together, query, self.effective)
+            keys = make_table_keys(together, query, self.effective)
             chosen = keys.are_among_best(most)
             self.tables, self.known = [together.take(chosen)], keys.take(chosen)
 
     def make_keys(self, table: FixtureTable) -> OrderKeys:
-        """Return the keys of some fixtures that are not measured yet."""
-        return order_keys(
+        """Return the ranking keys of a table that is not yet measured, without adding it."""
+        return make_table_keys(
             measure_table_as_touched(table, self.query, self.touched), self.query, self.effective
         )
 
     @property
     def keys(self) -> OrderKeys:
+        """Ranking keys of the fixtures kept, after measuring what waits."""
         self.measure()
         if self.known is None:
-            return order_keys(self.concatenate(), self.query, self.effective)
+            return make_table_keys(self.concatenate(), self.query, self.effective)
         return self.known
 
     def are_beaten(self, bounds: OrderKeys, floor: int) -> NDArray[np.bool_]:
-        """Return which of N bounds are those of nothing that is among the best.
+        """Return which (N,) bounds are of fixtures surely not among the best; none where all are asked for.
 
         Parameters
         ----------
-        floor : an error in billionths of a mm that nothing has less than which is not found yet.
+        floor : a lower bound of the errors, in billionths of a mm, of all fixtures not yet found.
         """
         if self.query.best is None:
             return np.zeros(len(bounds), np.bool_)
         return bounds.are_beaten(self.keys, self.query.best, floor)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Return whether nothing that has no less than one bound is among the best; it is left out then."""
-        is_out = bool(self.are_beaten(bound, bound.lowest).all())
+        """Return whether fixtures with keys no less than the one bound are surely not among the best.
+
+        If so, ``has_dropped`` is set.
+        """
+        is_out = bool(self.are_beaten(bound, bound.lowest_error).all())
         self.has_dropped |= is_out
         return is_out
 
     def concatenate(self) -> FixtureTable:
-        """Return what is kept of all that was added, in the order of identities."""
+        """Return the fixtures kept as one table, measured, in the order of their identities."""
         self.measure()
-        everything = FixtureTable.joined(self.tables)
+        everything = FixtureTable.concatenate(self.tables)
         self.tables = [everything.take(order_by_identity(everything, self.query.toolkit))]
         return self.tables[0]
 
-    def make_result(self, account: Account, work: Work) -> Result:
+    def make_result(self, account: SearchReport, work: SearchWork) -> Result:
+        """Return the result of all fixtures added, best first."""
         query, table = self.query, self.concatenate()
-        keys = order_keys(table, query, self.effective)
-        order = keys.order(keys.least)[: query.best]
+        keys = make_table_keys(table, query, self.effective)
+        order = keys.sort(keys.least_error)[: query.best]
         table, count, notes = table.take(order), self.count, list[Note]()
         if self.has_dropped:
             # Only those that are listed are counted.
-            count = SetCount(self.count.identity)
+            count = SetCounter(self.count.identity)
             count.add(table)
             notes.append(BestOnly(query.best or 0))
         if account.undecided:
@@ -306,30 +329,31 @@ class RankedTable:
             notes=tuple(notes),
             statistics=work.statistics,
             proof=make_proof(account, work),
-            least_effective_error=convert_to_mm(keys.least),
+            least_effective_error=convert_to_mm(keys.least_error),
         )
 
 
 def join_ways(results: Sequence[Result], query: Query) -> Result:
-    """Return the results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the
-    query."""
+    """Return the results of the separate directions of a toolkit,
+    in the order of ``Toolkit.ways``, as one ranked result.
+    """
     table = join_tables([result.table for result in results])
-    # Of a search that was stopped no more than the best of a way may be listed: of all then, too.
+    # After a cancel only the best of a direction may be listed; then no more of all directions can be.
     cut = (
         []
         if query.best
         else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
     )
     most = min(cut, default=query.best)
-    keys = order_keys(table, query, find_usual_errors(query))
-    ranked = table.take(keys.order(keys.least)[:most])
+    keys = make_table_keys(table, query, find_usual_errors(query))
+    ranked = table.take(keys.sort(keys.least_error)[:most])
     proofs = [result.proof for result in results if result.proof is not None]
     found, distinct = (
         sum_counts(getattr(result, name) for result in results) for name in ("found", "distinct")
     )
     if any(isinstance(note, BestOnly) for result in results for note in result.notes):
-        # Each way left others out than the best of its own, so of all no more are known than the best.
-        counted = SetCount(Identity(query.toolkit, query.workpiece))
+        # Each direction dropped all but its own best, so only the best of all are known.
+        counted = SetCounter(FixtureIdentity(query.toolkit, query.workpiece))
         counted.add(ranked)
         found, distinct = counted.count_by_type(counted.found), counted.count_by_type(counted.distinct)
     joined = Result(
@@ -341,14 +365,16 @@ def join_ways(results: Sequence[Result], query: Query) -> Result:
         notes=tuple(join_notes(results, query)),
         statistics=sum_counts(result.statistics for result in results),
         proof=join_proofs(proofs) if len(proofs) == len(results) else None,
-        least_effective_error=convert_to_mm(keys.least),
+        least_effective_error=convert_to_mm(keys.least_error),
     )
-    return joined.cut_short(len(ranked)) if cut else joined
+    return joined.mark_cut_short(len(ranked)) if cut else joined
 
 
 def join_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
-    """Yield the notes of several results as those of all: how many candidates are undecided, or why no result
-    has a fixture. Of several reasons it is the one that most candidates got to.
+    """Yield the notes of a joined result: those of its parts,
+    and one for undecided candidates or for no fixture.
+
+    Of several reasons for no fixture, the one of the latest stage is chosen.
     """
     proofs = [result.proof for result in results if result.proof is not None]
     verified, undecided = (
@@ -373,23 +399,25 @@ def join_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
 
 
 def join_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
-    """Return the tables one after the other, each with one arrangement, which are numbered on."""
+    """Return the tables concatenated; the arrangement of table k, 0 in itself, becomes k."""
     numbered = [
         evolve(table, arrangement=(table.arrangement + number).astype(np.int8))
         for number, table in enumerate(tables)
     ]
-    return FixtureTable.joined(numbered)
+    return FixtureTable.concatenate(numbered)
 
 
 def sum_counts(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    """Return the sums of counts by name."""
     total: Counter[str] = Counter()
     for one in counts:
         total.update({name: int(count) for name, count in one.items()})
     return dict(total)
 
 
-def join_proofs(proofs: Sequence[Proof]) -> Proof:
-    return Proof(
+def join_proofs(proofs: Sequence[ProofReport]) -> ProofReport:
+    """Return the sum of several proof reports, with all undecided candidates."""
+    return ProofReport(
         cells=sum(proof.cells for proof in proofs),
         candidates=sum(proof.candidates for proof in proofs),
         discarded_by_bound=sum(proof.discarded_by_bound for proof in proofs),

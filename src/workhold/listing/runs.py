@@ -1,5 +1,4 @@
-"""Rows too many for memory, sorted by keys: runs that are sorted each, kept on the disk, and merged part by
-part.
+"""An external sort of rows too many for memory: runs are sorted, kept on disk, and merged part by part.
 
 Reference: D. E. Knuth, *The Art of Computer Programming* 3 (1998), section 5.4; runs are cut at the same keys
 instead of being merged row by row, which array operations do better.
@@ -29,15 +28,15 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-__all__ = ["Columns", "Runs", "SortedRun", "map_in_order", "make_keys"]
+__all__ = ["Columns", "ExternalSort", "SortedRun", "map_in_order", "make_keys"]
 
 Keys = NDArray[np.bytes_]
 Columns = tuple[NDArray[Any], ...]
 One = TypeVar("One")
 Other = TypeVar("Other")
 
-# Rows merged at a time, rows in memory that go to the disk together, and rows between two keys that are
-# remembered.
+# Number of rows in a part, of rows in memory that go to the disk together, and of rows from one remembered
+# key to the next.
 PART, ROOM, STRIDE = 1 << 15, 1 << 18, 1 << 9
 SIGN = np.uint64(1 << 63)
 # The largest number of 64 bits.
@@ -45,13 +44,15 @@ MOST = (1 << 64) - 1
 
 
 def make_keys(*numbers: NDArray[Any]) -> Keys:
-    """Return the keys (N,) by which rows are in the lexicographic order of numbers (N,) each: whole ones from
-    0 upward, or floats, of which NaN comes last.
+    """Return keys (N,), byte strings that sort as the tuples of the given numbers (N,) do.
+
+    Numbers are integers from 0 up, or floats, with NaN last.
     """
     words = np.empty((len(numbers[0]), len(numbers)), ">u8")
     for k, values in enumerate(numbers):
         if values.dtype.kind == "f":
-            # A float's bits are in its order but for the sign, as J. Herf writes, "Radix tricks" (2001).
+            # The bits of a float, as an integer, are in its order, except for the sign (J. Herf, "Radix
+            # tricks", 2001).
             bits = np.where(np.isnan(values), np.nan, values + 0.0).view(np.uint64)
             words[:, k] = np.where(bits & SIGN, ~bits, bits | SIGN)
         else:
@@ -59,12 +60,11 @@ def make_keys(*numbers: NDArray[Any]) -> Keys:
     return words.view(f"S{8 * len(numbers)}")[:, 0]
 
 
-def order_of(keys: Keys) -> NDArray[np.intp]:
-    """Return the order (N,) of keys, equal ones as they stand.
+def sort_keys(keys: Keys) -> NDArray[np.intp]:
+    """Return the indices (N,) that sort keys, stably.
 
-    Comparing bytes takes long. So the words that keys are made of become one number. Each counts by its
-    distance from the least of its kind or, where that is too much for a number, by its rank. The number is
-    sorted with the index behind it.
+    For speed the words of the keys are combined into one integer, each word as its distance from the least
+    or, where that takes too many bits, as its rank; the index is in the lowest bits.
     """
     count = max(len(keys), 1)
     number, size = np.zeros(len(keys), np.uint64), 1
@@ -80,8 +80,9 @@ def order_of(keys: Keys) -> NDArray[np.intp]:
 
 
 def compress_numbers(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]:
-    """Return the numbers (N,) in the order of others, from 0 upward, and how many there may be: no more than
-    ``most``, or as few as there are different ones.
+    """Return integers (N,) from 0 in the same order as ``word``, and a bound one above the largest.
+
+    They are distances from the least if their range is at most ``most``, else ranks.
     """
     least = int(word.min())
     span = int(word.max()) - least + 1
@@ -89,25 +90,33 @@ def compress_numbers(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.ui
 
 
 def rank_numbers(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
-    """Return the ranks (N,) of numbers, equal ones alike, and how many there are."""
+    """Return the dense ranks (N,) of numbers, and how many distinct numbers there are."""
     values, ranks = np.unique(word, return_inverse=True)
     return ranks.astype(np.uint64), len(values)
 
 
 @frozen(eq=False)
 class SortedRun:
-    """Rows in memory in the order of their keys."""
+    """Rows in memory in the order of their keys.
+
+    Parameters
+    ----------
+    keys : (N,) ascending.
+    columns : arrays of N rows each.
+    """
 
     keys: Keys
     columns: Columns
 
     @classmethod
     def from_columns(cls, keys: Keys, columns: Columns) -> SortedRun:
-        order = order_of(keys)
+        """Return a run of these rows, sorted by keys; rows of equal keys keep their order."""
+        order = sort_keys(keys)
         return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
     @classmethod
     def merge_runs(cls, runs: Sequence[SortedRun]) -> SortedRun:
+        """Return one run of the rows of several, at least one."""
         if len(runs) == 1:
             return runs[0]
         columns = zip(*(run.columns for run in runs), strict=True)
@@ -120,25 +129,25 @@ class SortedRun:
 
     @property
     def some_keys(self) -> Keys:
-        """The first key, and every so many-th after it."""
+        """Every ``STRIDE``-th key from the first on."""
         return self.keys[::STRIDE]
 
-    def place(self, key: Keys) -> int:
-        """Return how many of its rows come before a key (1,)."""
+    def count_before(self, key: Keys) -> int:
+        """Return how many rows have smaller keys than ``key`` (1,)."""
         return int(np.searchsorted(self.keys, key)[0])
 
     def read_rows(self, first: int, end: int) -> SortedRun:
+        """Return the rows from ``first`` up to but without ``end``."""
         return SortedRun(self.keys[first:end], tuple(column[first:end] for column in self.columns))
 
 
 @define(eq=False)
-class Scratch:
-    """A file without a name that any thread may write to its end or read; it is gone when the program ends,
-    however it does.
+class ScratchFile:
+    """A temporary file that any thread may append to or read; it vanishes when the program ends.
 
     Parameters
     ----------
-    folder : in which it takes room.
+    folder : in which it is created.
     """
 
     folder: Path
@@ -149,7 +158,7 @@ class Scratch:
         self.file = TemporaryFile(dir=self.folder, buffering=0)  # noqa: SIM115
 
     def write(self, array: NDArray[Any]) -> int:
-        """Write the bytes of an array; the place where they begin."""
+        """Append the bytes of an array; return the offset in bytes at which they begin."""
         content = np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
         with self.lock:
             place = self.file.seek(0, os.SEEK_END)
@@ -158,6 +167,7 @@ class Scratch:
         return place
 
     def read(self, place: int, size: int) -> bytes:
+        """Return ``size`` bytes from the offset ``place``."""
         with self.lock:
             self.file.seek(place)
             return self.file.read(size)
@@ -165,16 +175,25 @@ class Scratch:
 
 @frozen(eq=False)
 class StoredRun:
-    """Rows on the disk in the order of their keys: arrays one after the other in a file, keys first."""
+    """Rows on disk in the order of their keys: arrays one after the other in a file, keys first.
 
-    scratch: Scratch
+    Parameters
+    ----------
+    places : offset in bytes of each array.
+    forms : dtype and shape of a row of each array.
+    count : number of rows.
+    some_keys : every ``STRIDE``-th key, kept in memory.
+    """
+
+    scratch: ScratchFile
     places: tuple[int, ...]
     forms: tuple[tuple[np.dtype[Any], tuple[int, ...]], ...]
     count: int
     some_keys: Keys
 
     @classmethod
-    def from_run(cls, run: SortedRun, scratch: Scratch) -> StoredRun:
+    def from_run(cls, run: SortedRun, scratch: ScratchFile) -> StoredRun:
+        """Write a run to a scratch file, and return it as a stored one."""
         arrays = (run.keys, *run.columns)
         places = tuple(scratch.write(array) for array in arrays)
         forms = tuple((array.dtype, array.shape[1:]) for array in arrays)
@@ -184,42 +203,44 @@ class StoredRun:
         return self.count
 
     def read_array(self, number: int, first: int, end: int) -> NDArray[Any]:
+        """Return rows ``first`` up to but without ``end`` of array ``number``; 0 are the keys."""
         form, shape = self.forms[number]
         size = form.itemsize * int(np.prod(shape, dtype=np.int64))
         content = self.scratch.read(self.places[number] + first * size, (end - first) * size)
         return np.frombuffer(content, form).reshape(end - first, *shape)
 
-    def place(self, key: Keys) -> int:
-        """Return how many of its rows come before a key (1,)."""
+    def count_before(self, key: Keys) -> int:
+        """Return how many rows have smaller keys than ``key`` (1,)."""
         first = STRIDE * max(int(np.searchsorted(self.some_keys, key)[0]) - 1, 0)
         return first + int(
             np.searchsorted(self.read_array(0, first, min(first + STRIDE, self.count)), key)[0]
         )
 
     def read_rows(self, first: int, end: int) -> SortedRun:
+        """Return the rows from ``first`` up to but without ``end``, read into memory."""
         keys, *columns = (self.read_array(number, first, end) for number in range(len(self.forms)))
         return SortedRun(keys, tuple(columns))
 
 
 @define(eq=False)
-class Runs:
-    """Rows that are added in runs and taken out in the order of their keys.
+class ExternalSort:
+    """Rows that are added in sorted runs and read in the order of their keys.
 
     Parameters
     ----------
-    folder : of the file that holds what does not stay in memory; None for memory alone.
+    folder : for the temporary file; None to keep all in memory.
     """
 
     folder: Path | None = None
     runs: list[SortedRun | StoredRun] = field(factory=list, init=False)
     fresh: list[SortedRun] = field(factory=list, init=False)
-    scratch: Scratch | None = field(default=None, init=False)
+    scratch: ScratchFile | None = field(default=None, init=False)
 
     def __len__(self) -> int:
         return sum(map(len, self.runs)) + sum(map(len, self.fresh))
 
-    def add(self, run: SortedRun) -> None:
-        """Add rows.
+    def add_run(self, run: SortedRun) -> None:
+        """Add a sorted run; write runs to disk once enough are in memory, if there is a folder.
 
         Raises
         ------
@@ -228,23 +249,24 @@ class Runs:
         """
         self.fresh.append(run)
         if self.folder is not None and sum(map(len, self.fresh)) >= ROOM:
-            self.scratch = self.scratch or Scratch(self.folder)
+            self.scratch = self.scratch or ScratchFile(self.folder)
             self.runs.append(StoredRun.from_run(SortedRun.merge_runs(self.fresh), self.scratch))
             self.fresh = []
 
     def list_parts(self) -> list[Callable[[], SortedRun]]:
-        """Return what gives the rows of all runs in the order of their keys, part by part; rows of one key
-        are in one part. At least one, where there is any run.
+        """Return functions that each read one part; the parts in order are all rows sorted by key.
+
+        Rows of equal keys are in one part. Needs at least one run.
         """
         runs = [*self.runs, *self.fresh]
         keys = np.sort(np.concatenate([run.some_keys for run in runs]))
         pivots = np.unique(keys[PART // STRIDE :: PART // STRIDE])
-        places = [[run.place(pivots[k : k + 1]) for run in runs] for k in range(len(pivots))]
+        places = [[run.count_before(pivots[k : k + 1]) for run in runs] for k in range(len(pivots))]
         edges = [[0] * len(runs), *places, [len(run) for run in runs]]
         return [self.make_part(runs, first, end) for first, end in pairwise(edges)]
 
     def iterate_runs(self) -> Iterator[Callable[[], SortedRun]]:
-        """Yield what gives the rows of each run by itself, which are forgotten here as they are asked for."""
+        """Yield, for each run, a function that reads all its rows; the runs are removed from this object."""
         while self.runs or self.fresh:
             run = (self.runs or self.fresh).pop(0)
             yield partial(run.read_rows, 0, len(run))
@@ -252,12 +274,13 @@ class Runs:
     def make_part(
         self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]
     ) -> Callable[[], SortedRun]:
+        """Return a function that merges rows ``first[k]`` to ``end[k]`` of each run k."""
         return lambda: SortedRun.merge_runs(
             [run.read_rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
         )
 
     def close(self) -> None:
-        """Give back memory and disk."""
+        """Drop all rows, and delete the temporary file."""
         self.runs, self.fresh = [], []
         if self.scratch is not None:
             self.scratch.file.close()
@@ -266,8 +289,10 @@ class Runs:
 def map_in_order(
     pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]
 ) -> Iterator[Other]:
-    """Yield what work gives for each item, in the order of the items; at most ``ahead`` items are begun and
-    not yet taken.
+    """Yield ``work(item)`` for each item in order, computed on the pool.
+
+    At most ``ahead`` items, besides the one awaited, are begun and not yet yielded. When the iteration ends
+    early, waits for what runs.
     """
     running: deque[Future[Other]] = deque()
     try:
@@ -278,7 +303,7 @@ def map_in_order(
         while running:
             yield running.popleft().result()
     finally:
-        # Nobody takes what is left; what it reads must stay until it is over.
+        # Pending work is dropped; its files must stay until running work is over.
         for future in running:
             future.cancel()
         wait(running)

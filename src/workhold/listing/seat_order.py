@@ -1,7 +1,7 @@
-r"""The order in which seats are looked at when only the best are asked for, and where the search may stop.
+r"""The order in which seats are examined when only the best are asked for, and when the search may stop.
 
-Contacts of three locators and one clamp are grouped by seat before they are proven. What the locators alone
-say of a fixture bounds its rank from above, whatever its two clamps are:
+Contacts of three locators and one clamp are grouped by seat before they are proven. The locators alone bound
+the rank of a fixture, whatever its two clamps are:
 
 - location error and tilt are the seat's alone, the same for all its clamps;
 - the least distance to an end or an edge, and the smallest face, are those of five contacts, so no larger
@@ -11,21 +11,21 @@ say of a fixture bounds its rank from above, whatever its two clamps are:
 - the closure margin is at most 1/5, for five shares sum to 1, and clamp freedom at most 90 degrees; forces
   are above zero.
 
-Rounding to digits never turns two numbers round. So key by key the bound is no worse than the fixture's own
-key, and so is the whole in lexicographic order. Seats are looked at in the order of their bounds. The search
-may stop once as many fixtures are kept as are asked for, and the next bound is worse than the last of them.
-Then no further seat holds one that is listed. Seats of equal bounds are looked at, for what ranks alike is
-listed in the order of holes.
+Rounding to digits never reverses the order of two numbers. So key by key the bound is no worse than the
+fixture's own key, and so it is in lexicographic order. Seats are examined in the order of their bounds. The
+search may stop once as many fixtures are kept as are asked for, and the next bound is worse than the last of
+them. Then no further seat has a listed fixture. Seats with equal bounds are examined, since equal fixtures
+are listed in the order of holes.
 
-What pairs of clamps bound (``listing.bounds``) takes longer. So it is asked only of groups that are next
-to be looked at, or as good as these by all figures before the first of those.
+Bounds by pairs of clamps (``listing.bounds``) take longer. So they are computed only for groups that are
+next, or as good as these by all figures before the first that pairs bound.
 
-Seats are taken whole, with all contacts that may be theirs. A group is one of holes and orientation. Contacts
-whose orientation is not well known are put together with all others of the same holes. So a group holds every
-seat that it touches, and what is found at it does not depend on the others. Each place in a group is bounded
-by itself, and the best counts. A group with a contact whose place is not well known has no bound. Where that
-is because locators touch along one line or pass one point, they hold nothing (``proof.degenerate``). Such
-contacts stand by themselves, after all others.
+Seats are examined whole, with all contacts that may be theirs. A group has the same holes and nearly the same
+orientation. Contacts whose orientation is not well known are grouped with all others of the same holes. So a
+group contains every seat that it touches, and is examined independently of others. Each place of the part in
+a group is bounded by itself, and the best bound counts. A group with a contact whose place is not well known
+has no bound. If that is because the locators' lines of force are parallel or meet in a point, they hold
+nothing (``proof.degenerate``); such contacts are a group of their own, after all others.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ from workhold.contact.problem import QUARTERS, ROUNDINGS, Problem
 from workhold.conventions import SAME_PLACE, SAME_POSE, SQUARE_TILT
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
-from workhold.kernels.contact.quality import LOAD_LENGTH, figures
-from workhold.kernels.contact.seats import numbers_of_seats
+from workhold.kernels.contact.quality import LOAD_LENGTH, write_figures
+from workhold.kernels.contact.seats import write_seat_numbers
 from workhold.listing.bounds import BOUNDED, bound_pairs, find_first_clamp_figure
 from workhold.listing.canonical_form import NEAR_END, assign_contacts_to_faces, make_candidates
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
@@ -64,14 +64,19 @@ from workhold.model.quality import (
 from workhold.model.query import Query
 from workhold.proof.degenerate import hold_nothing
 from workhold.statics.contact_matrix import (
-    Touched,
+    TouchableFeatures,
     compute_outward_normals,
+    compute_wrenches,
     invert_locator_matrices,
-    wrenches,
 )
 from workhold.statics.effective_error import EffectiveErrors, classify_angles, to_ends
-from workhold.statics.judging import Judging, is_astray, is_near_edge, is_strong
-from workhold.statics.quality import extremes, main_direction, measure_faces, tilts
+from workhold.statics.judging import JudgingLimits, is_astray, is_near_edge, is_strong
+from workhold.statics.quality import (
+    compute_tilts,
+    find_main_direction,
+    find_silhouette_extremes,
+    measure_faces,
+)
 
 __all__ = ["make_ordered_groups"]
 
@@ -79,39 +84,38 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Radians. Contacts whose orientation is known less well are put together with all others of the same holes,
-# and bound nothing; so are those that are this near to where orientations are counted from.
+# Radians. Contacts with a larger error of orientation are grouped with all others of the same holes, without
+# bounds; so are those within AT_START of START.
 WELL_KNOWN, AT_START = 1e-7, 1e-5
-# Radians. Orientations are counted from here, which is no angle that parts have for a reason.
+# Radians. Orientations are counted from here, an angle that parts have only by chance.
 START = 0.123456789
-# Radians and mm. What is surely farther apart is two seats.
+# Radians and mm. Places or orientations that surely differ by more are two seats.
 APART = 4e-8
-# Bits of a number that are those of holes, and steps of orientation to a radian that the others count. A step
-# is less than half of ``SAME_POSE``.
+# Mask of the bits of a number that hold the holes' hash, and steps of orientation per radian in the other
+# bits. A step is less than half of ``SAME_POSE``.
 HOLES = -1 << 24
 STEPS = ((1 << 24) - 1) / tau
-# What figures may be off by: as parts of one, and in degrees.
+# Errors of figures: relative, and of angles in degrees.
 SHARE, ANGLE = 1e-6, 1e-4
-# Bounds that are off by more than this part of one are none.
+# Bounds with a larger relative error are not used.
 MOST_SHARE = 0.01
 # Larger than the number of any contact.
 NO_CONTACT = np.iinfo(np.int64).max
-# How often places of locators are found from what they were before.
+# Number of iterations that sharpen the bound of a place.
 ROUNDS = 3
 
 
 def make_ordered_groups(
     records: Sequence[PackedContacts], problems: Sequence[Problem], query: Query
 ) -> SeatGroups:
-    """Return the groups of the contacts of each direction.
+    """Return the groups of seats of the contacts of all directions, with bounds of their rank.
 
     Parameters
     ----------
-    records : of each direction.
-    problems : the search of each direction.
+    records, problems : one of each for each direction of the clamp.
     """
     numbers = [
-        seat_numbers(some, problem)
+        number_seats(some, problem)
         for part, problem in zip(records, problems, strict=True)
         for some in part.iterate_parts()
     ]
@@ -121,7 +125,7 @@ def make_ordered_groups(
     unsure = holds & (~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START))
     loose = is_among(holes, np.unique(holes[unsure]))
     theta[loose] = 0.0
-    # Numbers of whole steps of orientation stand in the bits that those of holes leave.
+    # The steps of orientation are in the bits that the holes' hash leaves free.
     order = np.argsort(holes | (theta * STEPS).astype(np.int64))
     order = order[holds[order]]
     fresh = np.ones(len(order), np.bool_)
@@ -133,7 +137,7 @@ def make_ordered_groups(
     order[mixed] = order[mixed[np.lexsort([by_place[mixed], group[mixed]])]]
     del by_place
     known = (theta, turn), (place, off)
-    bounds = group_bounds(order, group, known, records, problems, query)
+    bounds = bound_groups(order, group, known, records, problems, query)
     unknown = loose | ~(off <= SAME_PLACE)
     bounds = bounds.drop_bounds_where(np.logical_or.reduceat(unknown[order], starts))
     groups, alike = SeatGroups(order, starts, bounds), find_first_clamp_figure(query)
@@ -142,14 +146,17 @@ def make_ordered_groups(
         return groups
 
     def sharpened(order: IntArray, starts: IntArray) -> OrderKeys:
+        """Return bounds of some groups, given their contacts
+        and starts, by the pairs of their clamps as well.
+        """
         group = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
-        return group_bounds(order, group, known, records, problems, query, by_pairs=True)
+        return bound_groups(order, group, known, records, problems, query, by_pairs=True)
 
-    # The first number is of what is fit for a workshop.
+    # The first key number is whether a fixture is unfit.
     return evolve(groups, sharpened=sharpened, alike=alike + 1)
 
 
-def group_bounds(
+def bound_groups(
     order: IntArray,
     group: IntArray,
     known: tuple[tuple[Array, Array], tuple[Array, Array]],
@@ -158,12 +165,15 @@ def group_bounds(
     query: Query,
     by_pairs: bool = False,
 ) -> OrderKeys:
-    """Return the keys of G groups that no fixture in one has less than, the least of those of the places in
-    it.
+    """Return lower bounds (G,) of the ranking keys of fixtures in each group, the least over the seats in it.
 
-    Numbers of contacts (M,) come group by group, and in each by place, with those of the groups. ``known``
-    are orientations and places (M,), each with how far they may be off. ``by_pairs`` says whether pairs of
-    clamps are to bound them, too.
+    Parameters
+    ----------
+    order : (M,) indices of contacts, group by group, and by place in each.
+    group : (M,) group number of each, ascending from 0.
+    known : (orientations, their error bounds) in radians, and (places, their error bounds) in mm, of all
+        contacts.
+    by_pairs : whether pairs of clamps are to sharpen the bounds.
     """
     place, off = (values[order] for values in known[1])
     fresh = np.ones(len(order), np.bool_)
@@ -184,38 +194,42 @@ def group_bounds(
     for values, doubts in known:
         middle, radius = values[order], 2.0 * doubts[order]
         low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
-        # One contact cannot stand for two seats.
+        # The contacts may be of two seats, so the bound of one does not hold for all.
         bounds = bounds.drop_bounds_where(high - low > APART)
     return bounds.find_least_of_groups(group[starts])
 
 
 def find_best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
-    """Return the lowest of numbers (M,) in an order that are off the least, of each place (G,)."""
+    """Return, for each slice of ``order`` (M,) that begins at
+    ``starts`` (G,), the lowest index with the least ``off``.
+    """
     least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
     return np.asarray(np.minimum.reduceat(np.where(off <= least, order, NO_CONTACT), starts))
 
 
 def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
-    """Return which numbers (N,) are among a few (F,) in ascending order."""
+    """Return which numbers (N,) are among ``few`` (F,), which are ascending."""
     if len(few) == 0:
         return np.zeros(len(numbers), np.bool_)
     return np.asarray(few[np.minimum(np.searchsorted(few, numbers), len(few) - 1)] == numbers)
 
 
-def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array, BoolArray]:
-    """Return what distinguishes the seats of contacts (N, 19), whatever the direction of the clamp.
+def number_seats(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array, BoolArray]:
+    """Return six arrays (N,) that identify the seats of
+    contacts (N, 19), whatever the direction of the clamp.
 
     Returns
     -------
-    Six arrays (N,). The first is a number for the holes of locators, the same wherever they are on the
-    plate. Then come orientations from ``START`` on, and how far they may be off. Then a number for the place
-    of the part beside the holes in mm, and how far that may be off. The last says whether locators may hold.
+    holes : a hash of the locators' holes, the same wherever they are on the plate.
+    theta, turn : orientation in radians counted from ``START``, and its error bound.
+    place, off : a number in mm for the place of the part relative to the holes, and its error bound.
+    holds : whether the locators may hold the part.
     """
     frame, count = problem.frame, len(records)
     holes, theta, place = np.empty(count, np.int64), np.empty(count), np.empty(count)
     quarters = np.array([*QUARTERS[frame.quarters], frame.quarters * (pi / 2)], np.float64)
     pitch = np.array(problem.toolkit.carriers[0].pitch, np.float64)
-    numbers_of_seats(records, quarters, pitch, START, holes, theta, place)
+    write_seat_numbers(records, quarters, pitch, START, holes, theta, place)
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH])
     off, holds = bound_places_off(records, problem), np.ones(count, np.bool_)
     vague = np.flatnonzero(~(off <= SAME_PLACE))
@@ -225,12 +239,11 @@ def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
 
 
 def bound_places_off(records: Array, problem: Problem) -> Array:
-    """Return how far (N,) centres of locators may be off in mm, in contacts (N, 19) that know it of all pegs
-    alike.
+    """Return error bounds (N,) in mm of the locators' centres in contacts (N, 19); inf where not known.
 
-    Where a clamp grazes an arc, it is known badly, but the locators fix the part. Say their centres are
-    within r of where they belong. Then each is off the tangent there by no more than r^2 (1/R + 1/L) and its
-    rest. So the part is off by no more than that times the inverse of the locators' wrenches, a smaller r.
+    The records have one bound for all pegs. Where a clamp grazes an arc, that is poor, but the locators fix
+    the part. If centres are within r of their true places, each is off the tangent by at most r^2 (1/R + 1/L)
+    plus its residual, so the part is off by that times the inverse of the locators' wrenches, a smaller r.
     """
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH] * problem.wrench_length)
     off = np.asarray(records[:, record.LARGEST_RADIUS] + turn)
@@ -245,7 +258,7 @@ def bound_places_off(records: Array, problem: Problem) -> Array:
     rest = (np.abs(rests) + rounding).max(axis=1, initial=0.0)
     bent = 1.0 / radius.min(axis=1, initial=inf) + 1.0 / problem.wrench_length
     inverse = invert_locator_matrices(
-        wrenches(point, compute_outward_normals(rows, point), problem.wrench_length)
+        compute_wrenches(point, compute_outward_normals(rows, point), problem.wrench_length)
     )
     # A movement in mm and mm turned over L moves no centre by four times its largest entry.
     most = 4.0 * np.abs(inverse).sum(axis=2).max(axis=1, initial=0.0)
@@ -259,10 +272,15 @@ def bound_places_off(records: Array, problem: Problem) -> Array:
 def bound_keys(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> OrderKeys:
-    """Return the keys that no fixture has less than whose locators touch as those of records (N, 19) do.
+    """Return lower bounds, one row for each record (N, 19),
+    of the ranking keys of fixtures with its three locators.
 
-    A contact at a joint may be listed on either face; what is less counts. Places may be ``off`` by so many mm
-    (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where they are not known.
+    A contact at a joint may be listed on either face; the better one counts.
+
+    Parameters
+    ----------
+    off : (N,) error bounds of places, in mm.
+    pairs : (N, 3) bounds by the pairs of clamps; None where not known.
     """
     number, records = assign_contacts_to_faces(records, problem, LOCATORS)
     off, pairs = off[number], None if pairs is None else pairs[number]
@@ -278,17 +296,17 @@ def bound_keys(
 
 
 def compute_seen_angles(records: Array, problem: Problem) -> Array:
-    """Return the orientations (N,) of the part on the plate in radians."""
+    """Return the orientations (N,) of the part on the plate in radians, from records (N, 19)."""
     return np.asarray(problem.frame.quarters * (pi / 2) - records[:, record.PSI])
 
 
 def bound_error_factors(records: Array, off: Array, problem: Problem, query: Query) -> Array:
-    """Return the factors (N,) of the location error that are no larger than those of a fixture with these
-    locators.
+    """Return lower bounds (N,) of the factors on the location error of fixtures with the records' locators.
 
-    What the clamps do, and whether the part hangs over, can only make them larger.
+    Clamps and an overhanging part can only make the factors larger. ``off`` (N,) are error bounds of places
+    in mm.
     """
-    effective, c = EffectiveErrors.of(query), make_candidates(records, problem)
+    effective, c = EffectiveErrors.from_query(query), make_candidates(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
     angle = classify_angles(compute_seen_angles(records, problem), ANGLE)
     points = c.point[:, :LOCATORS] + np.asarray(problem.workpiece.center)
@@ -307,16 +325,19 @@ def bound_error_factors(records: Array, off: Array, problem: Problem, query: Que
 def bound_figures(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> Array:
-    """Return figures of quality (N, F) that no fixture with these locators exceeds.
+    """Return figures of quality (N, F) at least as good as those of any fixture with the records' locators.
 
-    NaN stands where nothing is known.
+    NaN as location error where nothing is known. ``off`` and ``pairs`` are as of :func:`bound_keys`.
     """
-    touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
+    touched = TouchableFeatures.from_workpiece(
+        problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length
+    )
     c = make_candidates(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
-    found = touched.locators(np.ascontiguousarray(c.point[:, :LOCATORS]), faces)
+    found = touched.compute_locators(np.ascontiguousarray(c.point[:, :LOCATORS]), faces)
     out = np.empty((len(records), len(FIGURES)))
-    # The kernel takes four contacts or more. The last has no say, and no other touches its face.
+    # The kernel takes at least four contacts; the fourth repeats the first but moves nothing and shares no
+    # face.
     four = [
         np.ascontiguousarray(values[:, [0, 1, 2, 0]])
         for values in (found.points, found.normals, found.ends, found.edges)
@@ -327,20 +348,21 @@ def bound_figures(
     rest = (
         touched.length,
         tolerances,
-        *extremes(problem.workpiece),
+        *find_silhouette_extremes(problem.workpiece),
         np.zeros((0, LOAD_LENGTH)),
         out,
         np.empty((10, 3)),
     )
     points, normals, to_ends, to_edges = four
-    figures(points, normals, to_ends, to_edges, inverses, alone, *rest)
+    write_figures(points, normals, to_ends, to_edges, inverses, alone, *rest)
     ends, edges = found.ends, found.edges
     norm = np.abs(inverses[:, :LOCATORS, :LOCATORS]).sum(axis=2).max(axis=1, initial=0.0)
-    # How far places may be off, and what that does to the inverse, to first order and generously.
+    # Error bounds of places, and the relative error of the inverse that they cause, to first order,
+    # generously.
     rows = problem.rows[c.feature[:, :LOCATORS]]
     curved = (1.0 / np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)).max(axis=1, initial=0.0)
     place = 4.0 * SAME_PLACE + 16.0 * off
-    # Beside a joint it may be off the feature that goes on there by as much as it is from it.
+    # Near a joint a contact may be off the next feature by its distance from the joint.
     nearest = np.abs(ends).min(axis=1, initial=inf)
     place = place + np.where(nearest <= NEAR_END, nearest, 0.0)
     share = SHARE + 8.0 * norm * place * (1.0 / touched.length + curved)
@@ -349,15 +371,15 @@ def bound_figures(
     end, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
     out = make_best_possible_figures(len(records), query)
     out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = end, np.minimum(edge, touched.length)
-    tilt = tilts(compute_seen_angles(records, problem), main_direction(problem.workpiece))
+    tilt = compute_tilts(compute_seen_angles(records, problem), find_main_direction(problem.workpiece))
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
     out[:, SMALLEST_FACE] = measure_faces(problem.workpiece).take(faces).min(axis=1, initial=inf)
     out[:, LOCATION_ERROR] = np.where(known, error, np.nan)
     if pairs is not None:
         for number, column in BOUNDED.items():
             out[:, number] = pairs[:, column]
-    judging = Judging.of(touched.length, query.toolkit, query.tolerance)
+    judging = JudgingLimits.from_toolkit(touched.length, query.toolkit, query.tolerance)
     near = is_near_edge(edges + place[:, None]).sum(axis=1)
     out[:, WARNINGS] = near + is_astray(error, judging.off) + is_strong(out[:, CLAMP_AMPLIFICATION])
-    out[:, PENALTY] = judging.penalty(out)
+    out[:, PENALTY] = judging.compute_penalty(out)
     return out

@@ -1,8 +1,8 @@
-"""Seats, all the clamps that may push there, and the pairs of clamps that close together and not alone.
+"""Seats, with all clamps that may push there, and the pairs of clamps that close together but not alone.
 
-A seat is locators, the faces they touch and the pose. Contacts of locators with one clamp
-(``listing.clamp_contacts``) that share their locators and the pose are one seat. With two clamps the pairs at
-each seat are counted, and the best is listed.
+A seat is a set of locators with the faces they touch and the pose. Contacts of locators with one clamp
+(``listing.clamp_contacts``) that have the same locators and pose belong to one seat. With two clamps the
+pairs at each seat are counted, and the best is listed.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from workhold.kernels.contact.clamp_pairs import (
     TIP,
     Clamps,
     Hardware,
-    pairs_of,
+    list_pairs,
 )
 from workhold.listing.asked import are_precise
 from workhold.listing.canonical_form import are_lowest, mark_changes, pack_integers, split_into_clusters
@@ -51,13 +51,13 @@ from workhold.listing.clamp_placement import (
 )
 from workhold.listing.identity import allows_half_turns
 from workhold.listing.ranking import measure_table_as_touched
-from workhold.listing.results import RankedTable, Work
+from workhold.listing.results import RankedTable, SearchWork
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.quality import CLAMP_FREEDOM
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import AT_AN_EDGE, Undecided
-from workhold.proof.deciding import BALLS, Account
+from workhold.model.search_report import AT_AN_EDGE, UndecidedCandidate
+from workhold.proof.deciding import BALLS, SearchReport
 
 if TYPE_CHECKING:
     from workhold.proof.ball_contacts import CandidateBox
@@ -70,18 +70,18 @@ IntArray = NDArray[np.int64]
 
 @define(frozen=True, eq=False)
 class Seats:
-    """S seats of L locators each, and their clamps; columns and rows as of
-    :class:`listing.clamp_contacts.ClampContacts`.
+    """S seats of L locators each, and their clamps; columns and
+    rows count as in :class:`listing.clamp_contacts.ClampContacts`.
 
     Parameters
     ----------
-    feature, column, row : (S, L) of the locators, in the order of columns and rows.
-    face : (S, 3) numbers of the faces that locators touch, those on a wall last.
-    theta : (S,) orientation of the workpiece on the plate in radians, in [0, 2 pi) up to a hair.
+    feature, column, row : (S, L) of the locators, sorted by column, then row.
+    face : (S, 3) numbers of the faces that locators and wall touch, those on a wall last.
+    theta : (S,) orientation of the part on the plate in radians, in [0, 2 pi) within rounding.
     point : (S, 2) a point of the part in its own coordinates, in mm.
-    start : (S, 2) the first locator's centre from that point, on the plate.
-    clamps : all clamps that may push there, but those that hold the part alone.
-    clamp_feature : (M,) of each clamp.
+    start : (S, 2) vector on the plate from that point to the first locator's centre.
+    clamps : all clamps that may push at each seat, without those that hold the part alone.
+    clamp_feature : (M,) index of the feature that each clamp touches.
     """
 
     feature: IntArray
@@ -99,7 +99,7 @@ class Seats:
 
     @property
     def spans(self) -> IntArray:
-        """The largest columns and rows (S, 2) of the locators."""
+        """Largest column and row (S, 2) of the locators."""
         return np.stack([self.column.max(axis=1, initial=0), self.row.max(axis=1, initial=0)], axis=1)
 
 
@@ -109,14 +109,14 @@ def make_seats(
     within: Sequence[tuple[float, float]] = ((-inf, inf),),
     is_limited: bool = False,
 ) -> Seats:
-    """Return the seats of the contacts of some directions.
+    """Return the seats that contacts of some directions make:
+    contacts with the same locators and pose are one seat.
 
     Parameters
     ----------
     parts : contacts of each direction.
-    problem : the search of one of them.
-    within : ranges of orientation in radians, from and up to but without the second, of the seats that are
-        wanted; others are left out, whole.
+    problem : of one of them.
+    within : ranges [low, high) of orientation in radians; seats in none of them are left out.
     is_limited : whether contacts were found up to a limit of the location error.
     """
     found = ClampContacts.concatenate(parts)
@@ -155,8 +155,10 @@ def make_seats(
 
 
 def make_clamp_columns(found: ClampContacts, seat: IntArray, count: int, problem: Problem) -> dict[str, Any]:
-    """Return the clamps of seats, each once, in the order of seats, directions, lines and features; ``seat``
-    (M,) is -1 for contacts that are left out.
+    """Return the fields ``clamps`` and ``clamp_feature`` of :class:`Seats`: each clamp once, seat by seat.
+
+    In a seat they are sorted by direction, line and feature. ``seat`` (M,) is the seat of each contact, -1 to
+    leave it out; ``count`` is the number of seats.
     """
     chosen = np.flatnonzero(seat >= 0)
     words = pack_integers(
@@ -174,8 +176,7 @@ def make_clamp_columns(found: ClampContacts, seat: IntArray, count: int, problem
     )
     clamp = np.empty(len(order), np.int64)
     clamp[order] = np.cumsum(fresh) - 1
-    # Of a tip at a joint the feature of the lowest number; then clamps by their features, and where they
-    # touch them.
+    # A tip at a joint is on the feature with the lowest index; clamps are sorted by feature, then by place.
     lowest = np.lexsort([found.clamp_feature[chosen], clamp])
     first = lowest[np.diff(clamp[lowest], prepend=-1) > 0]
     listed = np.lexsort(
@@ -211,10 +212,11 @@ class ClampedSeats:
     Parameters
     ----------
     query : what is asked, in a toolkit with two clamps.
-    problem : the search of one of its directions, for what all have in common.
+    problem : of one of its directions, for what all have in common.
     is_limited : whether only fixtures without a warning are of interest.
-    looked_at, seats, pairs : how many seats there were; how many, by pair of directions, two clamps close; in
-        how many ways.
+    looked_at : how many seats there were.
+    seats : at how many, counted for each pair of directions, two clamps hold the part.
+    pairs : how many such pairs of clamps there are.
     """
 
     query: Query
@@ -226,7 +228,7 @@ class ClampedSeats:
     looked_at: int = field(default=0, init=False)
     seats: int = field(default=0, init=False)
     pairs: int = field(default=0, init=False)
-    undecided: list[Undecided] = field(factory=list, init=False)
+    undecided: list[UndecidedCandidate] = field(factory=list, init=False)
 
     def __attrs_post_init__(self) -> None:
         self.toolkit, self.ranked = self.query.toolkit, RankedTable(self.query, self.problem)
@@ -244,32 +246,34 @@ class ClampedSeats:
 
     @property
     def turns_half(self) -> bool:
+        """Whether half a turn of everything leaves the toolkit as it is."""
         return allows_half_turns(self.toolkit)
 
     def mark_paired_seats(self, seats: Seats) -> IntArray:
-        """Return which seats (S,) are paired: 1 for those that are, else 0.
+        """Return (S,) 1 for seats whose opposite clamps are to be paired, else 0.
 
-        Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
-        paired.
+        Where half a turn carries the toolkit onto itself, these are the seats with an orientation in [0, pi),
+        as each other fixture with opposite clamps is one of these turned; else all.
         """
         return ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
 
-    def count(self, seats: Seats) -> int:
-        """Return how many fixtures seats have, as they are listed; pairs that hardly close count as well."""
+    def count_fixtures(self, seats: Seats) -> int:
+        """Return how many listed fixtures the seats have; pairs whose closure is undecided count as well."""
         every = self.query.listing == "all"
-        rows = pairs_of(seats.spans, self.mark_paired_seats(seats), seats.clamps, self.hardware, every)
+        rows = list_pairs(seats.spans, self.mark_paired_seats(seats), seats.clamps, self.hardware, every)
         if every:
             return int(rows[:, COUNT].sum())
         return self.count_held_seats(rows)
 
     def count_held_seats(self, rows: Array) -> int:
-        """Return how many seats, by pair of directions, are held in pairs (N, 10)."""
+        """Return how many different (seat, pair of directions) the pairs (N, 10) have."""
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
+        """Find the pairs of clamps at more seats; add their fixtures, counts and undecided pairs."""
         self.looked_at += len(seats)
         half, every = self.mark_paired_seats(seats), self.query.listing == "all"
-        rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+        rows = list_pairs(seats.spans, half, seats.clamps, self.hardware, every)
         if self.turns_half and (rows[:, OPEN] != 0.0).any():
             if self.query.best is not None and not every:
                 rows = self.select_of_interest(rows, seats)
@@ -277,7 +281,7 @@ class ClampedSeats:
                 kept[rows[:, SEAT].astype(np.int64)] = True
                 half[~kept] = -1
             seats = self.sharpen_seats(seats, rows[rows[:, OPEN] != 0.0])
-            rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
+            rows = list_pairs(seats.spans, half, seats.clamps, self.hardware, every)
         rows = self.select_precise(rows, seats)
         is_open = rows[:, OPEN] != 0.0
         self.undecided += list_undecided_pairs(self.make_table(rows[is_open], seats), self.toolkit)
@@ -287,17 +291,17 @@ class ClampedSeats:
         self.ranked.add(self.make_table(rows, seats))
 
     def select_precise(self, rows: Array, seats: Seats) -> Array:
-        """Return the pairs (N, 10) at seats with no larger location error than asked, which is that of the locators."""
+        """Return the pairs (N, 10) at seats whose location error is no larger than the query allows."""
         if self.query.max_location_error is None or not len(rows):
             return rows
         table = measure_table_as_touched(self.make_table(rows, seats), self.query, self.ranked.touched)
         return np.asarray(rows[are_precise(table, self.query)])
 
     def select_of_interest(self, rows: Array, seats: Seats) -> Array:
-        """Return the pairs (N, 10) of seats that may be among the best.
+        """Return the pairs (N, 10) at seats that may be among the best.
 
-        A pair that is open hardly closes. So it has a warning, and is not the best of a seat that has
-        another one.
+        An undecided pair hardly closes, so it has a warning, and is not the best of a seat that has another
+        pair.
         """
         seat, is_open = rows[:, SEAT].astype(np.int64), rows[:, OPEN] != 0.0
         known, has_one = rows[~is_open], np.zeros(len(seats), np.bool_)
@@ -310,7 +314,9 @@ class ClampedSeats:
         return rows[wanted[seat]]
 
     def sharpen_seats(self, seats: Seats, rows: Array) -> Seats:
-        """Return the seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
+        """Return the seats with the reactions to the clamps
+        of some pairs (N, 10) computed in ball arithmetic.
+        """
         from workhold.proof.exact_contacts import bound_reactions
 
         reals = seats.clamps.reals.copy()
@@ -324,8 +330,9 @@ class ClampedSeats:
         return evolve(seats, clamps=seats.clamps._replace(reals=reals))
 
     def make_candidate_box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
-        """Return a seat and one of its clamps as contacts in the frame in which the clamp's travel is counted
-        along x.
+        """Return a seat and one of its clamps, by their indices, as a box about the solution.
+
+        Its frame has the clamp's travel along +x.
         """
         pitch, integers = np.array(self.toolkit.carriers[0].pitch), seats.clamps.integers[clamp]
         carrier = self.toolkit.find_carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
@@ -344,8 +351,8 @@ class ClampedSeats:
         return make_box_beside(features, offsets, middle, self.problem)
 
     def make_table(self, rows: Array, seats: Seats) -> FixtureTable:
-        """Return the pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom
-        are known.
+        """Return the pairs (N, 10) as a table in holes of the plate,
+        with closure margin and clamp freedom as only figures.
         """
         seat, clamp = rows[:, SEAT].astype(np.int64), rows[:, [CLAMPS, CLAMPS + 1]].astype(np.int64)
         direction, reals = seats.clamps.integers[clamp, DIRECTION], seats.clamps.reals[clamp]
@@ -375,8 +382,11 @@ class ClampedSeats:
         )
 
     def find_holes(self, rows: Array, seats: Seats) -> tuple[IntArray, IntArray, IntArray]:
-        """Return the columns and rows (N, 5) of pairs (N, 10), and the lowest of each (N, 2) as seats and
-        clamps count them.
+        """Return columns (N, 5), rows (N, 5), and the lowest
+        column and row (N, 2) that were subtracted from them.
+
+        The contacts of a pair are in the order locators, wall ends, clamps; rows beside a wall are not
+        shifted.
         """
         seat, clamp, bolted = (
             rows[:, columns].astype(np.int64) for columns in (SEAT, [CLAMPS, CLAMPS + 1], [HOLES, HOLES + 1])
@@ -405,16 +415,18 @@ class ClampedSeats:
         )
         return column, row, lowest
 
-    def make_result(self, account: Account, work: Work) -> Result:
+    def make_result(self, account: SearchReport, work: SearchWork) -> Result:
+        """Return the result of all seats added, with undecided pairs in the report."""
         account = evolve(account, undecided=(*account.undecided, *self.undecided))
         result = self.ranked.make_result(account, work)
         return result if self.ranked.has_dropped else evolve(result, pairs=self.pairs, seats=self.seats)
 
 
-def list_undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
+def list_undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[UndecidedCandidate]:
+    """Return the fixtures of a table as entries of the search report for undecided candidates."""
     columns = table.arrangement, table.face, table.column, table.row, np.degrees(table.theta) % 360.0
     return [
-        Undecided(
+        UndecidedCandidate(
             toolkit.arrangements[kind].title, tuple(face), tuple(column), tuple(row), angle, AT_AN_EDGE, 0.0
         )
         for kind, face, column, row, angle in zip(*(values.tolist() for values in columns), strict=True)
@@ -422,8 +434,10 @@ def list_undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecide
 
 
 def compute_line_height(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
-    """Return the height in mm of a clamp's line above the first locator (2,), in the frame that ``turn`` (2,
-    2) leads to.
+    """Return the height in mm of a clamp's line above the
+    first locator (2,), in the frame turned by ``turn`` (2, 2).
+
+    ``integers`` is the clamp's row of integers.
     """
     upright = bool(is_upright(integers[DIRECTION]))
     away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]

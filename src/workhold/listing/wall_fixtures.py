@@ -1,7 +1,7 @@
 """Fixtures of a part that lies flush on a wall, with a locator and a clamp: each once, in the holes of the
 plate.
 
-Rows count from the wall, so a clamp is bolted in none below row 0.
+Rows count from the wall, so no clamp is bolted below row 0.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.listing.canonical_form import Rows
+from workhold.listing.canonical_form import RowArrays
 from workhold.listing.clamp_placement import ClampPlacement, find_axis, find_last_holes, is_bolted
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 
@@ -27,7 +27,7 @@ BoolArray = NDArray[np.bool_]
 
 
 @define(frozen=True, eq=False)
-class WallFixtures(Rows):
+class WallFixtures(RowArrays):
     """N pairs of locator and clamp that press the part against the wall.
 
     Places are in the wall's frame, in mm: u along the hull edge from its start, v up from it.
@@ -35,12 +35,13 @@ class WallFixtures(Rows):
     Parameters
     ----------
     edge : (N,) number of the hull edge that lies on the wall.
-    row, line : (N,) row of the locator; row of the clamp, or its column counted from the locator's.
+    row : (N,) row of the locator.
+    line : (N,) row of the clamp, or its column relative to the locator's.
     locator, tip : (N, 2) centres.
-    feature : (N, 2) touched by locator and clamp.
+    feature : (N, 2) indices of the features touched by locator and clamp.
     null : (N, 4) null vectors of the wall's two ends, locator and clamp, not scaled.
-    push : (N,) part of its force that the clamp passes on along its direction.
-    doubt : (N,) by how much entries of the null vector may be off, where that matters: of one of two clamps.
+    push : (N,) share of its force that the clamp passes on along its direction.
+    doubt : (N,) error bounds of entries of the null vector, with two clamps; else 0.
     """
 
     edge: IntArray
@@ -54,19 +55,19 @@ class WallFixtures(Rows):
     doubt: Array = field()
 
     @doubt.default
-    def none(self) -> Array:
-        """No doubt."""
+    def make_zero_doubt(self) -> Array:
+        """Return zeros (N,), for no doubt."""
         return np.zeros(len(self.edge))
 
     def list_each_once(self) -> WallFixtures:
-        """Return one of the fixtures that are the same: a contact at a tangent joint is found on both
-        features that meet there.
+        """Return the fixtures without repetitions: a contact
+        at a tangent joint is found on both features there.
         """
         place = self.locator[:, 0] + self.tip @ np.array([0.7548776662, 0.5698402910])
         return self.take(find_first_of_each((self.edge, self.row, self.line), place, self.feature))
 
     def make_clamp_placement(self, problem: Problem) -> ClampPlacement:
-        """Return where the clamps may be bolted; columns count from the locator's."""
+        """Return the placement problem of the clamps; columns count from the locator's."""
         plate, clamp, flush = problem.toolkit.carriers[0], problem.toolkit.moving, problem.workpiece.flush
         assert clamp.travel is not None
         columns, rows = find_last_holes(plate)
@@ -91,14 +92,14 @@ class WallFixtures(Rows):
 
 
 def find_first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
-    """Return the first, by its features, of the fixtures that agree in whole numbers and in place, as their
-    numbers.
+    """Return the indices of one fixture of each set that agrees
+    in integers and place, that with the lowest features.
 
     Parameters
     ----------
-    columns : whole numbers (N,) that name fixtures.
-    place : (N,) one number that mixes all places, as in ``canonical_form.list_each_once``.
-    feature : (N, 2) touched.
+    columns : integers, each (N,), that identify fixtures.
+    place : (N,) one number in mm that mixes all places, as in ``canonical_form.list_each_once``.
+    feature : (N, 2) features touched.
     """
     order = np.lexsort([place, *columns[::-1]])
     new = np.ones(len(order), np.bool_)
@@ -110,13 +111,14 @@ def find_first_of_each(columns: Sequence[IntArray], place: Array, feature: IntAr
 
 
 def turn_points(points: Array, angle: Array) -> Array:
-    """Return the points (N, 2) turned by angles (N,)."""
+    """Return the points (N, 2) turned about the origin by angles (N,) in radians, counter-clockwise."""
     return np.stack(rotate_vectors(points[:, 0], points[:, 1], angle), axis=1)
 
 
 def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> FixtureTable:
-    """Return the table of fixtures whose clamps are in these holes (N,); of their quality only the closure
-    margin is known yet.
+    """Return the table of fixtures whose clamps are in holes (N,) of their lines.
+
+    Of the figures of quality only the closure margin is known, the others are NaN.
     """
     clamp, flush, count = problem.toolkit.moving, problem.workpiece.flush, len(found)
     column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
@@ -129,7 +131,7 @@ def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fi
     across = column[:, 0] * clamp.pitch[0] - found.locator[:, 0]
     theta = flush.theta[found.edge]
     position = np.stack([across, np.zeros(count)], axis=1) - turn_points(flush.ends[found.edge, 0], theta)
-    x, y = clamp.place(column[:, 3], row[:, 3])
+    x, y = clamp.compute_hole_center(column[:, 3], row[:, 3])
     unit = clamp.travel.unit if clamp.travel is not None else (0.0, 0.0)
     # The locator is listed before the ends of the wall, the clamp after them.
     null = found.null[:, [2, 0, 1, 3]]
@@ -150,7 +152,7 @@ def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fi
 
 
 def place_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
-    """Return the table of the fixtures whose clamps have a place, each once."""
+    """Return the table of those fixtures whose clamps have a place, each once."""
     found = found.list_each_once()
     hole, fits = found.make_clamp_placement(problem).find_nearest_holes(problem)
     return make_wall_table(found.take(fits), hole[fits], problem)

@@ -25,7 +25,7 @@ from workhold.geometry.loop import LoopShape, compute_signed_area, encloses
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
-from workhold.model.shown import MOST_HOLES, Shown, ShownCarrier, shown
+from workhold.model.shown import MOST_HOLES, ShownCarrier, ShownSetUp, find_shown
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -54,7 +54,7 @@ FILM = 1e-3
 
 
 class BodyKind(StrEnum):
-    """What a body is."""
+    """Kind of a body, which gives it its colour."""
 
     PART = "part"
     PEG = "peg"
@@ -134,7 +134,7 @@ class BodySizes:
     support_height: float = 0.0
 
     @classmethod
-    def of(
+    def from_workpiece(
         cls,
         workpiece: Workpiece,
         thickness: float | None = None,
@@ -143,7 +143,11 @@ class BodySizes:
         peg_height: float | None = None,
         support_height: float = 0.0,
     ) -> BodySizes:
-        """Fills in what nobody says: heights of the part's solid, else the usual thickness.
+        """Return all heights in mm, a default for each that is None.
+
+        Defaults: the thickness is the height of the part's solid, else :data:`THICKNESS`; the plates' is
+        :data:`THICKNESS`; pegs reach up to ``solid.peg_height``, no higher than the part, else to the part's
+        top; a peg reaches from there down to the lower side of its plate.
 
         Raises
         ------
@@ -171,11 +175,17 @@ class BodySizes:
 
     @property
     def floor(self) -> float:
-        """The height of the plates' upper sides, 0 or below."""
+        """z of the plates' upper sides in mm:
+        minus the support height, 0 where the part lies on the plates.
+        """
         return 0.0 - self.support_height
 
-    def between(self, carrier: Carrier) -> tuple[float, float]:
-        """The heights between which a clamp or a wall stands: its own, or from the plate up."""
+    def find_height_range(self, carrier: Carrier) -> tuple[float, float]:
+        """Return z in mm of the lower and the upper end of a clamp or a wall.
+
+        They are the carrier's own ``heights``, else 0 and ``others``. A lower end at or below 0 is moved to
+        the plates' upper sides.
+        """
         low, high = carrier.heights or (0.0, self.others)
         return (low if low > 0.0 else self.floor), high
 
@@ -187,11 +197,12 @@ def list_fixture_bodies(
     sizes: BodySizes | None = None,
     more: Sequence[FixtureBody] = (),
 ) -> tuple[FixtureBody, ...]:
-    """All bodies of a fixture: the part, pegs, clamps with their bolts, walls, plates, then what is added.
+    """Return all bodies of a fixture: the part, pegs,
+    clamps each followed by its bolt, flat jaws, walls, plates, ``more``.
 
     Parameters
     ----------
-    sizes : heights; those of :meth:`BodySizes.of` if None.
+    sizes : heights; those of :meth:`BodySizes.from_workpiece` if None.
     more : further bodies, such as supports under the part.
 
     Raises
@@ -204,20 +215,20 @@ def list_fixture_bodies(
         raise InputError(
             f"pegs of radius 0 have no body to write or show: give the {toolkit.noun} a peg radius."
         )
-    sizes = BodySizes.of(workpiece) if sizes is None else sizes
-    seen = shown(fixture, toolkit, workpiece)
-    part = make_part_slabs(workpiece.placed(fixture.pose), sizes.thickness)
+    sizes = BodySizes.from_workpiece(workpiece) if sizes is None else sizes
+    seen = find_shown(fixture, toolkit, workpiece)
+    part = make_part_slabs(workpiece.apply_pose(fixture.pose), sizes.thickness)
     name = make_printable(shorten_middle(workpiece.name, LONGEST_NAME))
     return (
         FixtureBody(name, BodyKind.PART, part),
-        *pegs(seen, sizes),
-        *clamps(seen, sizes),
-        *flat_jaws(seen, fixture, toolkit, sizes),
+        *make_peg_bodies(seen, sizes),
+        *make_clamp_bodies(seen, sizes),
+        *make_flat_jaw_bodies(seen, fixture, toolkit, sizes),
         *(
             FixtureBody(
                 wall.carrier.noun,
                 BodyKind.WALL,
-                (Slab(rectangle(wall.bar), (), *sizes.between(wall.carrier)),),
+                (Slab(make_rectangle(wall.bar), (), *sizes.find_height_range(wall.carrier)),),
             )
             for wall in seen.walls
         ),
@@ -225,7 +236,7 @@ def list_fixture_bodies(
             FixtureBody(
                 each.carrier.title,
                 BodyKind.PLATE,
-                (drilled(each, sizes.plate_thickness, sizes.floor),),
+                (make_drilled_plate(each, sizes.plate_thickness, sizes.floor),),
                 find_opening_direction(each),
             )
             for each in seen.carriers
@@ -235,11 +246,14 @@ def list_fixture_bodies(
 
 
 def make_part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:
-    """A part as a prism over each of its outer loops, with the holes directly in it."""
-    outer = [LoopShape.of(loop) for loop in part.loop_segments[: part.pieces]]
+    """Return one slab from z = 0 to the thickness (mm) for each outer loop of a part.
+
+    A hole belongs to the smallest outer loop around it.
+    """
+    outer = [LoopShape.from_segments(loop) for loop in part.loop_segments[: part.pieces]]
     holes: list[list[Loop]] = [[] for _ in outer]
     for hole in part.hole_segments:
-        shape = LoopShape.of(hole)
+        shape = LoopShape.from_segments(hole)
         around = [k for k, one in enumerate(outer) if encloses(one, shape)]
         holes[min(around, key=lambda k: abs(compute_signed_area(outer[k].segments)))].append(hole)
     return tuple(
@@ -248,17 +262,21 @@ def make_part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:
 
 
 def find_opening_direction(carrier: ShownCarrier) -> Point | None:
-    """The direction in which a carrier moves when it is opened."""
+    """Return the unit vector along which a carrier moves when the toolkit is opened;
+    None where it does not clamp.
+    """
     return None if carrier.clamping is None else reverse(carrier.clamping)
 
 
 def reverse(direction: Point) -> Point:
-    """The opposite direction, without a zero that has a sign."""
+    """Return the opposite direction, with 0.0 in place of -0.0."""
     return 0.0 - direction[0], 0.0 - direction[1]
 
 
-def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
-    """The pegs: round in their holes, and above the plate as their flats leave them."""
+def make_peg_bodies(seen: ShownSetUp, sizes: BodySizes) -> Iterator[FixtureBody]:
+    """Yield the pegs of all carriers:
+    full cylinders inside the plate, above it the outline with the flat, if any.
+    """
     for each in seen.carriers:
         carrier = each.carrier
         for peg in each.pegs:
@@ -276,10 +294,12 @@ def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
             )
 
 
-def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
-    """The clamps that are bolted to a plate, each before its bolt."""
+def make_clamp_bodies(seen: ShownSetUp, sizes: BodySizes) -> Iterator[FixtureBody]:
+    """Yield the clamps that are bolted to a plate,
+    each followed by its bolt where the bolt's hole is known.
+    """
     for clamp in seen.clamps:
-        body = Slab(clamp.outline(), (), *sizes.between(clamp.carrier))
+        body = Slab(clamp.make_outline(), (), *sizes.find_height_range(clamp.carrier))
         yield FixtureBody(clamp.tip.hole, BodyKind.CLAMP, (body,), reverse(clamp.clamping))
         if clamp.hole is not None:
             round_part = tuple(make_peg_outline(clamp.hole, seen.carriers[0].carrier.peg_radius))
@@ -288,43 +308,48 @@ def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
             yield FixtureBody(f"bolt {place}", BodyKind.CLAMP, (bolt,))
 
 
-def flat_jaws(seen: Shown, fixture: Fixture, toolkit: Toolkit, sizes: BodySizes) -> Iterator[FixtureBody]:
-    """Two flat jaws with the parallels between them and the work stop, and the bed that they stand on."""
+def make_flat_jaw_bodies(
+    seen: ShownSetUp, fixture: Fixture, toolkit: Toolkit, sizes: BodySizes
+) -> Iterator[FixtureBody]:
+    """Yield fixed jaw, moving jaw, parallels, work stop (if any) and bed;
+    nothing where a fixture has no flat jaws.
+    """
     jaws, hold = toolkit.flat_jaws, fixture.hold
     if seen.jaws is None or jaws is None or not isinstance(hold, JawHold):
         return
     low = 0.0 - hold.parallels
     top = sizes.top if jaws.height is None else jaws.compute_top(hold.parallels)
-    around = seen.jaws.fixed.union(seen.jaws.moving)
-    bed = Slab(rectangle(around), (), low - sizes.plate_thickness, low)
-    yield FixtureBody("fixed jaw", BodyKind.WALL, (Slab(rectangle(seen.jaws.fixed), (), low, top),))
+    around = seen.jaws.fixed.unite(seen.jaws.moving)
+    bed = Slab(make_rectangle(around), (), low - sizes.plate_thickness, low)
+    yield FixtureBody("fixed jaw", BodyKind.WALL, (Slab(make_rectangle(seen.jaws.fixed), (), low, top),))
     yield FixtureBody(
-        "moving jaw", BodyKind.WALL, (Slab(rectangle(seen.jaws.moving), (), low, top),), (0.0, 1.0)
+        "moving jaw", BodyKind.WALL, (Slab(make_rectangle(seen.jaws.moving), (), low, top),), (0.0, 1.0)
     )
     for number, box in enumerate(seen.jaws.parallels, 1):
-        yield FixtureBody(f"parallel {number}", BodyKind.WALL, (Slab(rectangle(box), (), low, 0.0),))
+        yield FixtureBody(f"parallel {number}", BodyKind.WALL, (Slab(make_rectangle(box), (), low, 0.0),))
     if seen.jaws.stop is not None:
-        stop = Slab(rectangle(seen.jaws.stop), (), 0.0, min(top, sizes.thickness))
+        stop = Slab(make_rectangle(seen.jaws.stop), (), 0.0, min(top, sizes.thickness))
         yield FixtureBody("work stop", BodyKind.CLAMP, (stop,))
     yield FixtureBody("bed of the vise", BodyKind.PLATE, (bed,))
 
 
-def rectangle(box: Box) -> Loop:
-    """The sides of a box, counter-clockwise."""
+def make_rectangle(box: Box) -> Loop:
+    """Return the four sides of a box, counter-clockwise, beginning with the lower one."""
     corners = [(box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1)]
     return tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
 
 
-def drilled(carrier: ShownCarrier, thickness: float, top: float = 0.0) -> Slab:
-    """A plate with its holes, its upper side at z = ``top``.
+def make_drilled_plate(carrier: ShownCarrier, thickness: float, top: float = 0.0) -> Slab:
+    """Return a plate with its holes as a slab from z = ``top - thickness`` to ``top``, in mm.
 
-    Plates that nearly meet leave no material around the holes of their last columns: these are notches.
+    A hole that reaches over the border of the plate, as in the last columns of plates that nearly meet,
+    becomes a round notch in the border.
     """
     box, radius = carrier.plate, carrier.carrier.peg_radius
     radius = min(radius, min(carrier.carrier.pitch) / 2 - FILM)
     holes: list[Loop] = []
     notches: dict[int, list[tuple[Point, float]]] = {side: [] for side in range(4)}
-    for hole in carrier.holes(MOST_HOLES):
+    for hole in carrier.list_holes(MOST_HOLES):
         x, y = hole.center
         room = (y - box.y0, box.x1 - x, box.y1 - y, x - box.x0)
         own = radius - 2 * FILM if any(abs(far - radius) < FILM for far in room) else radius
@@ -333,16 +358,17 @@ def drilled(carrier: ShownCarrier, thickness: float, top: float = 0.0) -> Slab:
             holes.append((Arc((x, y), own, 0.0, pi, -1.0),))
         else:
             notches[side].append(((x, y), own))
-    return Slab(notched(box, notches), tuple(holes), top - thickness, top)
+    return Slab(make_notched_loop(box, notches), tuple(holes), top - thickness, top)
 
 
-def notched(box: Box, notches: dict[int, list[tuple[Point, float]]]) -> Loop:
-    """The sides of a box, counter-clockwise from the lower one, with round notches from discs over them.
+def make_notched_loop(box: Box, notches: dict[int, list[tuple[Point, float]]]) -> Loop:
+    """Return the border of a box, counter-clockwise from its lower side, with round notches cut by discs.
 
-    ``notches`` has, by the number of the side, discs that are apart: centres within the box and radii in mm.
+    ``notches[k]`` lists the centres and radii, in mm, of the discs over side k: 0 lower, 1 right, 2 upper, 3
+    left. The discs are disjoint and their centres lie within the box.
     """
     border: list[Segment] = []
-    for number, side in enumerate(rectangle(box)):
+    for number, side in enumerate(make_rectangle(box)):
         assert isinstance(side, Line)
         (tx, ty), (sx, sy) = side.tangent, side.start
         at = side.start
@@ -354,15 +380,16 @@ def notched(box: Box, notches: dict[int, list[tuple[Point, float]]]) -> Loop:
             half = (radius**2 - away**2) ** 0.5
             begin, end = ((sx + (along + k) * tx, sy + (along + k) * ty) for k in (-half, half))
             # The disc reaches over the side by less than its half: what is left inside is the larger arc.
-            arc = Arc(center, radius, *inner_arc(side, away / radius), -1.0)
+            arc = Arc(center, radius, *compute_inner_arc(side, away / radius), -1.0)
             border += [Line(at, begin), arc]
             at = end
         border.append(Line(at, side.end))
     return tuple(border)
 
 
-def inner_arc(side: Line, share: float) -> tuple[float, float]:
-    """Middle angle and half the sweep, in radians, of a disc's border on the left of a line.
+def compute_inner_arc(side: Line, share: float) -> tuple[float, float]:
+    """Return the middle angle and half the sweep, in radians,
+    of that arc of a circle that lies left of a line.
 
     Parameters
     ----------

@@ -30,8 +30,8 @@ __all__ = [
     "find_clamping_direction",
     "name_first_clamps",
     "describe_clamp_freedom",
-    "order_words",
-    "ratios",
+    "describe_tightening_order",
+    "compute_force_ratios",
     "compute_clamp_force_ratio",
     "list_shown_clamps",
     "compute_working_forces",
@@ -42,9 +42,10 @@ Array = NDArray[np.float64]
 LOCATORS = 3
 
 
-def ratios(reactions: Array) -> tuple[Array, Array]:
-    """The ends (N,) of the open interval of f2 / f1 in which all locators are pressed; the upper may be
-    infinite.
+def compute_force_ratios(reactions: Array) -> tuple[Array, Array]:
+    """Return lower and upper ends (N,) of the open interval of f2 / f1 in which all locators are pressed.
+
+    The lower end is at least 0, the upper may be inf. The interval is empty where low >= high.
 
     Parameters
     ----------
@@ -68,13 +69,16 @@ def ratios(reactions: Array) -> tuple[Array, Array]:
 
 
 def compute_working_forces(reactions: Array) -> Array:
-    """Forces (N, P) of all pegs per unit of f1 + f2 at the working ratio, the interval's middle angle.
+    """Return forces (N, P) of all pegs, divided by f1 + f2,
+    at the working ratio f2 / f1 of each of N fixtures.
+
+    As an angle, the working ratio is the middle of the interval of :func:`ratios`.
 
     Parameters
     ----------
     reactions : (N, P, 2) forces per unit of f1 and of f2.
     """
-    low, high = ratios(reactions)
+    low, high = compute_force_ratios(reactions)
     angle = (np.arctan(low) + np.arctan(high)) / 2
     one, two = np.cos(angle), np.sin(angle)
     return np.asarray(
@@ -84,7 +88,7 @@ def compute_working_forces(reactions: Array) -> Array:
 
 @frozen
 class ShownClamp:
-    """What shows of a clamp; lengths in mm.
+    """A clamp that is bolted to a plate, as pictures show it; lengths in mm.
 
     Parameters
     ----------
@@ -104,20 +108,23 @@ class ShownClamp:
 
     @property
     def is_upright(self) -> bool:
-        """Whether it pushes along a column rather than a row."""
+        """Whether the clamp pushes along a column (parallel to y) rather than along a row."""
         return self.clamping[0] == 0
 
     @property
     def back(self) -> Point:
-        """Where its body begins: the hole, or the tip where that is all that is known."""
+        """Point at which the body begins:
+        the centre of the bolt's hole, or of the tip where no hole is known.
+        """
         return self.hole or (self.tip.x, self.tip.y)
 
-    def outline(self, more: float = 0.0) -> tuple[Segment, ...]:
-        """The outline of the body, counter-clockwise: a capsule from hole to tip, or the tip's circle alone.
+    def make_outline(self, more: float = 0.0) -> tuple[Segment, ...]:
+        """Return the outline of the body, counter-clockwise:
+        a capsule from hole to tip, or the tip's circle if there is no hole.
 
         Parameters
         ----------
-        more : how much larger the outline is than the body, in mm.
+        more : by how much the outline is offset outward from the body, in mm.
         """
         (ax, ay), (bx, by), radius = self.back, (self.tip.x, self.tip.y), self.carrier.peg_radius + more
         length = hypot(bx - ax, by - ay)
@@ -133,36 +140,40 @@ class ShownClamp:
 
     @property
     def extent(self) -> Box:
+        """Bounding box of the body."""
         one, other = (
-            Box(x, y, x, y).grown(self.carrier.peg_radius) for x, y in (self.back, (self.tip.x, self.tip.y))
+            Box(x, y, x, y).grow(self.carrier.peg_radius) for x, y in (self.back, (self.tip.x, self.tip.y))
         )
-        return one.union(other)
+        return one.unite(other)
 
     @property
     def room(self) -> Box:
-        """The box of the body and one pitch behind it, for the hand that sets it and the arrow of its
-        direction.
+        """Bounding box of the body and of the point one pitch behind it:
+        space for a hand and for the arrow.
         """
-        behind = self.behind(self.pitch)
-        return self.extent.union(Box(*behind, *behind))
+        behind = self.compute_point_behind(self.pitch)
+        return self.extent.unite(Box(*behind, *behind))
 
-    def behind(self, away: float, aside: float = 0.0) -> Point:
-        """A point so far behind the hole, or the tip, and beside its line."""
+    def compute_point_behind(self, away: float, aside: float = 0.0) -> Point:
+        """Return the point ``away`` mm behind the hole (or the tip)
+        against the clamping direction, and ``aside`` mm to its left.
+        """
         (x, y), (dx, dy) = self.back, self.clamping
         return x - away * dx - aside * dy, y - away * dy + aside * dx
 
 
 def list_shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
+    """Yield the clamps of a fixture that have a tip and a clamping direction, in the order of its pegs."""
     for peg in fixture.pegs:
         carrier = toolkit.find_carrier(peg.carrier)
         clamping = find_clamping_direction(carrier, toolkit)
         if carrier.contact is CLAMP_TIP and clamping is not None:
-            hole = carrier.place(peg.column, peg.row) if carrier.measure == "stroke" else None
+            hole = carrier.compute_hole_center(peg.column, peg.row) if carrier.measure == "stroke" else None
             yield ShownClamp(carrier, peg, hole, clamping, carrier.pitch[0 if carrier.line == "row" else 1])
 
 
 def find_clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
-    """Along which a carrier slides when it clamps, a unit vector; None when it stands still."""
+    """Return the unit vector along which a carrier pushes when it clamps; None where it does not move."""
     if carrier.travel is None:
         return None
     x, y = carrier.travel.unit
@@ -174,7 +185,11 @@ DIGITS = 2
 
 
 def name_clamps(fixture: Fixture) -> tuple[str, ...]:
-    """Names of a fixture's clamps: their holes or lines, with directions where both are on one line."""
+    """Return names of a fixture's clamps, the last two of its pegs: the names of their holes or lines.
+
+    Where both have the same hole or line, the direction is added, or the face where the directions agree as
+    well.
+    """
     tips = fixture.pegs[-2:]
     holes = [tip.hole for tip in tips]
     if len(set(holes)) == len(holes):
@@ -186,7 +201,11 @@ def name_clamps(fixture: Fixture) -> tuple[str, ...]:
 
 
 def name_first_clamps(fixture: Fixture) -> tuple[str, ...]:
-    """Names of those of two clamps that may be tightened first, as they lift the part off no locator."""
+    """Return names of the clamps that may be tightened first without lifting the part:
+    none, one or both of two.
+
+    Return an empty tuple for a fixture without a pair of clamps.
+    """
     if fixture.pair is None:
         return ()
     low, high = fixture.pair.ratio
@@ -196,26 +215,28 @@ def name_first_clamps(fixture: Fixture) -> tuple[str, ...]:
 
 
 def compute_clamp_force_ratio(fixture: Fixture) -> float:
-    """The second clamp's force over the first's at the working ratio; 0 where one thing clamps."""
+    """Return f2 / f1 of a pair of clamps at the working ratio; 0.0 where the fixture has no pair."""
     return 0.0 if fixture.pair is None else fixture.pair.working_ratio
 
 
 def compute_clamp_shares(fixture: Fixture) -> tuple[float, ...]:
-    """The part of the clamp force, of two the sum of both, that each clamp has at the working ratio."""
+    """Return each clamp's share of the sum of the clamp forces at the working ratio:
+    (1.0,) for one, two for a pair.
+    """
     ratio = compute_clamp_force_ratio(fixture)
     return (1.0 / (1.0 + ratio), ratio / (1.0 + ratio))[: len(fixture.travels)]
 
 
-def order_words(fixture: Fixture) -> str:
-    """How to tighten the two clamps, one or two sentences; nothing for other fixtures.
+def describe_tightening_order(fixture: Fixture) -> str:
+    """Return one or two sentences on how to tighten a pair of clamps; "" for a fixture without a pair.
 
     Examples
     --------
-    >>> from workhold.model.fixture import Pair, Peg, Pose
+    >>> from workhold.model.fixture import ClampPair, Peg, Pose
     >>> where = ("-x", "E2"), ("-y", "C5")
     >>> tips = [Peg(f"clamp {d}", 4, 1, 66.0, 20.0, 2, 0.5, f"clamp {hole}") for d, hole in where]
     >>> def words(low, high):
-    ...     pair = Pair((0, 0), (low, high), (), 1)
+    ...     pair = ClampPair((0, 0), (low, high), (), 1)
     ...     return order_words(Fixture("clamp2", tuple(tips), Pose(0, 0, 0), 0, {}, "-x -y", pair))
     >>> words(0.0, float("inf"))
     'Tighten either clamp first, each as hard as it needs: neither lifts the part off a locator.'
@@ -231,18 +252,18 @@ def order_words(fixture: Fixture) -> str:
     if low == 0.0 or high == inf:
         one, other, most = (first, second, high) if low == 0.0 else (second, first, 1.0 / low)
         return (
-            f"Tighten {one} first. Then tighten {other} with less than {inside(most, floor)} times its "
+            f"Tighten {one} first. Then tighten {other} with less than {round_ratio_inward(most, floor)} times its "
             "force: more lifts the part off a locator."
         )
     return (
-        f"Bring both clamps up together, in small turns: {second} with {inside(low, ceil)} to "
-        f"{inside(high, floor)} times the force of {first}. Tighten neither alone: it lifts the "
+        f"Bring both clamps up together, in small turns: {second} with {round_ratio_inward(low, ceil)} to "
+        f"{round_ratio_inward(high, floor)} times the force of {first}. Tighten neither alone: it lifts the "
         "part off a locator."
     )
 
 
 def describe_clamp_freedom(degrees: float) -> str:
-    """What a clamp freedom means.
+    """Return in words what a clamp freedom in degrees means for the tightening.
 
     >>> describe_clamp_freedom(90.0)
     'the part is held whatever the two forces are'
@@ -263,8 +284,8 @@ def describe_clamp_freedom(degrees: float) -> str:
 EASY = 45.0
 
 
-def inside(ratio: float, towards: type[int] | object) -> str:
-    """A ratio to two digits, rounded up by ``ceil`` or down by ``floor``."""
+def round_ratio_inward(ratio: float, towards: type[int] | object) -> str:
+    """Return a positive ratio as text with two digits: rounded down if ``towards`` is ``floor``, else up."""
     step = 10.0 ** (floor(log10(ratio)) - DIGITS + 1)
     whole = floor(ratio / step) if towards is floor else ceil(ratio / step)
     return f"{whole * step:.{DIGITS}g}" if 1e-4 < ratio < 100 else f"{whole * step:,.4g}"

@@ -33,9 +33,17 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.limits import convert_real, refuse_strong
 from workhold.model.cutting_tool import ANY, DIRECTIONS, CuttingData, CuttingDirection, Tool
-from workhold.model.moves import Moves, Stretches, floats, integers
+from workhold.model.moves import Moves, MoveStretches, to_floats, to_integers
 
-__all__ = ["CUT_KINDS", "DRILLING", "MILLING", "NO_CUT", "PLUNGING", "CuttingForces", "forces_on"]
+__all__ = [
+    "CUT_KINDS",
+    "DRILLING",
+    "MILLING",
+    "NO_CUT",
+    "PLUNGING",
+    "CuttingForces",
+    "compute_cutting_forces",
+]
 
 Floats = NDArray[np.float64]
 SAME = cmp_using(eq=np.array_equal)
@@ -52,8 +60,8 @@ NO_CUT, MILLING, DRILLING, PLUNGING = range(4)
 CUT_KINDS = ("", "milling", "drilling", "plunging")
 
 
-def words_of(values: Mapping[int, str]) -> dict[int, str]:
-    """Sentences by the numbers of tools, in a table of its own."""
+def copy_words(values: Mapping[int, str]) -> dict[int, str]:
+    """Return a copy as a dict: sentences by the numbers of tools."""
     return dict(values)
 
 
@@ -75,24 +83,24 @@ class CuttingForces:
     Raises
     ------
     InputError
-        For numbers that cannot be.
+        For impossible numbers.
     """
 
-    force: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    torque: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    axial: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    height: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
+    force: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    torque: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    axial: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    height: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
     direction: CuttingDirection = ANY
-    reasons: Mapping[int, str] = field(factory=dict, converter=words_of, hash=False)
+    reasons: Mapping[int, str] = field(factory=dict, converter=copy_words, hash=False)
     kind: NDArray[np.int64] = field(
-        default=Factory(lambda self: kinds_of(self.force, self.torque), takes_self=True),
-        converter=integers,
+        default=Factory(lambda self: classify_moves(self.force, self.torque), takes_self=True),
+        converter=to_integers,
         eq=SAME,
         hash=False,
         repr=False,
     )
-    stretches: Stretches = field(
-        default=Factory(lambda self: Stretches.whole(self.acts), takes_self=True), repr=False
+    stretches: MoveStretches = field(
+        default=Factory(lambda self: MoveStretches.from_whole_moves(self.acts), takes_self=True), repr=False
     )
 
     def __attrs_post_init__(self) -> None:
@@ -118,11 +126,13 @@ class CuttingForces:
 
     @property
     def acts(self) -> NDArray[np.bool_]:
-        """(M,) whether a move does anything."""
+        """(M,) True where a force or a torque of a move is positive."""
         return np.asarray((self.force > 0.0) | (self.torque > 0.0))
 
-    def entry(self, move: int) -> dict[str, Any]:
-        """What a move does, as plain data; empty where it does nothing."""
+    def make_entry(self, move: int) -> dict[str, Any]:
+        """Return the forces on the move with this index as plain data under "cutting";
+        {} where it does not cut.
+        """
         if self.force[move] == 0.0 and self.torque[move] == 0.0:
             return {}
         axial = self.axial[move].tolist()
@@ -134,13 +144,15 @@ class CuttingForces:
                 "torque": torque,
                 "axial": axial,
                 "height": height,
-                "stretches": self.stretches.of_move(move),
+                "stretches": self.stretches.list_shares(move),
             }
         }
 
-    def along(self, stretches: Stretches) -> CuttingForces:
-        """The forces along some stretches alone, and none on moves that have none; itself where those are its
-        own."""
+    def keep_stretches(self, stretches: MoveStretches) -> CuttingForces:
+        """Return forces that act along these stretches only, and are 0 on moves without a stretch.
+
+        Return the object itself where the stretches are its own.
+        """
         if stretches == self.stretches:
             return self
         gone = np.ones(len(self.force), np.bool_)
@@ -152,13 +164,18 @@ class CuttingForces:
         )
 
     @classmethod
-    def of_entries(cls, rows: list[Mapping[str, Any] | bytes], said: Mapping[str, Any]) -> CuttingForces:
-        """The forces of entries, one for each move, and what is said of all; packed entries have none.
+    def from_entries(cls, rows: list[Mapping[str, Any] | bytes], said: Mapping[str, Any]) -> CuttingForces:
+        """Return the forces read from a result file.
+
+        Parameters
+        ----------
+        rows : one entry for each move; a packed entry (bytes), or one without "cutting", has no force.
+        said : "direction", and "tools", sentences by the numbers of tools.
 
         Raises
         ------
         InputError, LookupError, TypeError, ValueError
-            For entries that lack something, or hold what cannot be.
+            For entries that lack something, or hold impossible values.
         """
         none: dict[str, Any] = {"force": 0.0, "torque": 0.0, "axial": [0.0, 0.0], "height": 0.0}
         taken = [none if isinstance(row, bytes) else row.get("cutting", none) for row in rows]
@@ -168,7 +185,7 @@ class CuttingForces:
         axial = np.array([[convert_real(value) for value in one["axial"]] for one in taken]).reshape(-1, 2)
         # What stands before the words that follow the number says how large it is.
         reasons = {int(key): str(words).partition(" N ")[2] for key, words in said["tools"].items()}
-        usual = kinds_of(np.array(force), np.array(torque)).tolist()
+        usual = classify_moves(np.array(force), np.array(torque)).tolist()
         kind = [
             CUT_KINDS.index(one["kind"]) if "kind" in one else number
             for one, number in zip(taken, usual, strict=True)
@@ -181,14 +198,22 @@ class CuttingForces:
         move = np.repeat(np.arange(len(each)), [len(rows) for rows in each])
         first, last = np.array(shares).reshape(-1, 2).T
         return cls(
-            force, torque, axial, height, said["direction"], reasons, kind, Stretches(move, first, last)
+            force, torque, axial, height, said["direction"], reasons, kind, MoveStretches(move, first, last)
         )
 
     def to_dict(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[str, Any]:
-        return {"direction": self.direction, "tools": {str(k): v for k, v in self.said(moves, tools).items()}}
+        """Return the direction and the sentence of each tool as plain data;
+        that of moves is made by :meth:`make_entry`.
+        """
+        return {
+            "direction": self.direction,
+            "tools": {str(k): v for k, v in self.describe_tools(moves, tools).items()},
+        }
 
-    def said(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[int, str]:
-        """For each tool in a sentence how large its force is at most, and from what it follows."""
+    def describe_tools(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[int, str]:
+        """Return by tool number a sentence that says its largest
+        force at the periphery in N, and what it follows from.
+        """
         found = {}
         for number, words in self.reasons.items():
             most = float(self.torque[moves.tool == number].max(initial=0.0)) * 2 / tools[number].diameter
@@ -196,25 +221,28 @@ class CuttingForces:
         return found
 
 
-def kinds_of(force: Floats, torque: Floats) -> NDArray[np.int64]:
-    """(M,) what moves do of which only the forces are known."""
+def classify_moves(force: Floats, torque: Floats) -> NDArray[np.int64]:
+    """Return (M,) kinds guessed from the forces:
+    MILLING with a force, DRILLING with a torque alone, else NO_CUT.
+    """
     return np.where(force > 0.0, MILLING, np.where(torque > 0.0, DRILLING, NO_CUT))
 
 
-def forces_on(
-    moves: Moves, tools: Mapping[int, Tool], job: CuttingData, within: Stretches | None = None
+def compute_cutting_forces(
+    moves: Moves, tools: Mapping[int, Tool], job: CuttingData, within: MoveStretches | None = None
 ) -> CuttingForces | None:
-    """The forces on moves of some tools; None where nobody asks for any.
+    """Return the forces on moves;
+    None where neither ``job`` nor a tool gives anything that a force follows from.
 
     Parameters
     ----------
-    job : what holds for all tools that do not say otherwise.
-    within : the stretches on which a tool may cut; every cutting move all along if None.
+    job : data for all tools that do not have their own.
+    within : the stretches of moves on which a tool may cut; all of every cutting move if None.
 
     Raises
     ------
     InputError
-        Naming the tool that lacks something, and the line that does.
+        Where a tool, or the program on a line, does not say what a force follows from.
     """
     if not (job.asks_for_forces or any(tool.cutting.asks_for_forces for tool in tools.values())):
         return None
@@ -234,7 +262,7 @@ def forces_on(
         own = cuts & (moves.tool == number)
         if not own.any():
             continue
-        known, radius = tool.cutting.over(job), tool.diameter / 2
+        known, radius = tool.cutting.complete_with(job), tool.diameter / 2
         for which in (MILLING, DRILLING, PLUNGING):
             rows = np.flatnonzero(own & (kind == which))
             if not len(rows):
@@ -254,11 +282,13 @@ def forces_on(
     if within is None:
         return whole
     acts = whole.acts[within.move]
-    return whole.along(Stretches(within.move[acts], within.first[acts], within.last[acts]))
+    return whole.keep_stretches(MoveStretches(within.move[acts], within.first[acts], within.last[acts]))
 
 
 def describe_force_reason(known: CuttingData) -> str:
-    """What the force of a tool follows from, in words behind its number."""
+    """Return the words that follow the number of a tool's
+    force and say where it comes from, such as "as given."
+    """
     if known.cutting_force is not None:
         return "as given."
     if known.power is not None:
@@ -271,8 +301,12 @@ def describe_force_reason(known: CuttingData) -> str:
 def compute_peripheral_forces(
     moves: Moves, rows: NDArray[np.int64], tool: Tool, known: CuttingData, drilling: bool
 ) -> Floats:
-    """The force (R,) at the periphery of a tool on some moves, in N; refuses a tool or a line that lacks
-    something.
+    """Return the force (R,) in N at the periphery of a tool on the moves with the indices ``rows``.
+
+    Raises
+    ------
+    InputError
+        Where the tool, or the program on one of these moves, does not say what the force follows from.
     """
     if known.cutting_force is not None:
         return np.full(len(rows), known.cutting_force)
@@ -298,7 +332,9 @@ def compute_peripheral_forces(
 
 
 def refuse_lacking(tool: Tool, known: CuttingData, drilling: bool) -> None:
-    """Refuses a tool of which too little is known for the force of Kienzle."""
+    """Raise InputError for a tool that mills without a number
+    of teeth or a depth of cut, which Kienzle's force needs.
+    """
     needed = () if drilling else (("teeth", "teeth"), ("cut_depth", "depth of cut"))
     lacking = [(name, words) for name, words in needed if getattr(known, name) is None]
     if lacking:
@@ -313,7 +349,11 @@ def refuse_lacking(tool: Tool, known: CuttingData, drilling: bool) -> None:
 
 
 def refuse_unsaid(moves: Moves, rows: NDArray[np.int64], values: Floats, tool: Tool, what: str) -> None:
-    """Refuses moves on which the program does not say what the force follows from."""
+    """Raise InputError, naming the line, where one of ``values`` (R,),
+    read for the moves ``rows``, is not positive.
+
+    ``what`` calls the value in the message, such as "a feed, F".
+    """
     if not (values > 0.0).all():
         line = int(moves.line[rows[values <= 0.0][0]])
         raise InputError(
@@ -323,26 +363,28 @@ def refuse_unsaid(moves: Moves, rows: NDArray[np.int64], values: Floats, tool: T
 
 
 def compute_drill_force(turn: float, tool: Tool, known: CuttingData) -> float:
-    """The force in N at the periphery of a tool that drills, from the feed per turn in mm.
+    """Return the force in N at the periphery of a drilling tool, from the feed per turn in mm.
 
-    How many teeth the tools of the whole job have says nothing of a drill.
+    The number of lips is the tool's own, else 2; a number of teeth given for the whole job is not used.
     """
     assert known.material is not None
     lips, point = tool.cutting.teeth or LIPS, known.point_angle or POINT
     thickness = turn / lips * sin(radians(point / 2))
-    return turn * tool.diameter / 4 * known.material.force(thickness, 1.0) / thickness
+    return turn * tool.diameter / 4 * known.material.compute_force(thickness, 1.0) / thickness
 
 
 def compute_teeth_force(turn: float, diameter: float, known: CuttingData) -> float:
-    """The force in N of all teeth in the cut, from the feed per turn in mm."""
+    """Return the sum in N of the forces of all teeth in the cut,
+    by Kienzle, from the feed per turn and diameter in mm.
+    """
     assert known.material is not None and known.teeth is not None and known.cut_depth is not None
     width, exponent = min(known.cut_width or diameter, diameter), 1.0 - known.material.mc
-    together = teeth_together(int(known.teeth), acos(1.0 - 2.0 * width / diameter), exponent)
-    return known.material.force(turn / known.teeth, known.cut_depth) * together
+    together = compute_engaged_tooth_sum(int(known.teeth), acos(1.0 - 2.0 * width / diameter), exponent)
+    return known.material.compute_force(turn / known.teeth, known.cut_depth) * together
 
 
-def teeth_together(teeth: int, engaged: float, exponent: float) -> float:
-    """The largest sum of sin^exponent of the angles at which teeth are in the cut at once.
+def compute_engaged_tooth_sum(teeth: int, engaged: float, exponent: float) -> float:
+    """Return the largest sum of sin(a)^exponent over the angles a of the teeth that cut at the same time.
 
     Parameters
     ----------

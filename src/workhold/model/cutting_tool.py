@@ -60,7 +60,7 @@ class CutMaterial:
     Raises
     ------
     InputError
-        For numbers that cannot be.
+        For impossible numbers.
     """
 
     name: str
@@ -76,8 +76,8 @@ class CutMaterial:
                 f"{MOST_SPECIFIC:g} and a number from 0 to below 1, such as 1500,0.22."
             )
 
-    def force(self, thickness: float, width: float) -> float:
-        """The force in N on a chip, of which thickness and width are in mm."""
+    def compute_force(self, thickness: float, width: float) -> float:
+        """Return the force in N on a chip whose thickness and width are in mm."""
         return float(self.kc * thickness ** (1.0 - self.mc) * width)
 
 
@@ -109,18 +109,18 @@ OTHER_NAMES = {"aluminum": "aluminium", "cast-aluminum": "cast-aluminium", "nodu
 
 
 def find_material(text: str) -> CutMaterial:
-    """A material by its name, or from kc1.1 and mc with a comma between them.
+    """Return the material of a name, or one of the user's own from "kc1.1,mc".
 
     Raises
     ------
     InputError
-        For a name that is not in the table, and numbers that cannot be.
+        For a name that is not in the table, and impossible numbers.
 
     Examples
     --------
     >>> find_material("Mild steel").kc, find_material("2000,0.25").mc
     (1350.0, 0.25)
-    >>> round(find_material("steel").force(0.1, 5.0))
+    >>> round(find_material("steel").compute_force(0.1, 5.0))
     1245
     """
     numbers = [read_number(word) for word in text.split(",")]
@@ -137,12 +137,13 @@ def find_material(text: str) -> CutMaterial:
     )
 
 
-def material_of(value: str | CutMaterial) -> CutMaterial:
+def to_material(value: str | CutMaterial) -> CutMaterial:
+    """Return the material itself, or find it by its name; raise InputError for an unknown name."""
     return value if isinstance(value, CutMaterial) else find_material(str(value))
 
 
-def direction_of(value: Any) -> CuttingDirection:
-    """The directions in which a force may act, as a word; refuses any other."""
+def to_direction(value: Any) -> CuttingDirection:
+    """Return "any" or "feed" as a direction; raise InputError for any other value."""
     for word in DIRECTIONS:
         if word == value:
             return word
@@ -151,7 +152,7 @@ def direction_of(value: Any) -> CuttingDirection:
 
 @frozen(kw_only=True)
 class CuttingData(CuttingQuestion):
-    """What is known of how a tool, or all tools of a job, cut; None for what is not.
+    """Data on how a tool, or all tools of a job, cut; None for those not known.
 
     Parameters
     ----------
@@ -167,18 +168,18 @@ class CuttingData(CuttingQuestion):
     Raises
     ------
     InputError
-        For numbers that cannot be, and more than one of force, power and material.
+        For impossible numbers, and more than one of force, power and material.
 
     Examples
     --------
-    >>> CuttingData(material="steel", teeth=4).over(CuttingData(power=3, cut_depth=5)).cut_depth
+    >>> CuttingData(material="steel", teeth=4).complete_with(CuttingData(power=3, cut_depth=5)).cut_depth
     5.0
     """
 
-    material: CutMaterial | None = field(default=None, converter=optional(material_of))
+    material: CutMaterial | None = field(default=None, converter=optional(to_material))
     point_angle: float | None = field(default=None, converter=optional(convert_real))
     helix_angle: float | None = field(default=None, converter=optional(convert_real))
-    direction: CuttingDirection | None = field(default=None, converter=optional(direction_of))
+    direction: CuttingDirection | None = field(default=None, converter=optional(to_direction))
 
     def __attrs_post_init__(self) -> None:
         given = [name for name in FORCES if getattr(self, name) is not None]
@@ -205,13 +206,14 @@ class CuttingData(CuttingQuestion):
             refuse_long(name, getattr(self, name) or 0.0)
 
     @classmethod
-    def of(cls, value: CuttingData | Mapping[str, Any] | None) -> CuttingData:
-        """Cutting data, or those of fields by their names; None is none of them.
+    def from_value(cls, value: CuttingData | Mapping[str, Any] | None) -> CuttingData:
+        """Return cutting data from fields by name;
+        data are returned as they are, and None gives data with all fields None.
 
         Raises
         ------
         InputError
-            For a name that there is none of, and as the class.
+            For an unknown name, and the errors of the class.
         """
         if value is None or isinstance(value, CuttingData):
             return value or cls()
@@ -222,11 +224,14 @@ class CuttingData(CuttingQuestion):
 
     @property
     def asks_for_forces(self) -> bool:
-        """Whether anything is given from which a force follows."""
+        """Whether a force, a power or a material is given, from which cutting forces follow."""
         return any(getattr(self, name) is not None for name in FORCES)
 
-    def over(self, other: CuttingData) -> CuttingData:
-        """Completes these data by another's; where these have a force, that of the other does not count."""
+    def complete_with(self, other: CuttingData) -> CuttingData:
+        """Return these data with each None filled from ``other``.
+
+        Where these data have a force, a power or a material, all three are kept as they are.
+        """
         mine = {name: getattr(self, name) for name in FIELDS}
         theirs = {name: getattr(other, name) for name in FIELDS}
         if self.asks_for_forces:
@@ -237,7 +242,8 @@ class CuttingData(CuttingQuestion):
 FIELDS = tuple(asdict(CuttingData()))
 
 
-def cylinders_of(values: Iterable[Cylinder]) -> tuple[Cylinder, ...]:
+def to_cylinders(values: Iterable[Cylinder]) -> tuple[Cylinder, ...]:
+    """Return the cylinders as a tuple."""
     return tuple(values)
 
 
@@ -253,7 +259,7 @@ class Cylinder:
     Raises
     ------
     InputError
-        For heights and a radius that make none.
+        For impossible heights and an impossible radius.
     """
 
     low: float = field(converter=convert_real)
@@ -290,11 +296,11 @@ class Tool:
     Raises
     ------
     InputError
-        Without a cylinder, and for a number or a diameter that is none.
+        For a tool without a cylinder, and an impossible number or diameter.
     """
 
     number: int
-    cylinders: tuple[Cylinder, ...] = field(converter=cylinders_of)
+    cylinders: tuple[Cylinder, ...] = field(converter=to_cylinders)
     diameter: float = field(converter=convert_real)
     name: str = ""
     cutting: CuttingData = field(factory=CuttingData, eq=False)
@@ -314,29 +320,29 @@ class Tool:
 
     @property
     def flute_end(self) -> float:
-        """The height above the tip up to which it cuts, in mm."""
+        """Height in mm above the tip up to which the tool cuts."""
         lowest = min(self.cylinders, key=lambda one: one.low)
         return lowest.high if self.flute_length is None else self.flute_length
 
     @property
     def is_drill(self) -> bool:
-        """Whether its table calls it a drill: by its kind or, where there is none, by the word in its name."""
+        """Whether the tool is a drill: the word stands in its kind or, where that is empty, in its name."""
         return DRILL in (self.kind or self.name).lower()
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
+        """Return plain data as in a result file, without number and cutting data."""
         rows = [[one.low, one.high, one.radius] for one in self.cylinders]
         flute = {} if self.flute_length is None else {"flute_length": self.flute_length}
         return {"name": self.name, "diameter": self.diameter, **flute, "cylinders": rows}
 
     @classmethod
-    def of_entries(cls, number: int, entries: Mapping[str, Any]) -> Tool:
-        """A tool of a file's entries.
+    def from_entries(cls, number: int, entries: Mapping[str, Any]) -> Tool:
+        """Return a tool of this number from the entries of a result file.
 
         Raises
         ------
         InputError, LookupError, TypeError, ValueError
-            For entries that lack something, or hold what cannot be.
+            For entries that lack something, or hold impossible values.
         """
         cylinders = [Cylinder(*row) for row in entries["cylinders"]]
         name, flute = str(entries.get("name", "")), entries.get("flute_length")

@@ -16,7 +16,7 @@ from attrs import frozen
 from workhold.conventions import DOWEL_DEPTH, SAME_HEIGHT, SAME_SIZE
 from workhold.units import INCH, Unit, find_unit
 
-__all__ = ["DowelLengths", "SoldDowel", "find_shortest_dowel", "lengths_of", "standouts"]
+__all__ = ["DowelLengths", "SoldDowel", "find_shortest_dowel", "find_dowel_lengths", "list_standouts"]
 
 # Inches are sold in sixteenths; diameters have thirty-seconds as well.
 FINEST = 32
@@ -40,8 +40,10 @@ class DowelLengths:
 
 
 @cache
-def sold() -> tuple[DowelLengths, ...]:
-    """All diameters that are sold, standard by standard."""
+def list_sold_dowels() -> tuple[DowelLengths, ...]:
+    """Return all diameters that are sold, standard by standard,
+    each with its lengths; read from ``data/dowels.toml``.
+    """
     text = (files("workhold") / "data" / "dowels.toml").read_text(encoding="utf-8")
     found = []
     for entry in tomllib.loads(text)["lengths"]:
@@ -52,22 +54,25 @@ def sold() -> tuple[DowelLengths, ...]:
     return tuple(found)
 
 
-def lengths_of(diameter: float) -> DowelLengths | None:
-    """The lengths of dowels of a diameter in mm; None where that is not sold.
+def find_dowel_lengths(diameter: float) -> DowelLengths | None:
+    """Return the lengths in which dowels of a diameter (mm) are sold; None where the diameter is not sold.
 
     >>> lengths_of(6.0).lengths[:4], lengths_of(6.35).standard, lengths_of(7.0)
     ((14.0, 16.0, 18.0, 20.0), 'ASME B18.8.2', None)
     """
-    return next((one for one in sold() if abs(one.diameter - diameter) < SAME_SIZE), None)
+    return next((one for one in list_sold_dowels() if abs(one.diameter - diameter) < SAME_SIZE), None)
 
 
-def standouts(diameter: float) -> tuple[float, ...]:
-    """How far in mm the dowels of a diameter in mm stand out at most, rising; nothing of what is not sold.
+def list_standouts(diameter: float) -> tuple[float, ...]:
+    """Return the greatest standout in mm of each length of dowel
+    sold of a diameter (mm), ascending; positive ones only.
+
+    The result is empty for a diameter that is not sold.
 
     >>> standouts(6.0)[:4]
     (5.0, 7.0, 9.0, 11.0)
     """
-    known = lengths_of(diameter)
+    known = find_dowel_lengths(diameter)
     deep = DOWEL_DEPTH * diameter
     every = () if known is None else (round(length - deep, 9) for length in known.lengths)
     return tuple(one for one in every if one > 0)
@@ -91,12 +96,12 @@ class SoldDowel:
 
     @property
     def depth(self) -> float:
-        """How deep it sits in mm."""
+        """Depth in mm to which the dowel sits in its hole."""
         return self.length - self.standout
 
     @property
     def name(self) -> str:
-        """What to ask for: diameter x length, inches as fractions.
+        """Name to order it by: diameter x length, inches as fractions.
 
         >>> find_shortest_dowel(6.0, 11.0).name, find_shortest_dowel(6.35, 15.0).name, find_shortest_dowel(12.7, 30.0).name
         ('6 × 20 mm', '1/4 × 1 in', '1/2 × 2 in')
@@ -106,7 +111,7 @@ class SoldDowel:
 
 
 def format_dowel_size(size: float, unit: Unit) -> str:
-    """A size in mm as a catalogue prints it: inches as a fraction.
+    """Return a size in mm as text in the unit as catalogues print it, inches as a fraction.
 
     >>> format_dowel_size(38.1, INCH), format_dowel_size(6.35, INCH)
     ('1-1/2', '1/4')
@@ -119,13 +124,15 @@ def format_dowel_size(size: float, unit: Unit) -> str:
 
 
 def find_shortest_dowel(diameter: float, standout: float) -> SoldDowel | None:
-    """The shortest dowel that is sold of a diameter and stands out so far, both in mm; None where there is none.
+    """Return the shortest dowel sold of a diameter that can stand out by ``standout``, both in mm.
+
+    Return None where none is long enough, or the diameter is not sold.
 
     >>> dowel = find_shortest_dowel(6.0, 10.0)
     >>> dowel.length, dowel.depth
     (20.0, 10.0)
     """
-    known = lengths_of(diameter)
+    known = find_dowel_lengths(diameter)
     if known is None:
         return None
     least = standout + DOWEL_DEPTH * diameter - SAME_HEIGHT

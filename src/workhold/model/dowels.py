@@ -37,7 +37,7 @@ from workhold.units import MILLIMETRE, Unit
 __all__ = [
     "Bolts",
     "DowelSize",
-    "Fit",
+    "DowelFit",
     "JawPlate",
     "Limits",
     "describe_fit",
@@ -76,7 +76,7 @@ class DowelSize:
 
 
 @frozen
-class Fit:
+class DowelFit:
     """A pin in its hole.
 
     Parameters
@@ -95,7 +95,7 @@ class Fit:
 
 
 def name_hole_class(nominal: float, hole: Limits) -> str | None:
-    """The class of a hole's limits, where it is H7; None for any other.
+    """Return "H7" where the limits of a hole are those of H7 for its nominal diameter in mm; None otherwise.
 
     >>> name_hole_class(6.0, (6.0, 6.012)), name_hole_class(6.0, (5.987, 6.0))
     ('H7', None)
@@ -108,8 +108,8 @@ def name_hole_class(nominal: float, hole: Limits) -> str | None:
     )
 
 
-def describe_fit(fit: Fit, nominal: float) -> str:
-    """A pin and how it sits in its hole, in short.
+def describe_fit(fit: DowelFit, nominal: float) -> str:
+    """Return a few words that name a pin and how it sits in its hole.
 
     Parameters
     ----------
@@ -117,9 +117,9 @@ def describe_fit(fit: Fit, nominal: float) -> str:
 
     Examples
     --------
-    >>> describe_fit(Fit((6.004, 6.012), (6.0, 6.012), 0.01, True, "ISO 2338 m6"), 6.0)
+    >>> describe_fit(DowelFit((6.004, 6.012), (6.0, 6.012), 0.01, True, "ISO 2338 m6"), 6.0)
     'ISO 2338 m6 in H7'
-    >>> describe_fit(Fit((6.003, 6.009), (5.987, 6.0), 0.01, True, "ASME B18.8.5M"), 6.0)
+    >>> describe_fit(DowelFit((6.003, 6.009), (5.987, 6.0), 0.01, True, "ASME B18.8.5M"), 6.0)
     'ASME B18.8.5M, pressed in'
     """
     hole = name_hole_class(nominal, fit.hole)
@@ -136,7 +136,8 @@ def describe_fit(fit: Fit, nominal: float) -> str:
 
 
 def compute_peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> float:
-    """How far the surface of a peg may be off along a normal, in mm; the formula is at the head of this file.
+    """Return by how much, in mm, the surface of a peg may be off along a normal;
+    see the formula at the head of this file.
 
     Parameters
     ----------
@@ -158,7 +159,7 @@ def compute_peg_error(peg_radius: float, pin: Limits, hole: Limits, position: fl
 
 
 def refuse_limits(name: str, limits: Limits, peg_radius: float) -> None:
-    """Refuses limits that are not those of a pin or hole for the peg.
+    """Raise InputError for limits in mm that cannot be those of a pin or hole for a peg of this radius.
 
     Parameters
     ----------
@@ -223,7 +224,8 @@ def list_jaw_plates(
     bolts: Bolts | None = None,
     unit: Unit = MILLIMETRE,
 ) -> tuple[JawPlate, ...]:
-    """The plates of a toolkit, a plate for each carrier that has one of its own.
+    """Return a plate to be drilled for each of ``toolkit.plates``,
+    in order, each in a frame with origin at its hole A1.
 
     Parameters
     ----------
@@ -282,7 +284,7 @@ def list_jaw_plates(
 
 
 def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
-    """Refuses bolts that leave a plate or run into a hole."""
+    """Raise InputError where a bolt hole leaves the plate, or overlaps a dowel hole or another bolt hole."""
     bolts = plate.bolts
     if bolts is None:
         return
@@ -294,7 +296,7 @@ def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
     radius, apart = bolts.diameter / 2, (bolts.diameter + plate.hole_diameter) / 2
     for number, (x, y) in enumerate(bolts.places, 1):
         name = f"bolt {number} at {unit.format_short_length(x)},{unit.format_short_length(y)}"
-        if not plate.outline.contains(Box.about((x, y), 2 * radius, 2 * radius)):
+        if not plate.outline.contains(Box.from_center((x, y), 2 * radius, 2 * radius)):
             raise InputError(f"{name} leaves the {plate.title}'s plate: move it, or make the plate larger.")
         for hole, (u, v) in plate.holes:
             if hypot(x - u, y - v) < apart:
@@ -305,7 +307,7 @@ def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
 
 
 def place_plates_in_drawing(plates: Sequence[JawPlate]) -> list[float]:
-    """How far to the right each plate's hole A1 stands in a drawing of all of them, in mm."""
+    """Return x in mm of each plate's hole A1 in a drawing of all plates side by side; the first is at 0."""
     places, right = [], 0.0
     for number, plate in enumerate(plates):
         places.append(right + PLATE_GAP - plate.outline.x0 if number else 0.0)

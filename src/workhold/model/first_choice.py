@@ -14,7 +14,7 @@ from attrs import frozen
 __all__ = [
     "FACTORS",
     "HOUSE_ORDER",
-    "Factor",
+    "ErrorFactor",
     "list_ranking_figures",
     "has_house_order",
 ]
@@ -24,8 +24,8 @@ HOUSE_ORDER = ("warned", "error_steps", "angle")
 
 
 @frozen
-class Factor:
-    """What a doubt about a fixture costs, as a factor of its location error.
+class ErrorFactor:
+    """A factor by which a doubt about a fixture increases its location error in the ranking.
 
     Parameters
     ----------
@@ -42,37 +42,37 @@ class Factor:
 
 
 FACTORS = (
-    Factor(
+    ErrorFactor(
         "quarter_turn",
         1.05,
         "turned by 90°, 180° or 270°",
         "The program has to be turned as well, or the part is put in wrong; equal jaws do not need the turn.",
     ),
-    Factor(
+    ErrorFactor(
         "other_angle",
         1.5,
         "turned aslant",
         "A square or an indicator along the machine's axes cannot square the part up.",
     ),
-    Factor(
+    ErrorFactor(
         "face_end",
         1.1,
         "touched near the end of a straight face",
         "Half of a peg stands past the face there, where edges are broken and blanks are sawn.",
     ),
-    Factor(
+    ErrorFactor(
         "clamp_in_hole",
         1.25,
         "clamped from inside a hole",
         "The clamp stands where the hole is machined, it is hard to reach, and chips collect there.",
     ),
-    Factor(
+    ErrorFactor(
         "dowel_in_bore",
         1.1,
         "located from inside a hole",
         "The hole must already be there and true, and the part must be threaded over the dowel.",
     ),
-    Factor(
+    ErrorFactor(
         "hangs_over",
         1.1,
         "hanging over the plate",
@@ -82,12 +82,13 @@ FACTORS = (
 
 
 def has_house_order(ranking: Sequence[str]) -> bool:
-    """Whether an order begins with warning, steps and angle, rather than with figures that somebody named."""
+    """Return whether an order begins with the keys "warned", "error_steps", "angle" (:data:`HOUSE_ORDER`)."""
     return tuple(ranking[: len(HOUSE_ORDER)]) == HOUSE_ORDER
 
 
 def list_ranking_figures(ranking: Sequence[str]) -> tuple[str, ...]:
-    """The keys of the figures in an order.
+    """Return the keys of the figures in an order:
+    those behind :data:`HOUSE_ORDER`, or all where it does not begin so.
 
     >>> list_ranking_figures(("warned", "error_steps", "angle", "penalty"))
     ('penalty',)

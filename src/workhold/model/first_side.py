@@ -16,7 +16,7 @@ from workhold.model.query import Query
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["FirstSide", "first_side", "turn_words"]
+__all__ = ["FirstSide", "compare_with_first_side", "describe_turn"]
 
 # Which coordinates of a file become x, y and z of the outline, by the axis that points up.
 SOURCES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
@@ -25,7 +25,7 @@ NAMES = "xyz"
 
 @frozen
 class FirstSide:
-    """What a set-up shares with the one before it.
+    """Relation of a set-up to the one before it, in which another side of the part was up.
 
     Parameters
     ----------
@@ -44,8 +44,10 @@ class FirstSide:
     shared: tuple[int, ...]
 
 
-def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture | None) -> FirstSide:
-    """What the set-up of a fixture shares with one before it.
+def compare_with_first_side(
+    fixture: Fixture, query: Query, before: Query, located: Fixture | None
+) -> FirstSide:
+    """Return what the set-up of a fixture shares with the set-up before it.
 
     Parameters
     ----------
@@ -57,47 +59,49 @@ def first_side(fixture: Fixture, query: Query, before: Query, located: Fixture |
     InputError
         For parts whose faces have no numbers of a solid.
     """
-    own, other = solid_of(query.workpiece), solid_of(before.workpiece)
-    cut = before.workpiece.numbered.faces_over(before.restrictions.avoid)
+    own, other = get_solid(query.workpiece), get_solid(before.workpiece)
+    cut = before.workpiece.numbered.list_faces_over(before.restrictions.avoid)
     avoided = [
         face.number
         for face in query.workpiece.faces
         if own.bands[face.number] is not None and not cut.isdisjoint(own.faces[face.number])
     ]
-    here = touched(fixture, query.workpiece)
-    there = set[int]() if located is None else touched(located, before.workpiece)
+    here = find_touched_faces(fixture, query.workpiece)
+    there = set[int]() if located is None else find_touched_faces(located, before.workpiece)
     return FirstSide(
         up=own.axis,
         up_before=other.axis,
-        turned=turn_words(other.axis, own.axis),
+        turned=describe_turn(other.axis, own.axis),
         cut=tuple(avoided),
         cut_of_solid=tuple(sorted(cut)),
         shared=tuple(sorted(here & there)),
     )
 
 
-def solid_of(workpiece: Workpiece) -> SolidOutline:
-    """The solid of a part; refuses a part without one, and one whose faces have no numbers."""
+def get_solid(workpiece: Workpiece) -> SolidOutline:
+    """Return the solid of a part; raise InputError where it has none, or one whose faces have no numbers."""
     if workpiece.solid is None or not workpiece.solid.faces:
         raise InputError(f"{workpiece.name} has no faces of a solid: read both set-ups from the STEP file.")
     return workpiece.solid
 
 
-def touched(fixture: Fixture, workpiece: Workpiece) -> set[int]:
-    """Numbers of the solid's faces that pegs and clamps touch."""
+def find_touched_faces(fixture: Fixture, workpiece: Workpiece) -> set[int]:
+    """Return the numbers of the solid's faces that pegs and clamps of a fixture touch."""
     numbers = {peg.face for peg in fixture.pegs} | {
         peg.beside for peg in fixture.pegs if peg.beside is not None
     }
     every = workpiece.numbered
-    return every.faces_over(
+    return every.list_faces_over(
         k for face in every.faces if numbers.intersection(face.segments) for k in face.segments
     )
 
 
 def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
-    """The rotation (3, 3) from a file's coordinates to those of an outline whose axis points up.
+    """Return the rotation (3, 3) from a file's coordinates to
+    those of an outline, for "x", "-x", …, "z", "-z" upward.
 
-    With a minus the part lies on its other side, turned over like a page: x and z change their signs.
+    With a minus the part lies on its other side: against the same axis without it, x and z change their
+    signs.
     """
     signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
     turn = np.zeros((3, 3))
@@ -106,8 +110,13 @@ def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
     return turn
 
 
-def turn_words(before: str, now: str) -> str:
-    """How a part is turned from one standing to another, about axes of the first drawing.
+def describe_turn(before: str, now: str) -> str:
+    """Return in words how a part is turned from one upward axis to another,
+    about axes of the first set-up's drawing.
+
+    Parameters
+    ----------
+    before, now : axes of the file that point up, such as "z" or "-x".
 
     Examples
     --------

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from workhold.presenting.papers import Picture
     from workhold.statics.loads import LoadCase
 
-__all__ = ["Fixture", "Listed", "Pair", "Peg"]
+__all__ = ["Fixture", "ListPlace", "ClampPair", "Peg"]
 
 
 @frozen
@@ -67,12 +67,12 @@ class Peg:
 
     @property
     def is_on_wall(self) -> bool:
-        """Whether it is an end of the contact with a wall rather than a peg."""
+        """Whether this entry stands for one end of the contact with a wall, where no peg is."""
         return self.carrier == WALL
 
     @property
     def touched(self) -> str:
-        """The number of the face touched, or those of the two that meet at a corner.
+        """Number of the face touched, as text, or the two numbers of the faces that meet at a corner.
 
         >>> Peg("wall", 0, 0, 12.0, 0.0, 3, 0.4, beside=4).touched
         '3/4'
@@ -81,7 +81,7 @@ class Peg:
 
     @property
     def touching(self) -> str:
-        """What it touches, in words."""
+        """Words for what the peg touches, such as "face 3"."""
         return (
             f"face {self.face}"
             if self.beside is None
@@ -90,13 +90,15 @@ class Peg:
 
     @property
     def hole(self) -> str:
-        """The hole's name: the carrier's letter, column letter, row number from 1, such as ``L-B3``."""
+        """Name of the hole, such as ``L-B3`` (carrier's letter, column letter, row from 1),
+        or ``place`` where that is given.
+        """
         return self.place or make_hole_name(self.carrier, self.column, self.row)
 
 
 @frozen
-class Pair:
-    """What is particular to a fixture with two clamps.
+class ClampPair:
+    """Data that only a fixture with two clamps has.
 
     Parameters
     ----------
@@ -114,13 +116,15 @@ class Pair:
 
     @property
     def working_ratio(self) -> float:
-        """The second clamp's force over the first's, in the middle of the interval as an angle."""
+        """Second clamp's force over the first's at the middle of ``ratio``,
+        taken between the angles atan(ratio).
+        """
         return tan((atan(self.ratio[0]) + atan(self.ratio[1])) / 2)
 
 
 @frozen
-class Listed:
-    """Where a fixture is listed. A copy made by pickle keeps that fixture alone of the result.
+class ListPlace:
+    """Place of a fixture in the list of its result. A pickled copy keeps only this fixture of the result.
 
     Parameters
     ----------
@@ -138,7 +142,7 @@ class Listed:
 
     @property
     def others(self) -> int:
-        """How many other fixtures of the result use the same holes."""
+        """Number of other fixtures in the result that use the same holes."""
         return (
             int(self.result.table.count_in_same_holes(self.row))
             if self.in_same_holes is None
@@ -146,8 +150,8 @@ class Listed:
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        alone = self.result.part(slice(self.row, self.row + 1))
-        return Listed, (alone, 0, self.rank, self.count, self.others)
+        alone = self.result.slice_rows(slice(self.row, self.row + 1))
+        return ListPlace, (alone, 0, self.rank, self.count, self.others)
 
 
 # What an editor need not offer: other rooms use it.
@@ -186,8 +190,8 @@ class Fixture:
     travel: float
     quality: Mapping[str, float] = field(eq=lambda quality: tuple(sorted(quality.items())))
     direction: str | None = None
-    pair: Pair | None = None
-    listed: Listed | None = field(default=None, eq=False)
+    pair: ClampPair | None = None
+    listed: ListPlace | None = field(default=None, eq=False)
     seating: Any = field(default=None, eq=False)
     hold: JawHold | StrappedHold | None = None
     passing: Any = field(default=None, eq=False, repr=False)
@@ -222,13 +226,15 @@ class Fixture:
 
     @property
     def travels(self) -> tuple[float, ...]:
-        """How far each thing that moves has travelled, in mm: the jaw, or the clamps in their order."""
+        """Travel in mm of each thing that moves:
+        (travel,), or that of both clamps of a pair in their order.
+        """
         return (self.travel,) if self.pair is None else self.pair.travels
 
     @property
     def jaw_separation(self) -> float | None:
-        """Of a vise the x distance in mm from the left jaw's last column to the right jaw's first, of flat jaws the
-        distance between them; else None.
+        """For a vise, the distance in x, in mm, from the left jaw's last column to the right jaw's first; for
+        flat jaws, the distance between them; else None.
         """
         if isinstance(self.hold, JawHold):
             return self.hold.opening
@@ -236,7 +242,7 @@ class Fixture:
 
     @property
     def rank(self) -> int:
-        """Its place in the list of its result, from 1.
+        """Place in the list of its result, from 1.
 
         Raises
         ------
@@ -247,10 +253,10 @@ class Fixture:
 
     @property
     def contact_points(self) -> NDArray[np.float64]:
-        """Where pegs touch the part: (P, 2) in mm, in the toolkit's frame, in the order of the pegs.
+        """Points (P, 2) in mm where pegs touch the part, in the toolkit's frame, in the order of the pegs.
 
-        ``pose.inverse.apply(contact_points)`` has them in the part's frame. The forces ``peg.force`` act there,
-        along minus the :attr:`normals`; without friction they balance.
+        ``pose.inverse.apply(contact_points)`` has them in the part's frame. The forces ``peg.force`` act
+        there, along minus the :attr:`normals`; without friction they balance.
 
         Raises
         ------
@@ -274,7 +280,8 @@ class Fixture:
 
     @property
     def normals(self) -> NDArray[np.float64]:
-        """Unit normals (P, 2) of the part where pegs touch it, out of the material, in the toolkit's frame.
+        """Unit normals (P, 2) of the part, out of the material,
+        where pegs touch it; in the toolkit's frame, in pegs' order.
 
         Raises
         ------
@@ -294,21 +301,21 @@ class Fixture:
         friction: float | None = None,
         jaw: str | float = "screw",
     ) -> tuple[LoadCase, ...]:
-        """What each of some loads does to the pegs; each load acts by itself.
+        """Return one load case for each load: the forces on the pegs when that load acts by itself.
 
         Parameters
         ----------
-        loads : those of the query if None.
-        jaw_force : in N, with which what moves presses; that of the query if None, and without one as much as is
-            needed so that no peg lets go.
+        loads : loads on the part; those of the query if None.
+        jaw_force : of the jaw or the clamps, in N; if None that of the query, else as much as is needed so
+            that no peg lets go.
         friction : Coulomb's coefficient between pegs and part, to say what it could add; None for none.
-        jaw : what keeps the jaw where it is: "screw", "constant" for a constant force, or how many times as
-            stiff as one contact it is.
+        jaw : what keeps the jaw in place: "screw" (locked), "constant" for a constant force, or how many
+            times as stiff as one contact the jaw is.
 
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, and values that cannot be.
+            For a fixture that is not one of a result, and impossible values.
 
         Examples
         --------
@@ -319,29 +326,33 @@ class Fixture:
         >>> case.jaw_force > 0, case.keeps_contact
         (True, True)
         """
-        from workhold.statics.loads import load_cases
+        from workhold.statics.loads import compute_load_cases
 
         query = self.listing.result.query
         given = query.loads if loads is None else loads
         force = query.jaw_force if jaw_force is None else jaw_force
-        return load_cases(self, query.workpiece, query.toolkit, given, force, friction, jaw)
+        return compute_load_cases(self, query.workpiece, query.toolkit, given, force, friction, jaw)
 
     @property
     def placed(self) -> tuple[Peg, ...]:
-        """The pegs and clamps that stand in places of their own; the ends of a contact with a wall do not."""
+        """Pegs and clamps that stand in a hole or a place of their own;
+        the entries for ends of a wall's contact are left out.
+        """
         return tuple(peg for peg in self.pegs if not peg.is_on_wall)
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures of quality and, where it is known, of seating, whose warnings count as well."""
+        """Figures of quality by key and, where the seating is known,
+        its figures; "warnings" is the sum of both.
+        """
         if self.seating is None:
             return dict(self.quality)
         figures = {**self.quality, **self.seating.figures}
         return figures | {"warnings": figures.get("warnings", 0.0) + self.seating.warning_count}
 
     @property
-    def listing(self) -> Listed:
-        """Where it is listed.
+    def listing(self) -> ListPlace:
+        """Place of the fixture in its result (:attr:`listed`), never None.
 
         Raises
         ------
@@ -355,10 +366,10 @@ class Fixture:
         return self.listed
 
     def refuse_others(self, workpiece: Workpiece, toolkit: Toolkit) -> None:
-        """Refuses a part and a toolkit that it is not a fixture of.
+        """Raise InputError for a part or a toolkit that this fixture does not belong to.
 
-        What is listed belongs to the part and the toolkit of its result. One that was put together otherwise,
-        or changed since, has to stand on carriers and touch faces that there are.
+        A listed fixture belongs to the part and the toolkit of its result. Any other fixture, and one changed
+        since, must stand on carriers of the toolkit and touch faces of the part.
 
         Parameters
         ----------
@@ -367,7 +378,7 @@ class Fixture:
         Raises
         ------
         InputError
-            Saying which of them is another one.
+            Where the part or the toolkit, which the message names, is another one.
         """
         if self.listed is not None:
             result = self.listed.result
@@ -390,7 +401,8 @@ class Fixture:
         unit: str = "mm",
         overwrite: bool = False,
     ) -> Picture:
-        """The picture to set it up from: SVG text, which a notebook shows as a picture.
+        """Return the drawing to set the fixture up from as SVG text,
+        which a notebook shows as a picture; write it if asked.
 
         Parameters
         ----------
@@ -447,7 +459,8 @@ class Fixture:
         result_file: str | Path | None = None,
         overwrite: bool = False,
     ) -> None:
-        """Writes the setup sheet (.pdf, .svg, .png), the set-up for CAM (.dxf, .step) or the pins (.csv).
+        """Write the setup sheet (.pdf, .svg, .png),
+        the set-up for CAM (.dxf, .step) or the list of pins (.csv).
 
         Parameters
         ----------
@@ -457,20 +470,21 @@ class Fixture:
         day : the date on the sheet; today if None.
         part_name : written instead of the part's own name.
         dowel : what the pegs are and how they fit their holes, in words; those of the tolerance if None.
-        material : what the part is of, such as "aluminium-6061": the sheet then shows how far clamping bends it, see
-            :meth:`bending`.
+        material : what the part is of, such as "aluminium-6061": the sheet then shows how far clamping bends
+            it, see :meth:`bending`.
         bend : in mm, beyond which the sheet warns of a part that bends or gives.
         jaw_force : in N, per clamp; that of the query if None.
-        jaw : what keeps the jaw where it is: "screw", "constant" for a constant force, or how many times as
-            stiff as one contact it is.
+        jaw : what keeps the jaw in place: "screw" (locked), "constant" for a constant force, or how many
+            times as stiff as one contact the jaw is.
         friction : Coulomb's coefficient, for what friction could add; None for none.
         loads : in place of the result's.
         at : name of the hole in which the lowest column and the lowest row stand, such as "D4"; None is the
             middle of the plate.
-        zero : part zero: "corner", "centre", "hole 2", or x and y of the drawing in ``unit``; its origin if None.
+        zero : part zero: "corner", "centre", "hole 2", or x and y of the drawing in ``unit``; its origin if
+            None.
         machine_position : (x, y) of hole A1 in the machine's coordinates, in mm.
-        thickness, peg_length, peg_height, plate_thickness : of the part, the pegs, how far these stand out, and
-            of the plates, in mm; None leaves a line to write it on.
+        thickness, peg_length, peg_height, plate_thickness : of the part, the pegs, how far these stand out,
+            and of the plates, in mm; None leaves a line to write it on.
         seating : whether the sheet shows where else the pegs can hold the part; None shows it where it is
             known.
         supports : of what :meth:`supports` returns, also the pads under the part and the clamp on top, on a
@@ -485,8 +499,8 @@ class Fixture:
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, supports and files of another, values that cannot be,
-            and when the file cannot be written or replaced.
+            For a fixture that is not one of a result, supports and files of another, impossible values, and
+            when the file cannot be written or replaced.
         """
         from workhold.presenting.papers import save_sheet
 
@@ -531,7 +545,7 @@ class Fixture:
         part: str | Path | None = None,
         overwrite: bool = False,
     ) -> None:
-        """Writes the fixture in three dimensions as a GLB file, which browsers and phones show.
+        """Write the fixture in three dimensions as a GLB file, which browsers and phones show.
 
         Parameters
         ----------
@@ -563,7 +577,7 @@ class Fixture:
         supports: Supports | None = None,
         best: int = 1,
     ) -> build123d.Compound:
-        """Makes a compound of build123d: part, pegs, clamps and plates, each with its name and colour.
+        """Return a build123d compound of part, pegs, clamps and plates, each with its name and colour.
 
         Parameters
         ----------
@@ -591,12 +605,13 @@ class Fixture:
         supports: Supports | None = None,
         best: int = 1,
     ) -> cadquery.Assembly:
-        """Makes an assembly of CadQuery with the bodies of :meth:`to_build123d`, which names the parameters.
+        """Return a CadQuery assembly of the bodies that :meth:`to_build123d` makes;
+        see there for the parameters.
 
         Raises
         ------
         InputError
-            As :meth:`to_build123d`, of CadQuery.
+            As :meth:`to_build123d`, with CadQuery in place of build123d.
         """
         from workhold.presenting.assembly import to_cadquery
 
@@ -623,23 +638,26 @@ class Fixture:
         reach: Sequence[tuple[float, float, float, float]] | None = None,
         point: tuple[float, float] | None = None,
     ) -> Supports:
-        """Where three supports hold the part up, and a clamp presses it down: the best sets of three.
+        """Return the best sets of three supports under the part,
+        each with the place of a clamp that presses on top.
 
         Parameters
         ----------
         thickness : of the part in mm; that of its solid if None.
         best : how many sets; None for all.
-        loads : planar ones, which act at the top of the part, or ``SpatialLoad``; those of the query if None.
+        loads : planar loads, which act at the top of the part, or ``SpatialLoad``; those of the query if
+            None.
         jaw_force : in N; by default the one that keeps all pegs in contact.
-        pad_radius, tip_radius : of the supports' pads and of the clamp's tip, in mm; the toolkit's own, or the
-            usual ones, if None, as all that follows.
-        pad_margin, tip_margin : smallest distances in mm from a pad and from the tip to the border of its face.
-        head_radius : within which what rises above the clamped face is not, in mm.
+        pad_radius, tip_radius : of the supports' pads and of the clamp's tip, in mm; the toolkit's own, or
+            the usual ones, if None; the same holds for all that follow.
+        pad_margin, tip_margin : smallest distances in mm from a pad and from the tip to the border of its
+            face.
+        head_radius : radius in mm around the clamp within which nothing may rise above the clamped face.
         inside : smallest distance in mm from the clamp to each side of the supports' triangle.
         band : least and greatest height in mm at which pegs may press.
-        bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge) in mm, the outer one
-            first; "outline" is the whole outline, and None what a solid says.
-        bottom_zones, top_zones : where no pad and where no tip may stand, as of ``Restrictions``.
+        bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge) in mm, the outer
+            one first; "outline" is the whole outline, and None what a solid says.
+        bottom_zones, top_zones : where no pad and where no tip may stand, as in ``Restrictions``.
         reach : rings (x, y, least, most) in mm in which the clamp can stand.
         point : (x, y) in mm in the part's coordinates where the clamp stands.
 
@@ -650,8 +668,7 @@ class Fixture:
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, a part of which nobody says how thick it is, and values
-            that cannot be.
+            For a fixture that is not one of a result, a part of unknown thickness, and impossible values.
 
         Examples
         --------
@@ -662,9 +679,9 @@ class Fixture:
         >>> len(found.triples), found.triples[0].arm > 10
         (2, True)
         """
-        from workhold.supports.asking import fixture_supports
+        from workhold.supports.asking import find_fixture_supports
 
-        return fixture_supports(
+        return find_fixture_supports(
             self,
             thickness,
             best=best,
@@ -699,10 +716,12 @@ class Fixture:
         weight: float = 0.0,
         top_zones: Sequence[Zone] = (),
     ) -> StrappedHold:
-        """Where straps hold the part down against the three locators with the least force, without side clamps.
+        """Return the places of straps that hold the part down
+        against the three locators with the least force.
 
-        The part lies on the plate, and a hand pushes it against the locators until the straps are tight. The straps
-        are the best of a finite set: points of the ring about each hole, every 30 degrees at three radii.
+        No side clamp presses: the part lies on the plate, and a hand pushes it against the locators until the
+        straps are tight. The straps are the best of a finite set: points of the ring about each hole, every
+        30 degrees at three radii.
 
         Parameters
         ----------
@@ -711,17 +730,18 @@ class Fixture:
         tip_radius : of their round tips, in mm.
         reach : least and greatest distance in mm of a tip from the middle of its bolt's hole.
         max_force : that a strap is rated for, in N.
-        loads : planar ones, which act at the top of the part, or ``SpatialLoad``; those of the query if None.
+        loads : planar loads, which act at the top of the part, or ``SpatialLoad``; those of the query if
+            None.
         friction : coefficients by name, of "tip" and "plate"; usual ones for those not given.
         safety : the factor on the loads; 2 if None.
         weight : of the part in N, without that factor.
-        top_zones : where no tip may stand, as of ``Restrictions``.
+        top_zones : where no tip may stand, as in ``Restrictions``.
 
         Raises
         ------
         InputError
-            For a fixture that has other than three locators on one plate, a part of which nobody says how thick it
-            is, and values that cannot be.
+            For a fixture that has other than three locators on one plate, a part of unknown thickness, and
+            impossible values.
 
         Examples
         --------
@@ -760,17 +780,20 @@ class Fixture:
         best: int = 1,
         clamp_force: float | None = None,
     ) -> Bending:
-        """How far clamps bend the part, which springs back after the cut, and how far it gives at the cutter.
+        """Return how far the clamps bend the part,
+        which springs back after the cut, and how far it gives at the cutter.
 
         The loads and the program are those of the query. It takes the extra ``bending``, and some seconds.
 
         Parameters
         ----------
-        material : its name, such as "mild-steel", or Young's modulus in MPa and Poisson's ratio as "69000,0.33".
+        material : its name, such as "mild-steel", or Young's modulus in MPa and Poisson's ratio as
+            "69000,0.33".
         thickness : of the part in mm; that of its solid or of the query if None.
         jaw_force : in N; that of the query if None, else the one that its loads need, else 1000 N.
         jaw : what keeps the jaw closed under loads, see :meth:`load_cases`.
-        faces : that are to be cut, whose bending counts: their numbers, "top" and "bottom"; all if there are none.
+        faces : that are to be cut, whose bending counts: their numbers, "top" and "bottom"; all if there are
+            none.
         part : the STEP file that the part was read from; a part without a solid needs none.
         supports : pads under the part and a clamp on top, of what :meth:`supports` returns.
         best : which of its sets of three.
@@ -779,8 +802,8 @@ class Fixture:
         Raises
         ------
         InputError
-            For a fixture that is not one of a result, a part of which nobody says how thick it is, a solid without its
-            STEP file, a part that cannot be meshed, and when the extra is not installed.
+            For a fixture that is not one of a result, a part of unknown thickness, a solid without its STEP
+            file, a part that cannot be meshed, and when the extra is not installed.
         """
         from workhold.presenting.bent import bend_fixture
 
@@ -799,6 +822,6 @@ class Fixture:
 
 
 def refuse_unless(belongs: bool, what: str) -> None:
-    """Refuses what a fixture is not of."""
+    """Raise InputError, which says that the fixture is of another ``what``, unless ``belongs`` is true."""
     if not belongs:
         raise InputError(f"this fixture is of another {what}: give the one that it was designed for.")

@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
-from workhold.model.clamps import compute_working_forces, ratios
-from workhold.model.fixture import Fixture, Listed, Pair, Peg
+from workhold.model.clamps import compute_force_ratios, compute_working_forces
+from workhold.model.fixture import ClampPair, Fixture, ListPlace, Peg
 from workhold.model.pose import ENDS, Pose
 from workhold.model.quality import BEFORE_PINS, CLOSURE_MARGIN, TILT, WARNINGS, list_known_figures
-from workhold.model.wall_ends import wall_ends
+from workhold.model.wall_ends import find_wall_ends
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "BLOCK",
     "FixtureTable",
     "make_fixture_of_row",
-    "fixtures_of",
+    "make_fixtures",
     "list_flat_angles",
-    "peg_places",
+    "compute_peg_places",
     "make_flat_jaw_table",
     "make_unknown_quality",
 ]
@@ -69,8 +69,8 @@ class FixtureTable:
     pairs: NDArray[np.int32] = field()
 
     @pairs.default
-    def each_by_itself(self) -> NDArray[np.int32]:
-        """One for each fixture."""
+    def count_each_once(self) -> NDArray[np.int32]:
+        """Return ones (N,), the default of :attr:`pairs`."""
         return np.ones(len(self.arrangement), np.int32)
 
     def __attrs_post_init__(self) -> None:
@@ -98,27 +98,34 @@ class FixtureTable:
 
     @property
     def columns(self) -> tuple[NDArray[Any], ...]:
-        """All the arrays, in the order above."""
+        """All arrays, in the order of the parameters."""
         return tuple(getattr(self, column.name) for column in fields(FixtureTable))
 
     @property
     def working_force(self) -> NDArray[np.float64]:
-        """The contact forces (N, P) per unit of clamping force; of two clamps at their working ratio."""
+        """Contact forces (N, P) per unit of clamping force;
+        for two clamps, per unit of the sum of both at the working ratio.
+        """
         return self.force if self.force.ndim == 2 else compute_working_forces(self.force)
 
     @property
     def null_vector(self) -> NDArray[np.float64]:
-        """The positive null vectors (N, P) of the wrenches, scaled to sum 1; forces are proportional to them,
-        those of two clamps at their working ratio.
+        """Positive null vectors (N, P) of the contact wrenches,
+        scaled to sum 1: the contact forces over their sum.
+
+        The forces of two clamps are taken at their working ratio.
         """
         forces = self.working_force
         return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
+        """Return the table of the rows that an index array, a mask or a slice picks."""
         return FixtureTable(*(column[order] for column in self.columns))
 
     def count_in_same_holes(self, index: int) -> int:
-        """How many other fixtures have their pegs in the same holes as the one of an index."""
+        """Return how many other fixtures have the arrangement
+        and the holes of the one at ``index``; 0 without pegs.
+        """
         if self.column.shape[1] == 0:
             return 0
         same = self.arrangement == self.arrangement[index]
@@ -127,23 +134,30 @@ class FixtureTable:
         return int(same.sum()) - 1
 
     @classmethod
-    def joined(cls, tables: Sequence[FixtureTable]) -> FixtureTable:
-        """Several tables, at least one, as one; of figures that only some have the others know nothing."""
+    def concatenate(cls, tables: Sequence[FixtureTable]) -> FixtureTable:
+        """Return one table of the rows of several, at least one; figures that a table lacks become NaN."""
         most = max(table.quality.shape[1] for table in tables)
         return cls(
-            *map(np.concatenate, zip(*(table.with_figures(most).columns for table in tables), strict=True))
+            *map(
+                np.concatenate,
+                zip(*(table.with_figure_columns(most).columns for table in tables), strict=True),
+            )
         )
 
-    def with_figures(self, columns: int) -> FixtureTable:
-        """The table with so many columns of figures at least."""
+    def with_figure_columns(self, columns: int) -> FixtureTable:
+        """Return the table with at least ``columns`` columns in ``quality``,
+        new ones filled with NaN; itself if it has them.
+        """
         missing = columns - self.quality.shape[1]
         if missing <= 0:
             return self
         return evolve(self, quality=np.pad(self.quality, ((0, 0), (0, missing)), constant_values=np.nan))
 
     @classmethod
-    def empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
-        """A table of no fixtures of a toolkit; None is one with four pegs."""
+    def make_empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
+        """Return a table without rows, with the numbers of pegs and travels of a toolkit:
+        four and one for None.
+        """
         count, travels = (4, 1) if toolkit is None else (toolkit.peg_count, toolkit.travels)
         several = (travels,) if travels > 1 else ()
         ints, floats = np.zeros((0, count), np.int32), np.zeros((0, count, *several))
@@ -161,7 +175,7 @@ class FixtureTable:
 
 
 def make_unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Figures of quality (N, Q) of which only the closure margin (N,) is known."""
+    """Return ``quality`` (N, Q) with these closure margins (N,) and NaN in all other columns."""
     quality = np.full((len(closure_margin), BEFORE_PINS), np.nan)
     quality[:, CLOSURE_MARGIN] = closure_margin
     return quality
@@ -173,8 +187,11 @@ def make_flat_jaw_table(
     opening: Sequence[float],
     warnings: Sequence[int],
 ) -> FixtureTable:
-    """Return the table of fixtures of two flat jaws: their poses, in radians and mm, their openings in mm and how
-    many warnings they have. They have no pegs."""
+    """Return a table of fixtures between two flat jaws, which have no pegs (P = 0).
+
+    ``theta`` is in radians, ``position`` and ``opening`` are in mm, ``warnings`` are counts; each has N
+    entries.
+    """
     count = len(theta)
     nothing = np.zeros((count, 0), np.int32)
     quality = make_unknown_quality(np.full(count, np.nan))
@@ -194,30 +211,37 @@ def make_flat_jaw_table(
 
 
 def convert_to_whole_turn_degrees(theta: float) -> float:
-    """An angle in radians as degrees in [0, 360); what is within 1e-10 degrees below a whole turn is 0."""
+    """Return an angle in radians as degrees in
+    [0, 360); less than 1e-10 degrees below a whole turn becomes 0.
+    """
     degrees = float(np.degrees(theta)) % 360.0
     return 0.0 if degrees > 360.0 - 1e-10 else degrees
 
 
-def peg_places(
+def compute_peg_places(
     table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """x and y (N, P) in mm of all pegs of a table; those of a wall are where the workpiece touches it."""
+    """Return x and y, each (N, P) in mm, of all pegs of a table, in the toolkit's frame.
+
+    An entry for the end of a wall's contact has the point where the workpiece touches the wall, at y = 0.
+    """
     x, y = toolkit.compute_hole_places(table.arrangement, table.column, table.row, table.jaw_separation)
     for ends in toolkit.ends_on_walls:
-        x[:, ends] = wall_ends(workpiece, toolkit, table.theta, table.position).x
+        x[:, ends] = find_wall_ends(workpiece, toolkit, table.theta, table.position).x
         y[:, ends] = 0.0
     return x, y
 
 
 def list_flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
-    """The way the flats of all pegs of a table look, in degrees; None for pegs that touch with their round
-    side.
+    """Return for each row and peg the direction its flat faces,
+    in degrees counter-clockwise from the toolkit's x axis.
+
+    None stands for a peg that touches with its round side.
     """
     if not toolkit.has_flats:
         return [[None] * table.face.shape[1] for _ in range(len(table))]
     straight = {
-        face.number: np.degrees(np.arctan2(*face.segment.normal()[::-1])) + 180.0
+        face.number: np.degrees(np.arctan2(*face.segment.compute_normal()[::-1])) + 180.0
         for face in workpiece.numbered.faces
         if isinstance(face.segment, Line)
     }
@@ -234,34 +258,40 @@ def list_flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
 
 
 def make_fixture_of_row(
-    table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: Listed | None = None
+    table: FixtureTable, toolkit: Toolkit, index: int, workpiece: Workpiece, listed: ListPlace | None = None
 ) -> Fixture:
-    """Makes the :class:`Fixture` of one row of a table; ``listed`` is where it is listed, if it is."""
-    return next(fixtures_of(table.take(slice(index, index + 1)), toolkit, workpiece, [listed]))
-
-
-def fixtures_of(
-    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, listed: Iterable[Listed | None]
-) -> Iterator[Fixture]:
-    """Makes the fixtures of all rows of a table, at least one; ``listed`` says where each is listed.
-
-    What arrays say of pegs is taken from them for all rows at once.
+    """Return the :class:`Fixture` of the row ``index`` of a table;
+    ``listed`` becomes its place in a result.
     """
-    across, along = (places.tolist() for places in peg_places(table, toolkit, workpiece))
+    return next(make_fixtures(table.take(slice(index, index + 1)), toolkit, workpiece, [listed]))
+
+
+def make_fixtures(
+    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, listed: Iterable[ListPlace | None]
+) -> Iterator[Fixture]:
+    """Yield the fixtures of a table's rows in order,
+    as many as ``listed`` has entries; the table has at least one row.
+
+    ``listed[n]`` becomes the place in a result of the fixture of row n. Arrays are converted once for all
+    rows.
+    """
+    across, along = (places.tolist() for places in compute_peg_places(table, toolkit, workpiece))
     columns, rows, faces = table.column.tolist(), table.row.tolist(), table.face.tolist()
     forces, flats = table.working_force.tolist(), list_flat_angles(table, toolkit, workpiece)
     theta, travels = table.theta.tolist(), table.jaw_separation.reshape(len(table), -1).tolist()
-    pairs = pairs_of_clamps(table) if table.force.ndim == 3 else [None] * len(table)
-    on_wall = wall_ends(workpiece, toolkit, table.theta, table.position) if toolkit.ends_on_walls else None
+    pairs = list_clamp_pairs(table) if table.force.ndim == 3 else [None] * len(table)
+    on_wall = (
+        find_wall_ends(workpiece, toolkit, table.theta, table.position) if toolkit.ends_on_walls else None
+    )
     for n, where in enumerate(listed):
         arrangement = toolkit.arrangements[table.arrangement[n]]
         pegs = []
         for k, number in enumerate(arrangement.carriers):
             carrier, column, row = toolkit.carriers[number], columns[n][k], rows[n][k]
-            place, beside = None if carrier.has_lattice else carrier.place_name(column, row), None
+            place, beside = None if carrier.has_lattice else carrier.name_place(column, row), None
             if on_wall is not None and carrier.contact is WALL_END:
                 end = k - arrangement.carriers.index(number)
-                place, touched = f"{carrier.noun} {ENDS[end]}", on_wall.touching(n)[end]
+                place, touched = f"{carrier.noun} {ENDS[end]}", on_wall.list_touching_faces(n)[end]
                 beside = touched[1] if len(touched) > 1 else None
             at = across[n][k], along[n][k]
             pegs.append(
@@ -279,11 +309,15 @@ def fixtures_of(
         )
 
 
-def pairs_of_clamps(table: FixtureTable) -> list[Pair]:
-    ends, travels = zip(*(one.tolist() for one in ratios(table.force)), strict=True), table.jaw_separation
+def list_clamp_pairs(table: FixtureTable) -> list[ClampPair]:
+    """Return the :class:`ClampPair` of each row of a table whose ``force`` is (N, P, 2)."""
+    ends, travels = (
+        zip(*(one.tolist() for one in compute_force_ratios(table.force)), strict=True),
+        table.jaw_separation,
+    )
     reactions = (tuple((a, b) for a, b in pegs) for pegs in table.force.tolist())
     return [
-        Pair((first, second), interval, given, count)
+        ClampPair((first, second), interval, given, count)
         for (first, second), interval, given, count in zip(
             travels.tolist(), ends, reactions, table.pairs.tolist(), strict=True
         )

@@ -21,9 +21,9 @@ __all__ = [
     "COUNTED_BY_STRAPS",
     "COUNTED_OVER_SUPPORTS",
     "SAFETY",
-    "Coefficient",
+    "FrictionCoefficient",
     "Coefficients",
-    "coefficients_of",
+    "to_coefficients",
     "find_friction_coefficient",
 ]
 
@@ -34,7 +34,7 @@ SAFETY = 2.0
 
 
 @frozen
-class Coefficient:
+class FrictionCoefficient:
     """A coefficient of friction that is usual.
 
     Parameters
@@ -49,24 +49,27 @@ class Coefficient:
     source: str
 
 
-COEFFICIENTS: Mapping[str, Coefficient] = {
-    "jaw": Coefficient(0.10, "smooth jaw and milled steel", "clamping coefficients of Röhm and Hainbuch"),
-    "plate": Coefficient(0.10, "plate and milled steel", "as of a smooth jaw"),
-    "support": Coefficient(0.10, "support and milled steel", "as of a smooth jaw"),
-    "tip": Coefficient(0.10, "clamp tip and milled steel", "as of a smooth jaw"),
+COEFFICIENTS: Mapping[str, FrictionCoefficient] = {
+    "jaw": FrictionCoefficient(
+        0.10, "smooth jaw and milled steel", "clamping coefficients of Röhm and Hainbuch"
+    ),
+    "plate": FrictionCoefficient(0.10, "plate and milled steel", "as of a smooth jaw"),
+    "support": FrictionCoefficient(0.10, "support and milled steel", "as of a smooth jaw"),
+    "tip": FrictionCoefficient(0.10, "clamp tip and milled steel", "as of a smooth jaw"),
 }
 # Those that count where straps press a part down onto the plate, and onto supports.
 COUNTED_BY_STRAPS = "tip", "plate"
 COUNTED_OVER_SUPPORTS = "tip", "support"
 
 
-def coefficients_of(value: Any) -> Coefficients | None:
-    """Coefficients by name from a mapping or from pairs; None where none are given.
+def to_coefficients(value: Any) -> Coefficients | None:
+    """Return pairs of name and coefficient, sorted by name,
+    from a mapping or from pairs; None for None or none at all.
 
     Raises
     ------
     InputError
-        For names that there are not, and numbers that are no coefficients.
+        For unknown names, and impossible coefficients.
 
     Examples
     --------
@@ -95,5 +98,5 @@ def coefficients_of(value: Any) -> Coefficients | None:
 
 
 def find_friction_coefficient(given: Coefficients | None, name: str) -> float:
-    """The coefficient of a name, as given or else the usual one."""
+    """Return the coefficient of this name: the given one, else the usual one of :data:`COEFFICIENTS`."""
     return dict(given or ()).get(name, COEFFICIENTS[name].value)

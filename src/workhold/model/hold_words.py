@@ -6,27 +6,27 @@ from collections.abc import Iterator
 
 from workhold.model.fixture import Fixture
 from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
-from workhold.model.jaw_hold import JawHold, Patch
+from workhold.model.jaw_hold import JawHold, JawPatch
 from workhold.model.query import Query
 from workhold.units import Unit
 
 __all__ = [
     "describe_coefficients",
     "describe_touched_faces",
-    "force_words",
-    "hold_cautions",
-    "hold_reasons",
-    "set_force",
+    "format_set_force",
+    "list_jaw_cautions",
+    "list_hold_reasons",
+    "round_force_up",
     "write_setup_sentences",
     "describe_work_stop",
     "write_warnings",
 ]
 
 
-def describe_touched_faces(patch: Patch) -> str:
-    """What a jaw touches, in a few words.
+def describe_touched_faces(patch: JawPatch) -> str:
+    """Return the faces that a jaw touches, in a few words, or that it touches corners only.
 
-    >>> describe_touched_faces(Patch(((0, 5, 0, 9),), (3,))), describe_touched_faces(Patch(((0, 0, 0, 9),), (), True))
+    >>> describe_touched_faces(JawPatch(((0, 5, 0, 9),), (3,))), describe_touched_faces(JawPatch(((0, 0, 0, 9),), (), True))
     ('face 3', 'a corner')
     """
     if not patch.segments:
@@ -36,44 +36,46 @@ def describe_touched_faces(patch: Patch) -> str:
 
 
 def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
-    """Where the work stop is; empty without one."""
+    """Return at which end of the jaws the work stop is, and its offset in mm if not 0; "" without a stop."""
     if hold.stop is None:
         return ""
     inward = ""
     if offset:
-        inward = f", {short(abs(offset), unit)} {'inward' if offset > 0 else 'outward'}"
+        inward = f", {format_short_length(abs(offset), unit)} {'inward' if offset > 0 else 'outward'}"
     return f"{hold.stop} end of the jaws{inward}"
 
 
-def short(length: float, unit: Unit) -> str:
-    """A length with as few decimals as it has."""
+def format_short_length(length: float, unit: Unit) -> str:
+    """Return a length in mm as text in the unit, rounded to 4 decimals without trailing zeros."""
     return f"{round(length / unit.millimetres, 4):g} {unit.abbreviation}"
 
 
-def set_force(force: float) -> float:
-    """A jaw force in N rounded up to two digits, as somebody would set it."""
+def round_force_up(force: float) -> float:
+    """Return a force in N rounded up to two significant digits; 0.0 for a force that is not positive."""
     if force <= 0:
         return 0.0
     step = 10.0 ** (len(str(int(force))) - 2)
     return -(-force // step) * step
 
 
-def force_words(force: float, unit: Unit) -> str:
-    """A jaw force rounded up to two digits, as somebody would set it.
+def format_set_force(force: float, unit: Unit) -> str:
+    """Return a jaw force in N as text in the unit, first rounded up to two significant digits of newtons.
 
     >>> from workhold.units import MILLIMETRE
     >>> force_words(3432.8, MILLIMETRE)
     '3500 N'
     """
-    return unit.format_force(set_force(force))
+    return unit.format_force(round_force_up(force))
 
 
 def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
-    """How to set it up, a sentence for each thing to do, in their order."""
+    """Yield the steps to set up a fixture between flat jaws,
+    one sentence each without the full stop, in their order.
+    """
     hold, jaws = fixture.hold, query.toolkit.flat_jaws
     assert isinstance(hold, JawHold) and jaws is not None
     if hold.parallels:
-        yield f"Take the parallels of {short(hold.parallels, unit)}, one beside each jaw"
+        yield f"Take the parallels of {format_short_length(hold.parallels, unit)}, one beside each jaw"
     else:
         yield "No parallels: the part lies on the bed of the vise"
     yield f"Open the jaws a little more than {unit.format_length(hold.opening)}"
@@ -92,16 +94,18 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
         yield f"Push it against the work stop, {describe_work_stop(hold, jaws.stop_offset, unit)}: {where}"
     needed = hold.clamp_needed
     if needed is not None:
-        torque = jaws.compute_torque(set_force(needed))
+        torque = jaws.compute_torque(round_force_up(needed))
         on_screw = "" if torque is None else f", about {unit.format_moment(torque * 1000.0)} on the screw"
         apart = f"they stand {unit.format_length(hold.opening)} apart"
-        yield f"Close the jaws with {force_words(needed, unit)} or more{on_screw}; {apart}"
+        yield f"Close the jaws with {format_set_force(needed, unit)} or more{on_screw}; {apart}"
     else:
         yield f"Close the jaws; they stand {unit.format_length(hold.opening)} apart"
 
 
 def describe_coefficients(query: Query) -> str:
-    """With which friction and safety forces are stated, and where these are from."""
+    """Return a sentence that says which friction and safety
+    factor the forces are stated with, and their sources.
+    """
     value, usual = find_friction_coefficient(query.friction, "jaw"), COEFFICIENTS["jaw"]
     is_given = "jaw" in dict(query.friction or ())
     source = "as given" if is_given else f"{usual.between}, {usual.source}"
@@ -109,8 +113,10 @@ def describe_coefficients(query: Query) -> str:
     return f"Friction of the jaws {value:g} ({source}); safety factor {query.safety_factor:g} ({factor})."
 
 
-def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
-    """What speaks for a hold, in the order in which holds are ranked."""
+def list_hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
+    """Return phrases for what a hold is ranked by:
+    angle, grip and area, jaw force needed, height above the jaws.
+    """
     hold = fixture.hold
     assert isinstance(hold, JawHold)
     turn = fixture.pose.written_deg
@@ -120,21 +126,26 @@ def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
     decimals = 0 if unit.millimetres == 1.0 else 2
     area = f"{hold.contact_area / unit.millimetres**2:,.{decimals}f} {unit.abbreviation}²"
     words.append(
-        f"both jaws grip {short(hold.grip, unit)}, {area}" if hold.contact_area else "gripped along a line"
+        f"both jaws grip {format_short_length(hold.grip, unit)}, {area}"
+        if hold.contact_area
+        else "gripped along a line"
     )
     if hold.clamp_needed is not None:
         words.append(f"asks for a jaw force of {unit.format_force(hold.clamp_needed)}")
     if hold.above:
-        words.append(f"{short(hold.above, unit)} above the jaws")
+        words.append(f"{format_short_length(hold.above, unit)} above the jaws")
     return words
 
 
 def write_warnings(hold: JawHold) -> list[str]:
-    """What to beware of, as sentences."""
+    """Return the warnings of a hold as sentences, with a capital and a full stop."""
     return [f"{words[:1].upper()}{words[1:]}." for words in hold.warnings]
 
 
-def hold_cautions(hold: JawHold) -> list[tuple[str, str]]:
-    """What a sheet says to beware of, each with its kind."""
+def list_jaw_cautions(hold: JawHold) -> list[tuple[str, str]]:
+    """Return pairs of kind and sentence for each warning of a hold.
+
+    The kind of all is "unfit" where a jaw touches corners only or cannot press all over, else "load".
+    """
     kind = "unfit" if hold.is_unfit or not hold.full_contact else "load"
     return [(kind, sentence) for sentence in write_warnings(hold)]

@@ -22,7 +22,15 @@ from workhold.errors import InputError
 from workhold.model.first_choice import has_house_order
 from workhold.model.quality import Figure
 
-__all__ = ["HOLD_FIGURES", "HOLD_RANKING", "JawHold", "Patch", "ProgramNeed", "Rectangle", "hold_ranking"]
+__all__ = [
+    "HOLD_FIGURES",
+    "HOLD_RANKING",
+    "JawHold",
+    "JawPatch",
+    "ProgramJawForce",
+    "Rectangle",
+    "choose_hold_ranking",
+]
 
 # Least and greatest x, then least and greatest z, in mm.
 Rectangle = tuple[float, float, float, float]
@@ -49,10 +57,11 @@ HOLD_FIGURES = (
 HOLD_RANKING = ("square", "contact_area", "clamp_needed", "above", "fixed_area")
 
 
-def hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
-    """What holds are ranked by, from figures as a user writes them; the usual order for None.
+def choose_hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the keys of the figures that holds between flat
+    jaws are ranked by, from names as a user writes them.
 
-    An order that fixtures with pegs have stands for the usual one.
+    Return the usual order, :data:`HOLD_RANKING`, for None and for an order of fixtures with pegs.
 
     >>> hold_ranking(["clamp-needed", "grip"])
     ('clamp_needed', 'grip')
@@ -71,8 +80,8 @@ def hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
 
 
 @frozen
-class Patch:
-    """What of a part one jaw touches.
+class JawPatch:
+    """Contact of one flat jaw with the part.
 
     Parameters
     ----------
@@ -87,27 +96,29 @@ class Patch:
 
     @property
     def is_line(self) -> bool:
-        """Whether it has no width."""
+        """Whether all rectangles have no width."""
         return all(x1 <= x0 for x0, x1, _, _ in self.rectangles)
 
     @property
     def area(self) -> float:
-        """Its area in mm²; of lines 0."""
+        """Area in mm²; 0 for lines."""
         return sum((x1 - x0) * (z1 - z0) for x0, x1, z0, z1 in self.rectangles)
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The least and the greatest x in mm."""
+        """Least and greatest x in mm."""
         return min(one[0] for one in self.rectangles), max(one[1] for one in self.rectangles)
 
     @property
     def band(self) -> tuple[float, float]:
-        """The heights in mm that all of it has in common."""
+        """Lower and upper height in mm of the range that all rectangles share;
+        lower > upper where they share none.
+        """
         return max(one[2] for one in self.rectangles), min(one[3] for one in self.rectangles)
 
 
 @frozen
-class ProgramNeed:
+class ProgramJawForce:
     """The jaw force that the tools of a program ask for.
 
     Parameters
@@ -125,7 +136,7 @@ class ProgramNeed:
 
 @frozen
 class JawHold:
-    """How two flat jaws hold a part.
+    """Hold of a part between two flat jaws.
 
     Parameters
     ----------
@@ -139,19 +150,20 @@ class JawHold:
     program_need : what the tools of the program ask for; None without their forces.
     max_pressure : in MPa, at the jaw force needed; None where it is not known.
     max_force : what the vise is rated for, in N; None where nobody says.
-    unit_force : the jaw force that is given times the safety factor that loads have, in N; None where none is given.
+    unit_force : the jaw force that is given times the safety factor that loads have, in N; None where none is
+        given.
     warnings : what to beware of, sentences.
     """
 
     parallels: float
     stop: str | None
-    fixed: Patch
-    moving: Patch
+    fixed: JawPatch
+    moving: JawPatch
     opening: float
     above: float | None
     full_contact: bool
     clamp_needed_each: tuple[float | None, ...] = ()
-    program_need: ProgramNeed | None = None
+    program_need: ProgramJawForce | None = None
     max_pressure: float | None = None
     max_force: float | None = None
     unit_force: float | None = None
@@ -159,67 +171,77 @@ class JawHold:
 
     @property
     def is_unfit(self) -> bool:
-        """Whether a jaw touches corners alone."""
+        """Whether a jaw touches corners only."""
         return self.fixed.is_corner or self.moving.is_corner
 
     @property
     def grip(self) -> float:
-        """The height in mm that both jaws grip."""
+        """Height in mm that the bands of both jaws have in common; 0 where none."""
         (low, high), (other_low, other_high) = self.fixed.band, self.moving.band
         return max(min(high, other_high) - max(low, other_low), 0.0)
 
     @property
     def fixed_area(self) -> float:
-        """The area in mm² that the fixed jaw touches."""
+        """Area in mm² that the fixed jaw touches."""
         return self.fixed.area
 
     @property
     def contact_area(self) -> float:
-        """The smaller of the two areas in mm²."""
+        """Smaller of the areas that the two jaws touch, in mm²."""
         return min(self.fixed.area, self.moving.area)
 
     @property
     def clamp_needed(self) -> float | None:
-        """The jaw force in N that the worst load or tool asks for; None without any, and where none is enough."""
+        """Jaw force in N that the worst load or tool asks for;
+        None without loads and program, or where no force is enough.
+        """
         each = self.forces_needed
         known = [one for one in each if one is not None]
         return max(known) if known and len(known) == len(each) else None
 
     @property
     def forces_needed(self) -> tuple[float | None, ...]:
-        """The jaw force in N that each load and then the program asks for; None where none is enough."""
+        """Jaw forces in N that each load and last the program ask for; None where no force is enough."""
         of_program = () if self.program_need is None else (self.program_need.force,)
         return (*self.clamp_needed_each, *of_program)
 
     @property
     def slip_reserve(self) -> float | None:
-        """What the vise is rated for over what is needed; None where one of both is not known."""
+        """Rated jaw force over the jaw force needed;
+        inf where none is needed, None where one of them is not known.
+        """
         if self.max_force is None or self.clamp_needed is None:
             return None
         return self.max_force / self.clamp_needed if self.clamp_needed > 0 else inf
 
     @property
     def safety_reached(self) -> float | None:
-        """How many times the loads the jaw force holds that is given; what is needed grows as the loads do."""
+        """Factor by which all loads can grow before they need more than the given jaw force.
+
+        It is inf where no force is needed, and None where no jaw force is given or the one needed is not
+        known.
+        """
         if self.unit_force is None or self.clamp_needed is None:
             return None
         return self.unit_force / self.clamp_needed if self.clamp_needed > 0 else inf
 
     @property
     def is_beyond_rating(self) -> bool:
-        """Whether a load asks for more than the vise is rated for, or for more than any force."""
+        """Whether a load or the program asks for more than the vise is rated for, or no force is enough."""
         if None in self.forces_needed:
             return True
         return self.slip_reserve is not None and self.slip_reserve < 1
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures that are known, by their keys."""
+        """Figures of :data:`HOLD_FIGURES` by key, without those that are None or inf."""
         named = {figure.key: getattr(self, figure.key) for figure in HOLD_FIGURES}
         return {key: float(value) for key, value in named.items() if value is not None and value != inf}
 
-    def as_quality(self) -> dict[str, Any]:
-        """The figures as files have them."""
+    def to_quality(self) -> dict[str, Any]:
+        """Return the figures as result files have them,
+        with the keys "full_contact" and "clamp_needed_each" as well.
+        """
         known: dict[str, Any] = {"tilt": 0.0, "full_contact": self.full_contact, **self.figures}
         if self.forces_needed:
             known["clamp_needed"] = self.clamp_needed

@@ -31,7 +31,7 @@ __all__ = [
     "move_to",
     "move_fixture_by_holes",
     "describe_overhang",
-    "overhangs",
+    "find_overhangs",
     "count_spare_holes",
 ]
 
@@ -47,21 +47,25 @@ def shift_hole_numbers(
     shifts: Mapping[str, Hole],
     travel: float,
 ) -> Fixture:
-    """A fixture with its holes counted further on.
+    """Return a fixture whose part and pegs are moved by ``move`` and whose holes have new numbers.
 
-    Part and pegs stand further on by ``move``, x and y in mm, and the holes of a plate count further on by
-    columns and rows, by its name. ``travel`` is that of what moves in mm before the move.
+    Parameters
+    ----------
+    move : translation (x, y) in mm.
+    shifts : by the name of a plate, the columns and rows to add to the holes on it.
+    travel : in mm, of the moved fixture; the share of ``move`` along a clamp's own travel is added to it.
     """
     dx, dy = move
 
     def further(peg: Peg) -> Peg:
+        """Return the peg moved, with its hole (and name of place) numbered anew."""
         carrier = toolkit.find_carrier(peg.carrier)
         if not carrier.contact.is_placed:
             return evolve(peg, x=peg.x + dx, y=peg.y + dy)
         by = shifts[carrier.stands_on]
         in_column, in_row = carrier.counted
         column, row = peg.column + in_column * by[0], peg.row + in_row * by[1]
-        place = None if peg.place is None else carrier.place_name(column, row)
+        place = None if peg.place is None else carrier.name_place(column, row)
         return evolve(peg, column=column, row=row, x=peg.x + dx, y=peg.y + dy, place=place)
 
     pose = evolve(fixture.pose, x=fixture.pose.x + dx, y=fixture.pose.y + dy)
@@ -81,7 +85,9 @@ def shift_hole_numbers(
 
 
 def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
-    """The columns and the rows that pegs and clamps take up."""
+    """Return the column and row numbers, from 0, of pegs and clamps,
+    without those that are measured and not counted.
+    """
     counted = [(peg, toolkit.find_carrier(peg.carrier).counted) for peg in fixture.pegs]
     return (
         [peg.column for peg, (in_column, _) in counted if in_column],
@@ -92,9 +98,9 @@ def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list
 def count_spare_holes(
     fixture: Fixture, toolkit: Toolkit
 ) -> tuple[tuple[int, int | None], tuple[int, int | None]]:
-    """How many columns a set-up may be moved left and right, and how many rows down and up.
+    """Return ((left, right), (down, up)): by how many columns and rows a set-up may be moved each way.
 
-    None stands for any number, where the plate has no end. What cannot be moved has zeros.
+    None stands for any number, where the plate has no end; 0 for a direction in which it must not be moved.
     """
     if toolkit.strap_set is not None:
         # Bolts and tips have their places beside the locators' as they are listed.
@@ -107,17 +113,17 @@ def count_spare_holes(
         )
     )
     # Jaws hold in the columns nearest to the opening, and a jaw with ends where it reaches the part best.
-    if len(toolkit.plates) > 1 or toolkit.reaching is not None:
+    if len(toolkit.plates) > 1 or toolkit.wall_with_ends is not None:
         along = 0, 0
     return along, (0, 0) if toolkit.datum.fixes_rows else across
 
 
 def find_move_to_middle(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hole:
-    """Columns and rows by which all of a set-up stands further on in the middle of its plate.
+    """Return the columns and rows by which to move a set-up so that it stands in the middle of its plate.
 
-    The extent of part, pegs and clamps is then as near to the middle as holes allow; of two places the lower
-    one counts. It is 0 along what has no end, and where all may stand in one place only. Rows of jaws are
-    listed in the middle.
+    The middle of the extent of part, pegs and clamps comes as near to the plate's middle as holes allow; of
+    two equally near places the lower one is taken. A number is 0 where the plate has no end in that
+    direction, where :func:`count_spare_holes` allows none, and on two jaws, which are listed in the middle.
     """
     if not toolkit.plates:
         return 0, 0
@@ -146,16 +152,19 @@ def find_move_to_middle(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece
 
 
 def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
-    """Columns and rows by which all of a set-up stands further on with its lowest ones at a hole's.
+    """Return the columns and rows by which to move a set-up
+    so that its lowest column and row are those of a hole.
+
+    A direction in which the set-up must not be moved has 0, whatever the hole.
 
     Parameters
     ----------
-    name : of the hole in which its lowest column and its lowest row meet, such as "D4".
+    name : of the hole at which the lowest column and the lowest row that it uses are to meet, such as "D4".
 
     Raises
     ------
     InputError
-        For what is no hole, and for a place in which the set-up cannot stand.
+        For text that names no hole, and for a place in which the set-up cannot stand.
     """
     if not toolkit.plates:
         raise InputError(f"a {toolkit.noun} has no holes to stand at: a work stop says where the part lies.")
@@ -182,7 +191,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
         if not -back <= steps <= (inf if ahead is None else ahead):
             least = lowest[number] - back
             most = None if ahead is None else lowest[number] + ahead
-            named = row_name if number else make_column_letters
+            named = make_row_name if number else make_column_letters
             may = named(least)
             if most is None:
                 may += " or farther"
@@ -199,13 +208,13 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
     return move
 
 
-def row_name(row: int) -> str:
-    """The name of a row of holes, which are counted from 1."""
+def make_row_name(row: int) -> str:
+    """Return the name of a row of holes whose number counts from 0: "1" for 0."""
     return str(row + 1)
 
 
 def move_fixture_by_holes(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:
-    """A fixture so many columns and rows of its first plate further on."""
+    """Return a fixture moved by so many columns and rows, at the pitch of the toolkit's first plate."""
     if move == (0, 0):
         return fixture
     pitch = toolkit.plates[0].pitch
@@ -227,12 +236,13 @@ class Overhang:
     length: float
 
 
-def overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[Overhang]:
-    """The sides over which the part hangs: of a wall with ends, else of plates.
+def find_overhangs(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[Overhang]:
+    """Yield the sides over which the part hangs, in the order left, right, lower, upper.
 
-    A plate ends half a pitch beyond its holes.
+    The edges are those of a wall with ends or of flat jaws, else of the plates, half a pitch beyond the last
+    holes.
     """
-    part, wall = bound_placed_part(workpiece, fixture.pose), toolkit.reaching
+    part, wall = bound_placed_part(workpiece, fixture.pose), toolkit.wall_with_ends
     jaws = toolkit.flat_jaws
     edge = bound_plates(fixture, toolkit) if jaws is None else Box(0.0, -inf, jaws.width, inf)
     if wall is not None and wall.reach is not None:
@@ -253,13 +263,14 @@ SIDES = {"left": "left", "right": "right", "lower": "lower side", "upper": "uppe
 def describe_overhang(
     fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece, text: Callable[[float], str]
 ) -> str:
-    """How far the part hangs over the plates, or stands out beyond a jaw; nothing where it does not.
+    """Return a sentence on how far the part hangs over the
+    plates or stands out beyond a jaw; "" where it does not.
 
     Parameters
     ----------
-    text : writes a length in mm.
+    text : function that returns a length in mm as text.
     """
-    found, wall = list(overhangs(fixture, toolkit, workpiece)), toolkit.reaching
+    found, wall = list(find_overhangs(fixture, toolkit, workpiece)), toolkit.wall_with_ends
     if not found:
         return ""
     sides = join_words([f"{text(one.length)} at the {SIDES[one.side]}" for one in found])
@@ -271,11 +282,17 @@ def describe_overhang(
 
 
 def bound_plates(fixture: Fixture, toolkit: Toolkit) -> Box:
-    """The box of all plates, half a pitch beyond their holes; infinite where one has no end."""
+    """Return the bounding box in mm of all plates, half a pitch beyond their holes;
+    ±inf along an axis without an end.
+    """
     boxes = []
     for plate in toolkit.plates:
         travelled = 0.0 if plate.travel is None else fixture.travel
-        (x0, y0), half_x, half_y = plate.place(0, 0, travelled), plate.pitch[0] / 2, plate.pitch[1] / 2
+        (x0, y0), half_x, half_y = (
+            plate.compute_hole_center(0, 0, travelled),
+            plate.pitch[0] / 2,
+            plate.pitch[1] / 2,
+        )
         right = inf if plate.columns is None else x0 + (2 * plate.columns - 1) * half_x
         upper = inf if plate.rows is None else y0 + (2 * plate.rows - 1) * half_y
         left, lower = (
@@ -286,5 +303,5 @@ def bound_plates(fixture: Fixture, toolkit: Toolkit) -> Box:
         boxes.append(Box(left, -inf if is_open else lower, right, inf if is_open and plate.travel else upper))
     box = boxes[0]
     for other in boxes[1:]:
-        box = box.union(other)
+        box = box.unite(other)
     return box

@@ -32,12 +32,12 @@ __all__ = [
     "MoveKind",
     "Moves",
     "PathVertex",
-    "Stretches",
+    "MoveStretches",
     "SweptPiece",
-    "along",
-    "box_path",
+    "compute_path_points",
+    "make_box_path",
     "compute_bulges_of_shares",
-    "moves_of",
+    "unpack_moves",
     "pack_piece",
     "find_shares_between_heights",
 ]
@@ -64,22 +64,22 @@ FIELDS = np.dtype(
 )
 
 
-def integers(values: Any) -> NDArray[np.int64]:
-    """A read-only array of whole numbers."""
+def to_integers(values: Any) -> NDArray[np.int64]:
+    """Return a read-only copy as an int64 array."""
     array = np.array(values, dtype=np.int64)
     array.setflags(write=False)
     return array
 
 
-def booleans(values: Any) -> NDArray[np.bool_]:
-    """A read-only array of truth values."""
+def to_booleans(values: Any) -> NDArray[np.bool_]:
+    """Return a read-only copy as a boolean array."""
     array = np.array(values, dtype=np.bool_)
     array.setflags(write=False)
     return array
 
 
-def floats(values: Any) -> Floats:
-    """A read-only array of real numbers."""
+def to_floats(values: Any) -> Floats:
+    """Return a read-only copy as a float64 array."""
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
@@ -106,20 +106,20 @@ class Moves:
     Raises
     ------
     InputError
-        For columns of different lengths, and places that are none.
+        For columns of different lengths, and impossible places.
     """
 
-    line: NDArray[np.int64] = field(converter=integers, eq=SAME, hash=False, repr=False)
-    tool: NDArray[np.int64] = field(converter=integers, eq=SAME, hash=False, repr=False)
-    cutting: NDArray[np.bool_] = field(converter=booleans, eq=SAME, hash=False, repr=False)
-    start: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    end: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    bulge: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    feed: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    spindle: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
+    line: NDArray[np.int64] = field(converter=to_integers, eq=SAME, hash=False, repr=False)
+    tool: NDArray[np.int64] = field(converter=to_integers, eq=SAME, hash=False, repr=False)
+    cutting: NDArray[np.bool_] = field(converter=to_booleans, eq=SAME, hash=False, repr=False)
+    start: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    end: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    bulge: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    feed: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    spindle: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
     cycle: NDArray[np.bool_] = field(
         default=Factory(lambda self: np.zeros(len(self.line), np.bool_), takes_self=True),
-        converter=booleans,
+        converter=to_booleans,
         eq=SAME,
         hash=False,
         repr=False,
@@ -141,8 +141,9 @@ class Moves:
         return len(self.line)
 
     @classmethod
-    def of_rows(cls, rows: Sequence[tuple[Any, ...]]) -> Moves:
-        """Moves from rows of line, tool, cutting, start, end, bulge, feed, spindle and, if given, cycle.
+    def from_rows(cls, rows: Sequence[tuple[Any, ...]]) -> Moves:
+        """Return moves from rows (line, tool, cutting, start, end, bulge, feed, spindle[, cycle]),
+        fields as documented on the class.
 
         Raises
         ------
@@ -153,14 +154,19 @@ class Moves:
         ends = [np.array(columns[k], dtype=float).reshape(-1, 3) for k in (3, 4)]
         return cls(*columns[:3], *ends, *columns[5:])
 
-    def cut_to(self, stretches: Stretches) -> Moves:
+    def cut_to(self, stretches: MoveStretches) -> Moves:
+        """Return one move for each of the K stretches:
+        the stretch alone, with the line, tool and speeds of its move.
+        """
         move, first, last = stretches.move, stretches.first, stretches.last
         start, end, bulge = self.start[move], self.end[move], self.bulge[move]
         places = []
         for share in (first, last):
             height = start[:, 2] + share * (end - start)[:, 2]
             height = np.where(share == 0.0, start[:, 2], np.where(share == 1.0, end[:, 2], height))
-            places.append(np.column_stack([along(start[:, :2], end[:, :2], bulge, share), height]))
+            places.append(
+                np.column_stack([compute_path_points(start[:, :2], end[:, :2], bulge, share), height])
+            )
         return Moves(
             self.line[move],
             self.tool[move],
@@ -175,7 +181,7 @@ class Moves:
 
     @property
     def length(self) -> Floats:
-        """(M,) length of each move in mm, of helices along the helix."""
+        """(M,) length of each move's path in mm, with its rise: of helices along the helix."""
         chord = np.hypot(*(self.end - self.start).T[:2])
         half = 2.0 * np.arctan(self.bulge)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -185,7 +191,7 @@ class Moves:
 
 
 @frozen
-class Stretches:
+class MoveStretches:
     """K stretches of moves, by the moves' numbers and along each.
 
     Parameters
@@ -194,37 +200,39 @@ class Stretches:
     first, last : (K,) shares from which and until which each goes.
     """
 
-    move: NDArray[np.int64] = field(converter=integers, eq=SAME, hash=False, repr=False)
-    first: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
-    last: Floats = field(converter=floats, eq=SAME, hash=False, repr=False)
+    move: NDArray[np.int64] = field(converter=to_integers, eq=SAME, hash=False, repr=False)
+    first: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
+    last: Floats = field(converter=to_floats, eq=SAME, hash=False, repr=False)
 
     def __len__(self) -> int:
         return len(self.move)
 
     @classmethod
-    def whole(cls, moves: NDArray[np.bool_]) -> Stretches:
-        """All of those moves that a mask (M,) names."""
+    def from_whole_moves(cls, moves: NDArray[np.bool_]) -> MoveStretches:
+        """Return one stretch, from share 0 to 1, for each move where the mask (M,) is True."""
         rows = np.flatnonzero(moves)
         return cls(rows, np.zeros(len(rows)), np.ones(len(rows)))
 
-    def of_move(self, move: int) -> list[list[float]]:
-        """First and last share of each stretch of a move."""
+    def list_shares(self, move: int) -> list[list[float]]:
+        """Return [first, last] share of each stretch of the move with this index; [] where it has none."""
         own = slice(*np.searchsorted(self.move, [move, move + 1]).tolist())
         return [list(pair) for pair in zip(self.first[own].tolist(), self.last[own].tolist(), strict=True)]
 
 
 def compute_bulges_of_shares(bulge: Floats, part: Floats) -> Floats:
-    """The bulges (N,) of parts of arcs, as shares of their sweeps."""
+    """Return the bulges (N,) of parts of arcs:
+    ``bulge`` is that of the arc, ``part`` the share of its sweep, both (N,).
+    """
     return np.where(part == 1.0, bulge, np.tan(part * np.arctan(bulge)))
 
 
 def find_shares_between_heights(
     start: Floats, end: Floats, low: Floats, high: Floats
 ) -> tuple[Floats, Floats]:
-    """The shares of moves from which and until which their tip is at given heights; (N,) arrays each.
+    """Return first and last share, (N,) each, between which the tips of moves are at heights in [low, high].
 
-    The tip goes from height ``start`` to ``end``; heights are those from ``low`` to ``high``, both included.
-    The first share is larger where the tip is never there.
+    A tip goes from height ``start`` to ``end``; all are (N,) in mm. Where it never is at such a height, first
+    > last.
     """
     rise = end - start
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -238,11 +246,12 @@ def find_shares_between_heights(
     )
 
 
-def along(start: Floats, end: Floats, bulge: Floats, share: Floats) -> Floats:
-    """Points of paths in the plane at a share; the ends are returned as they are.
+def compute_path_points(start: Floats, end: Floats, bulge: Floats, share: Floats) -> Floats:
+    """Return the points (N, 2) in mm of paths in the plane at these shares; at 0 and 1 exactly the ends.
 
-    The chord to the point is the whole chord, turned and shortened. For a sweep t and a share s its length is
-    ``sin(s t / 2) / sin(t / 2)`` of it, and it is turned by ``(1 - s) t / 2`` against the sweep.
+    The chord from the start to the point is the whole chord, shortened and turned. For a sweep t and a share
+    s its length is ``sin(s t / 2) / sin(t / 2)`` times that of the whole, and it is turned by ``(1 - s) t /
+    2`` against the sweep.
 
     Parameters
     ----------
@@ -296,16 +305,18 @@ class SweptPiece:
 
     @property
     def filled(self) -> bool:
-        """Whether everything inside the path counts, everywhere at all heights of the move."""
+        """Whether the path is the border of a box,
+        all of which counts as swept, at all heights of the move.
+        """
         return len(self.path) > 2
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Least and greatest height that the cylinder covers on the way, in mm."""
+        """Least and greatest height in mm that the cylinder covers during the move."""
         return min(self.tip) + self.heights[0], max(self.tip) + self.heights[1]
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
+        """Return plain data as in a result file."""
         return {
             "line": self.line,
             "tool": self.tool,
@@ -317,44 +328,51 @@ class SweptPiece:
         }
 
 
-def box_path(one: tuple[float, float], other: tuple[float, float]) -> tuple[PathVertex, ...]:
-    """The border of the rectangle between two corners, back to the first; there and back where it is flat."""
+def make_box_path(one: tuple[float, float], other: tuple[float, float]) -> tuple[PathVertex, ...]:
+    """Return the border of the rectangle between two corners as straight spans, closed:
+    the last vertex equals the first.
+
+    Where the rectangle has no width or height, the path goes from ``one`` to ``other`` and back.
+    """
     (x, y), (to_x, to_y) = one, other
     corners = [(x, y), (to_x, y), (to_x, to_y), (x, to_y)] if x != to_x and y != to_y else [one, other]
     return tuple((a, b, 0.0) for a, b in (*corners, one))
 
 
 def pack_piece(entries: Mapping[str, Any]) -> bytes:
-    """The entries of a piece as bytes.
+    """Return a swept piece, given as the entries of a result file, as bytes in the layout :data:`PACKED`.
 
     Raises
     ------
     InputError, LookupError, TypeError, ValueError
-        For entries that lack something, or hold what cannot be.
+        For entries that lack something, or hold impossible values.
     """
     line, tool, kind = int(entries["line"]), int(entries["tool"]), entries["kind"]
     path = tuple((convert_real(x), convert_real(y), convert_real(bulge)) for x, y, bulge in entries["path"])
     if kind not in (RAPID, CUT) or not path or line.bit_length() > 62:
         raise InputError(f"a piece of line {line} of the program cannot be used: leave it out.")
     (x, y, bulge), (to_x, to_y, _) = path[0], path[len(path) // 2]
-    if len(path) > 2 and path != box_path((x, y), (to_x, to_y)):
+    if len(path) > 2 and path != make_box_path((x, y), (to_x, to_y)):
         raise InputError(f"a piece of line {line} of the program cannot be used: leave it out.")
-    ends = (x, y, bulge, to_x, to_y, *pair_of(entries["z"]))
+    ends = (x, y, bulge, to_x, to_y, *to_pair(entries["z"]))
     if not all(map(isfinite, ends)):
         raise InputError(f"a move of line {line} of the program ends nowhere: correct it.")
-    shape = (*pair_of(entries["heights"]), convert_real(entries["radius"]))
+    shape = (*to_pair(entries["heights"]), convert_real(entries["radius"]))
     return PACKED.pack(line, tool, kind == CUT, len(path), *ends, *shape)
 
 
-def pair_of(values: Any) -> tuple[float, float]:
+def to_pair(values: Any) -> tuple[float, float]:
+    """Return two values as floats; raise InputError or ValueError for anything else."""
     one, other = values
     return convert_real(one), convert_real(other)
 
 
-def moves_of(pieces: Sequence[bytes], tools: Mapping[int, Tool]) -> Moves:
-    """The moves of which these are the packed pieces, one for each cylinder of the tool.
+def unpack_moves(pieces: Sequence[bytes], tools: Mapping[int, Tool]) -> Moves:
+    """Return the moves that packed pieces belong to;
+    each move has one piece for each cylinder of its tool, in order.
 
-    Refuses a move that lacks a piece of its tool, or has one too many.
+    Feeds and speeds are 0. Raises InputError, naming the line, where a move lacks a piece or has one too
+    many.
     """
     table = np.frombuffer(b"".join(pieces), FIELDS)
     shapes = {

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal, get_args
 from attrs import asdict, field, frozen
 
 from workhold.errors import join_words
-from workhold.fixels.toolkit import Wording
+from workhold.fixels.toolkit import ToolkitWording
 
 __all__ = [
     "KINDS",
@@ -63,12 +63,14 @@ class Note:
 
     @property
     def words(self) -> str:
-        """The sentence."""
+        """Sentence to print."""
         return self.sentence.format(**self.data)
 
     @property
     def data(self) -> dict[str, Any]:
-        """Its kind and its fields, by name, but for what the toolkit calls its things."""
+        """Fields by name and "kind", without those that do
+        not count in a comparison (the toolkit's words).
+        """
         return {"kind": self.kind, **asdict(self, filter=lambda one, _: bool(one.eq))}
 
     def __str__(self) -> str:
@@ -85,13 +87,13 @@ class Remark(Note):
 
 
 def make_notes(notes: Iterable[Note | str]) -> tuple[Note, ...]:
-    """Notes, of which some are given as sentences."""
+    """Return notes in the same order, each string among them made a :class:`Remark`."""
     return tuple(Remark(note) if isinstance(note, str) else note for note in notes)
 
 
 @frozen
 class NoFixture(Note):
-    """Why a search finds no fixture.
+    """Note on why a search finds no fixture.
 
     Parameters
     ----------
@@ -102,12 +104,13 @@ class NoFixture(Note):
 
     kind = "no_fixture"
     stage: Stage
-    wording: Wording = field(eq=False, repr=False)
+    wording: ToolkitWording = field(eq=False, repr=False)
     line: int | None = None
     asked: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
+        """Sentence for the stage, in the toolkit's own words where it has some."""
         wording, place = self.wording, STAGES.index(self.stage)
         together = f"No {wording.two} can touch the part together"
         centre = (
@@ -145,7 +148,7 @@ class NoFixture(Note):
 
 @frozen
 class NoPlace(Note):
-    """That none of the ``verified`` candidates that would hold the part can stand in the toolkit.
+    """Note that none of the ``verified`` candidates that would hold the part can stand in the toolkit.
 
     Parameters
     ----------
@@ -154,11 +157,12 @@ class NoPlace(Note):
 
     kind = "no_place"
     verified: int
-    wording: Wording = field(eq=False, repr=False)
+    wording: ToolkitWording = field(eq=False, repr=False)
     with_body: bool = False
 
     @property
     def words(self) -> str:
+        """Sentence to print."""
         also = ", and with its body clear of the program's tools" if self.with_body else ""
         within = f"{self.wording.within}{also}"
         return (
@@ -169,7 +173,7 @@ class NoPlace(Note):
 
 @frozen
 class NoPair(Note):
-    """Why no two clamps hold the part.
+    """Note on why no two clamps hold the part.
 
     Parameters
     ----------
@@ -183,6 +187,7 @@ class NoPair(Note):
 
     @property
     def words(self) -> str:
+        """Sentence to print."""
         if self.contacts == 0:
             return "No three locators and a clamp can touch the part at the same time inside their faces."
         if self.seats == 0:
@@ -197,19 +202,22 @@ class NoPair(Note):
 
 @frozen
 class AskedFor(Note):
-    """What the query itself asks for, where there is no fixture; what limits the hardware is not among it."""
+    """Note on what the query itself asks for, where there is no fixture; limits of the hardware are not among
+    it.
+    """
 
     kind = "asked_for"
     rules: tuple[str, ...]
 
     @property
     def words(self) -> str:
+        """Sentence to print."""
         return f"So it is with what was asked for: {join_words(self.rules)}."
 
 
 @frozen
 class BestOnly(Note):
-    """That only so many, the best, were sought, and others left out unseen."""
+    """Note that only the ``best`` fixtures were sought, so that the others were not counted."""
 
     kind = "best_only"
     sentence = "Only the best {best} were sought, so how many fixtures there are in all was not counted."
@@ -218,7 +226,7 @@ class BestOnly(Note):
 
 @frozen
 class Cut(Note):
-    """That a search was stopped while its fixtures were sorted or written."""
+    """Note that a search was stopped while its fixtures were sorted or written."""
 
     kind = "cut"
     sentence = (
@@ -231,7 +239,7 @@ class Cut(Note):
 
 @frozen
 class KeptBest(Note):
-    """That a server keeps only the best of the fixtures found."""
+    """Note that a server keeps only the best of the fixtures found."""
 
     kind = "kept_best"
     sentence = "{found:,} fixtures were found; this server keeps the best {kept:,} of them."
@@ -241,7 +249,7 @@ class KeptBest(Note):
 
 @frozen
 class ChosenOnly(Note):
-    """That somebody kept some of the fixtures found."""
+    """Note that somebody chose some of the fixtures found."""
 
     kind = "chosen"
     sentence = "Of {found:,} fixtures found, {chosen:,} were chosen to be listed."
@@ -251,7 +259,7 @@ class ChosenOnly(Note):
 
 @frozen
 class Stopped(Note):
-    """That a server ended a search after its time limit."""
+    """Note that a server ended a search after its time limit."""
 
     kind = "stopped"
     sentence = (
@@ -263,7 +271,7 @@ class Stopped(Note):
 
 @frozen
 class ToolkitsLeft(Note):
-    """That a server ended a comparison of toolkits after its time limit."""
+    """Note that a server ended a comparison of toolkits after its time limit."""
 
     kind = "toolkits_left"
     sentence = "Stopped after {seconds:g} s; the rest of the toolkits was not tried."
@@ -272,7 +280,9 @@ class ToolkitsLeft(Note):
 
 @frozen
 class Many(Note):
-    """That of about ``count`` fixtures, too many to list unasked, the best are listed."""
+    """Note that of about ``count`` fixtures, which are too many to list without being asked to, only the best
+    are listed.
+    """
 
     kind = "many"
     count: int
@@ -280,19 +290,21 @@ class Many(Note):
 
     @property
     def words(self) -> str:
+        """Sentence to print."""
         about = round_to_two_digits(self.count)
         return f"There are about {about:,} fixtures: these are the best {self.listed:,}."
 
 
 @frozen
 class LeftUndecided(Note):
-    """How many candidates are undecided."""
+    """Note on the number of undecided candidates."""
 
     kind = "undecided"
     count: int
 
     @property
     def words(self) -> str:
+        """Sentence to print."""
         some = "1 candidate is undecided" if self.count == 1 else f"{self.count} candidates are undecided"
         return (
             f"{some}: it cannot be shown whether they are fixtures; the result's proof names them with the "
@@ -317,6 +329,7 @@ class UndecidedSystem(Note):
 
     @property
     def words(self) -> str:
+        """Sentence to print."""
         jaws = ["left"] * 3 if len(self.faces) == 3 else ["left", "left", "right", "right"]
         pegs = zip(jaws, self.columns, self.rows, self.faces, strict=True)
         where = [f"{jaw} column {column:+d}, row {row:+d} on face {face}" for jaw, column, row, face in pegs]
@@ -325,7 +338,7 @@ class UndecidedSystem(Note):
 
 @frozen
 class MoreSystems(Note):
-    """How many systems the algebra cannot decide beside those that are named."""
+    """Note on the number of systems that the algebra cannot decide besides those that are named."""
 
     kind = "more_systems"
     sentence = "Undecided: {count} more systems of pegs and faces."
@@ -334,7 +347,7 @@ class MoreSystems(Note):
 
 @frozen
 class FittedOutline(Note):
-    """That the outline departs from the drawn one, by up to ``departure`` mm."""
+    """Note that the outline differs from the drawn one by up to ``departure`` mm."""
 
     kind = "fitted_outline"
     sentence = (
@@ -346,7 +359,7 @@ class FittedOutline(Note):
 
 @frozen
 class Seated(Note):
-    """That of ``looked_at`` fixtures only the ``kept`` are listed that are seated as asked."""
+    """Note that of the first ``looked_at`` fixtures only the ``kept`` that are seated as asked are listed."""
 
     kind = "seated"
     sentence = (
@@ -360,7 +373,7 @@ class Seated(Note):
 
 @frozen
 class PushedByHand(Note):
-    """That seating asked for with two clamps is no figure to order fixtures by."""
+    """Note that fixtures with two clamps are not ordered by the seating that was asked for."""
 
     kind = "pushed_by_hand"
     sentence = (
@@ -370,7 +383,7 @@ class PushedByHand(Note):
 
 
 def round_to_two_digits(count: int) -> int:
-    """A count of which two digits are known.
+    """Return a count rounded to two significant digits.
 
     >>> round_to_two_digits(2_247_282)
     2200000

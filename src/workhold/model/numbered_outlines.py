@@ -12,38 +12,38 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.geometry.loop import Comparisons, Face, LoopShape, encloses, find_near_pairs
+from workhold.geometry.loop import ComparisonBudget, Face, LoopShape, encloses, find_near_pairs
 from workhold.geometry.segment import Arc, Point, Segment
-from workhold.model.solid import Band, RunRows, SolidOutline, run_at
+from workhold.model.solid import Band, RunRows, SolidOutline, interpolate_run
 
-__all__ = ["NumberedOutlines", "outer_count", "refuse_misplaced_holes", "unlike"]
+__all__ = ["NumberedOutlines", "count_outer_loops", "refuse_misplaced_holes", "drop_equal_values"]
 
 Value = TypeVar("Value")
 
 
 class OutlineOfPart(Protocol):
-    """What an outline has, such as a workpiece."""
+    """An outline with segments, faces and perhaps a solid, such as a workpiece."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """All segments; their places are their numbers."""
+        """All segments; a segment's index is its number."""
 
     @property
     def faces(self) -> tuple[Face, ...]:
-        """All faces, ordered by their numbers."""
+        """All faces, in the order of their numbers."""
 
     @property
     def outer_count(self) -> int:
-        """How many segments the outer loops have, which come first."""
+        """Number of segments of the outer loops; these segments come first."""
 
     @property
     def solid(self) -> SolidOutline | None:
-        """The solid that it is of; None for a prism."""
+        """Solid that the outline belongs to; None for a prism."""
 
 
 @frozen(eq=False)
 class NumberedOutlines:
-    """The segments and faces of a workpiece and of the outlines of carriers, numbered on.
+    """Segments and faces of a workpiece and of the own outlines of carriers, in one numbering.
 
     Parameters
     ----------
@@ -65,8 +65,11 @@ class NumberedOutlines:
     inside: frozenset[int]
 
     @classmethod
-    def of(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
-        """Several outlines, the first of which the others belong to."""
+    def from_outlines(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
+        """Return the segments and faces of several outlines, of which the first is the part's own.
+
+        The numbers of each outline go on after those of the outline before.
+        """
         segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
         over, inside, runs = list[tuple[int, ...]](), set[int](), list[RunRows]()
         for one in outlines:
@@ -86,12 +89,15 @@ class NumberedOutlines:
         solids = tuple(over) if known else ()
         return cls(tuple(segments), tuple(faces), tuple(bands), tuple(runs), solids, marks, frozenset(inside))
 
-    def pressed(self, number: int, point: Point) -> Band | None:
-        """The heights that a peg can press on where it touches a face: its run there, which holds its band.
+    def find_pressed_band(self, number: int, point: Point) -> Band | None:
+        """Return the (low, high) heights in mm at which a peg can press on a face at a point;
+        None where it may not touch.
+
+        They are the solid's run there, widened to hold the segment's band; without runs, the band itself.
 
         Parameters
         ----------
-        number : of a segment of the face.
+        number : number of any segment of the face.
         point : (x, y) in mm where it touches, or the peg's centre.
         """
         face = next(one for one in self.faces if number in one.segments)
@@ -99,28 +105,35 @@ class NumberedOutlines:
             return self.bands[number] if self.bands else None
 
         def distance_past_end(k: int) -> float:
-            return abs(self.segments[k].parameter(point)) - self.segments[k].half_extent
+            """Return how far the point lies beyond the nearer end of segment k,
+            along its parameter; negative inside.
+            """
+            return abs(self.segments[k].find_parameter(point)) - self.segments[k].half_extent
 
         touched = min(face.segments, key=distance_past_end)
         rows, segment = self.runs[touched], self.segments[touched]
         if not rows:
             return self.bands[touched]
-        place = segment.parameter(point)
+        place = segment.find_parameter(point)
         if isinstance(segment, Arc) and segment.sign < 0:
             place = -place
-        low, high = run_at(rows, (place / segment.half_extent + 1.0) / 2.0)
+        low, high = interpolate_run(rows, (place / segment.half_extent + 1.0) / 2.0)
         own = self.bands[touched] or (low, high)
         return max(min(low, own[0]), 0.0), max(high, own[1])
 
-    def faces_over(self, segments: Iterable[int]) -> set[int]:
+    def list_faces_over(self, segments: Iterable[int]) -> set[int]:
+        """Return the numbers of the solid's faces over these segments;
+        an empty set where they are not known.
+        """
         return {face for segment in segments for face in self.over[segment]} if self.over else set()
 
-    def segments_under(self, faces: Set[int]) -> list[int]:
+    def list_segments_under(self, faces: Set[int]) -> list[int]:
+        """Return the numbers, ascending, of the segments under any of these faces of the solid."""
         return [segment for segment, over in enumerate(self.over) if not faces.isdisjoint(over)]
 
 
-def unlike(values: Iterable[Value]) -> Iterator[Value]:
-    """The values without those that are equal to one before them."""
+def drop_equal_values(values: Iterable[Value]) -> Iterator[Value]:
+    """Yield the values in order, leaving out each that is equal to an earlier one."""
     known = list[Value]()
     for value in values:
         if value not in known:
@@ -128,10 +141,11 @@ def unlike(values: Iterable[Value]) -> Iterator[Value]:
             yield value
 
 
-def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
-    """How many loops lie in no other, or in a hole (loops are known not to meet).
+def count_outer_loops(name: str, shapes: Sequence[LoopShape]) -> int:
+    """Return the number of outer loops:
+    those inside an even number of other loops. Loops are known not to meet.
 
-    Refuses loops of which these do not come before the others.
+    Raises InputError where an outer loop comes after a hole.
     """
     boxes = np.array([shape.box for shape in shapes])
     around = [
@@ -151,10 +165,10 @@ def outer_count(name: str, shapes: Sequence[LoopShape]) -> int:
     return first_hole
 
 
-def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: Comparisons) -> None:
-    """Refuses holes outside the outer loop and holes inside one another (loops are known not to meet).
+def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: ComparisonBudget) -> None:
+    """Raise InputError for a loop outside the first one, or inside another hole; loops are known not to meet.
 
-    Refuses as well what takes more comparisons than may be made.
+    Each pair tested is spent from ``comparisons``, which raises an error once its budget is used up.
     """
     boxes = np.array([shape.box for shape in shapes])
     for index, hole in enumerate(shapes[1:], start=1):

@@ -44,8 +44,8 @@ from workhold.model.solid import NO_LEVELS, SolidOutline
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "met_by",
-    "numbered_solid",
+    "adapt_outlines_to_toolkit",
+    "number_solid",
     "measure_outline_diameter",
     "name_outline",
     "measure_segments_diameter",
@@ -57,22 +57,29 @@ ROUNDED = 1e-9
 
 
 def name_outline(heights: Heights) -> str:
-    """The name of an outline between two heights, which is the same for all carriers of these."""
+    """Return the name of the outline between two heights in mm,
+    the same for all carriers with these heights.
+    """
     return f"outline from {heights[0]:g} to {heights[1]:g} mm"
 
 
-def numbered_solid(workpiece: Workpiece) -> SolidOutline | None:
-    """The solid with the bands and faces of all segments, numbered on; None where there is none."""
+def number_solid(workpiece: Workpiece) -> SolidOutline | None:
+    """Return a part's solid with bands, faces and runs for
+    the segments of all outlines; None without a solid.
+
+    Segments of own outlines have the numbers that follow those of the part.
+    """
     if workpiece.solid is None or not workpiece.outlines:
         return workpiece.solid
     every = workpiece.numbered
     return evolve(workpiece.solid, bands=every.bands, faces=every.over, runs=every.runs)
 
 
-def met_by(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
-    """The workpiece with the outlines of a toolkit's carriers, in their order, and no others.
+def adapt_outlines_to_toolkit(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
+    """Return the workpiece with exactly the own outlines that a
+    toolkit's carriers meet, in the order of ``toolkit.heights``.
 
-    Refuses a solid that was read without the heights of a carrier.
+    Raises InputError where the solid was read without the heights of a carrier.
     """
     wanted = {} if workpiece.solid is None else toolkit.heights
     if not wanted and not workpiece.outlines:
@@ -94,7 +101,7 @@ def met_by(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
 def add_own_outlines(
     workpiece: Workpiece, entries: Mapping[str, Mapping[str, Any]], heights: Mapping[str, Heights]
 ) -> Workpiece:
-    """The workpiece with the outlines of a file's entry ``outlines``.
+    """Return the workpiece with the own outlines that the entry ``outlines`` of a result file has.
 
     Parameters
     ----------
@@ -104,7 +111,7 @@ def add_own_outlines(
     Raises
     ------
     InputError
-        For a workpiece without a solid, and outlines that cannot be, or of roles without heights.
+        For a workpiece without a solid, impossible outlines, and roles without heights.
     """
     if workpiece.solid is None:
         raise InputError("it has outlines of carriers, but no solid: leave them out.")
@@ -124,14 +131,15 @@ def add_own_outlines(
 
 
 def measure_outline_diameter(workpiece: Workpiece) -> float:
-    """Largest distance in mm between two points of the silhouette, and of the outlines of carriers.
+    """Return the largest distance in mm between two points of
+    the outer loops of the part and its carriers' outlines.
 
-    Its ends are two joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
+    The two points are joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
     on the line through the arcs' centres.
     """
     outer = [face.segment for one in workpiece.every_outline for face in one.outer_faces]
-    middle = np.array([segment.at(0.0) for segment in outer])
-    reach = np.array([farthest_from_middle(segment) for segment in outer])
+    middle = np.array([segment.compute_point(0.0) for segment in outer])
+    reach = np.array([measure_reach_from_middle(segment) for segment in outer])
     apart = [np.hypot(*(middle[index:] - middle[index]).T) for index in range(len(outer))]
     best, least = 0.0, max(float(distances.max()) for distances in apart)
     for index, distances in enumerate(apart):
@@ -142,15 +150,15 @@ def measure_outline_diameter(workpiece: Workpiece) -> float:
     return best
 
 
-def farthest_from_middle(segment: Segment) -> float:
-    """Largest distance in mm between the middle of a segment and a point of it."""
+def measure_reach_from_middle(segment: Segment) -> float:
+    """Return the largest distance in mm between the middle of a segment and a point of it."""
     if isinstance(segment, Arc):
         return 2.0 * segment.radius * sin(min(segment.half_sweep, pi) / 2.0)
     return segment.half_extent
 
 
 def measure_segments_diameter(a: Segment, b: Segment) -> float:
-    """Largest distance in mm between a point of one segment and a point of another."""
+    """Return the largest distance in mm between a point of segment a and a point of segment b."""
     best = max(hypot(p[0] - q[0], p[1] - q[1]) for p in (a.start, a.end) for q in (b.start, b.end))
     for arc, other in ((a, b), (b, a)):
         if isinstance(arc, Arc):
@@ -168,10 +176,12 @@ def measure_segments_diameter(a: Segment, b: Segment) -> float:
 
 
 def find_far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | None:
-    """The point of an arc's circle farthest from a point, if it lies on the arc."""
+    """Return the point of an arc's circle farthest from a point;
+    None where it is not on the arc or not unique.
+    """
     dx, dy = arc.center[0] - point[0], arc.center[1] - point[1]
     distance = hypot(dx, dy)
     if distance == 0.0:
         return None
     far = (arc.center[0] + arc.radius * dx / distance, arc.center[1] + arc.radius * dy / distance)
-    return far if abs(arc.parameter(far)) <= arc.half_sweep else None
+    return far if abs(arc.find_parameter(far)) <= arc.half_sweep else None

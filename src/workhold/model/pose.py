@@ -20,7 +20,7 @@ from workhold.geometry.segment import Arc, Line, Segment
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.limits import convert_real, make_real_array, name_number_fields
 
-__all__ = ["ENDS", "Flush", "Pose"]
+__all__ = ["ENDS", "FlushContacts", "Pose"]
 
 Array = NDArray[np.float64]
 
@@ -30,11 +30,11 @@ ENDS = ("left", "right")
 
 @frozen(field_transformer=name_number_fields)
 class Pose:
-    """Where a part lies: the map of its point q to R(theta) q + (x, y).
+    """Position of a part in the toolkit: the map of its point q to R(theta) q + (x, y).
 
-    Points q are in the part's frame, that of its drawing, in mm. They go to the toolkit's frame: the origin is
-    its first hole, column A and row 1 (of a vise that of the left jaw), x runs along its columns from A to B and
-    y along its rows from 1 to 2. Beside a wall y is 0 at the wall.
+    Points q are in the part's frame, that of its drawing, in mm. They go to the toolkit's frame: the origin
+    is its first hole, column A and row 1 (of a vise that of the left jaw), x runs along its columns from A to
+    B and y along its rows from 1 to 2. Beside a wall y is 0 at the wall.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Pose:
     Raises
     ------
     InputError
-        For what are no numbers.
+        For values that are no numbers.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class Pose:
 
     @property
     def written_deg(self) -> float:
-        """The turn in degrees as people write it: less than an eighth of a turn clockwise is a negative angle.
+        """Angle in degrees as people write it, in (-45, 315]: a turn of less than 45° clockwise is negative.
 
         >>> Pose(359.75, 0.0, 0.0).written_deg, Pose(315.0, 0.0, 0.0).written_deg
         (-0.25, 315.0)
@@ -72,13 +72,15 @@ class Pose:
 
     @property
     def inverse(self) -> Pose:
-        """The way back, from the toolkit's frame to the part's."""
+        """Inverse map, from the toolkit's frame to the part's."""
         x, y = rotate_vectors(-self.x, -self.y, -radians(self.theta_deg))
         return Pose(-self.theta_deg, float(x), float(y))
 
     @property
     def matrix(self) -> Array:
-        """The map as a (3, 3) array: ``matrix @ (x, y, 1)`` is a point of the part in the toolkit's frame, in mm."""
+        """Map as a (3, 3) array:
+        ``matrix @ (x, y, 1)`` is a point of the part in the toolkit's frame, in mm.
+        """
         (a, b), (c, d) = self.turn(1.0, 0.0), self.turn(0.0, 1.0)
         return np.array([[a, c, self.x], [b, d, self.y], [0.0, 0.0, 1.0]])
 
@@ -89,11 +91,9 @@ class Pose:
     def turn(self, x: Any, y: Any) -> tuple[Any, Any]: ...
 
     def turn(self, x: Any, y: Any = None) -> Array | tuple[Any, Any]:
-        """Directions of the part as they point in the toolkit's frame.
+        """Return direction vectors of the part in the toolkit's frame: rotated, not moved.
 
-        Parameters
-        ----------
-        x, y : (..., 2) vectors alone, of which an array comes back; or their x and y, of which two come back.
+        Given ``x`` alone, an array (..., 2), return an array (..., 2); given x and y apart, return a pair.
         """
         if y is None:
             if isinstance(x, str):
@@ -109,11 +109,9 @@ class Pose:
     def apply(self, x: Any, y: Any) -> tuple[Any, Any]: ...
 
     def apply(self, x: Any, y: Any = None) -> Array | tuple[Any, Any]:
-        """Points of the part in the toolkit's frame, in mm.
+        """Return points of the part in the toolkit's frame, in mm.
 
-        Parameters
-        ----------
-        x, y : (..., 2) points alone, of which an array comes back; or their x and y, of which two come back.
+        Given ``x`` alone, an array (..., 2), return an array (..., 2); given x and y apart, return a pair.
         """
         if y is None:
             return np.asarray(self.turn(x) + np.array([self.x, self.y]))
@@ -121,21 +119,21 @@ class Pose:
         return turned_x + self.x, turned_y + self.y
 
     def carry(self, segment: Segment) -> Segment:
-        """A segment of the part in the toolkit's frame."""
+        """Return a segment of the part, moved into the toolkit's frame."""
         if isinstance(segment, Line):
             return Line(self.apply(*segment.start), self.apply(*segment.end))
         middle = segment.mid_angle + radians(self.theta_deg)
         return Arc(self.apply(*segment.center), segment.radius, middle, segment.half_sweep, segment.sign)
 
 
-def in_one_turn(angle: Array) -> Array:
-    """Angles in radians in [0, 2 pi), also those that rounding puts just below 0."""
+def wrap_to_whole_turn(angle: Array) -> Array:
+    """Return angles in radians reduced to [0, 2 pi); results that rounding leaves at 2 pi become 0."""
     turned = angle % tau
     return np.asarray(np.where(turned >= tau - 1e-15 * tau, 0.0, turned))
 
 
 @frozen(eq=False)
-class Flush:
+class FlushContacts:
     """A workpiece's hull edges, and how it lies on each.
 
     Parameters
@@ -156,11 +154,14 @@ class Flush:
     shared: NDArray[np.int64]
 
     @classmethod
-    def of(cls, edges: Sequence[HullEdge], numbers: Sequence[int]) -> Flush:
-        """Makes it of hull edges and the numbers of the faces that they name by index."""
+    def from_hull_edges(cls, edges: Sequence[HullEdge], numbers: Sequence[int]) -> FlushContacts:
+        """Return the contacts of E hull edges;
+        ``numbers[i]`` is the number of the face that an edge's end names as i.
+        """
         tangent = np.array([edge.tangent for edge in edges]).reshape(-1, 2)
 
         def named(end: HullEnd) -> tuple[int, ...]:
+            """Return the numbers of the faces at an end of an edge, ascending."""
             return tuple(sorted(numbers[index] for index in end.faces))
 
         touching = tuple((named(edge.start), named(edge.end)) for edge in edges)
@@ -168,7 +169,7 @@ class Flush:
             [faces[0] if len(faces) == 1 else -1 - k for k, faces in enumerate(pair)] for pair in touching
         ]
         return cls(
-            theta=in_one_turn(-np.arctan2(tangent[:, 1], tangent[:, 0])),
+            theta=wrap_to_whole_turn(-np.arctan2(tangent[:, 1], tangent[:, 0])),
             ends=np.array([(edge.start.point, edge.end.point) for edge in edges]).reshape(-1, 2, 2),
             face=np.array([[faces[0] for faces in pair] for pair in touching], np.int32).reshape(-1, 2),
             touching=touching,
@@ -177,11 +178,15 @@ class Flush:
 
     @property
     def length(self) -> Array:
-        """Lengths (E,) in mm."""
+        """Lengths (E,) of the hull edges in mm."""
         return np.asarray(np.hypot(*(self.ends[:, 1] - self.ends[:, 0]).T))
 
-    def number(self, theta: Array) -> NDArray[np.int64]:
-        """The hull edge (N,) nearest to the wall in each orientation (N,); -1 where there is none."""
+    def find_nearest_edges(self, theta: Array) -> NDArray[np.int64]:
+        """Return for each orientation (N,) in radians the index
+        (N,) of the hull edge with the nearest ``theta``.
+
+        The indices are -1 where there are no hull edges.
+        """
         if len(self.theta) == 0:
             return np.full(len(theta), -1, np.int64)
         order = np.argsort(self.theta)
@@ -189,11 +194,16 @@ class Flush:
         order = np.concatenate([order[-1:], order, order[:1]])
         around = self.theta[order]
         around[0], around[-1] = around[0] - tau, around[-1] + tau
-        return order[np.searchsorted((around[:-1] + around[1:]) / 2.0, in_one_turn(theta))]
+        return order[np.searchsorted((around[:-1] + around[1:]) / 2.0, wrap_to_whole_turn(theta))]
 
-    def x(self, theta: Array, position: Array) -> Array:
-        """x (N, 2) of the ends of the contact in mm, of poses of orientations (N,) and positions (N, 2)."""
+    def compute_end_x(self, theta: Array, position: Array) -> Array:
+        """Return x in mm (N, 2) of the start and the end of
+        the contact with the wall, in the toolkit's frame.
+
+        Poses are given by ``theta`` (N,) in radians and ``position`` (N, 2) in mm; the hull edge is the
+        nearest one. The result is NaN where there are no hull edges.
+        """
         if len(self.theta) == 0:
             return np.full((len(theta), 2), np.nan)
-        ends = self.ends[self.number(theta)]
+        ends = self.ends[self.find_nearest_edges(theta)]
         return np.asarray(rotate_vectors(ends[..., 0], ends[..., 1], theta[:, None])[0] + position[:, :1])

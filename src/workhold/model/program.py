@@ -30,12 +30,12 @@ from workhold.model.moves import (
     Moves,
     PathVertex,
     SweptPiece,
-    along,
-    box_path,
     compute_bulges_of_shares,
+    compute_path_points,
     find_shares_between_heights,
-    moves_of,
+    make_box_path,
     pack_piece,
+    unpack_moves,
 )
 from workhold.model.stock import Stock, find_stretches_in_stock
 
@@ -48,15 +48,17 @@ UNITS = ("mm", "inch")
 
 
 def read_tool_table(values: Mapping[int, Tool]) -> dict[int, Tool]:
-    """Tools by their numbers, in a table of its own."""
+    """Return a copy as a dict: tools by their numbers."""
     return dict(values)
 
 
-def lines_of(values: Iterable[int]) -> tuple[int, ...]:
+def to_lines(values: Iterable[int]) -> tuple[int, ...]:
+    """Return numbers of lines as a tuple."""
     return tuple(values)
 
 
-def notes_of(values: Iterable[str]) -> tuple[str, ...]:
+def to_notes(values: Iterable[str]) -> tuple[str, ...]:
+    """Return sentences as a tuple."""
     return tuple(values)
 
 
@@ -108,7 +110,7 @@ class Program:
     Raises
     ------
     InputError
-        For a tool that is not known, and numbers that cannot be.
+        For a tool that is not known, and impossible numbers.
     """
 
     name: str
@@ -119,9 +121,9 @@ class Program:
     clearance: float = field(default=1.0, converter=convert_real)
     rapid: Literal["straight", "box"] = "straight"
     tools: Mapping[int, Tool] = field(factory=dict, converter=read_tool_table, hash=False)
-    moves: Moves = field(factory=lambda: Moves.of_rows(()))
-    skipped: tuple[int, ...] = field(default=(), converter=lines_of)
-    notes: tuple[str, ...] = field(default=(), converter=notes_of)
+    moves: Moves = field(factory=lambda: Moves.from_rows(()))
+    skipped: tuple[int, ...] = field(default=(), converter=to_lines)
+    notes: tuple[str, ...] = field(default=(), converter=to_notes)
     forces: CuttingForces | None = None
     stock: Stock | None = field(factory=Stock)
     is_placed: bool = field(default=False, eq=False)
@@ -163,7 +165,7 @@ class Program:
         whole_numbers: Literal["units", "thousandths"] = "units",
         stock: Stock | Mapping[str, Any] | str | None = None,
     ) -> Program:
-        """Reads a program of RS-274 (G-code).
+        """Return the program read from a file of RS-274 (G-code).
 
         Parameters
         ----------
@@ -173,10 +175,10 @@ class Program:
         zero : where the program's X0 Y0 is on the part, in mm.
         z_zero : height of its Z0 in mm, or which side of the part that is.
         thickness : of the part in mm, where Z0 is its top.
-        clearance : in mm.
-        rapid : whether rapid moves are straight.
+        clearance : distance that tools keep from all that holds the part, in mm.
+        rapid : ``straight``, or ``box`` where a rapid move may run anywhere in the box of its ends.
         unit : ``mm`` or ``inch`` where the program does not say.
-        cutting : how tools cut of which the table does not say it, for the forces on the part:
+        cutting : how tools cut where the table does not say so, for the forces on the part:
             :class:`workhold.model.cutting_tool.CuttingData`, or its fields by name.
         start : where the tip is at the start, X, Y and Z in mm from the program's own zero; None where the
             program says it.
@@ -188,8 +190,8 @@ class Program:
         Raises
         ------
         InputError
-            With the line of what cannot be read, and with tools that are called and not known. With what is
-            lacking for forces that are asked for, too.
+            For text that cannot be read, with its line, for tools that are called and not known, and where
+            something is missing that the forces asked for follow from.
         """
         from workhold.files.program.reader import read_program
 
@@ -210,38 +212,44 @@ class Program:
 
     @property
     def pieces(self) -> tuple[SweptPiece, ...]:
-        """All that is swept: for each move a piece for each cylinder of its tool."""
-        return self.swept(-inf, inf)
+        """All swept pieces, move by move: one for each cylinder of the move's tool."""
+        return self.list_swept_pieces(-inf, inf)
 
-    def swept(self, low: float, high: float) -> tuple[SweptPiece, ...]:
-        """What is swept at heights in a closed interval: every piece cut to where its cylinder reaches it.
+    def list_swept_pieces(self, low: float, high: float) -> tuple[SweptPiece, ...]:
+        """Return the pieces swept at heights in [low, high],
+        each cut to the share of its move at which its cylinder is there.
 
-        A piece is cut where tip + l is ``high`` and where tip + u is ``low``; boxes are not cut.
+        Pieces that are never there are left out. A piece is cut where tip + l is ``high`` and where tip + u
+        is ``low``; boxes are not cut.
 
         Parameters
         ----------
         low, high : in mm above the plane on which the part lies.
         """
-        return tuple(self.iter_swept(low, high))
+        return tuple(self.iterate_swept_pieces(low, high))
 
-    def iter_swept(self, low: float, high: float) -> Iterator[SweptPiece]:
-        """The pieces of :meth:`swept`, one by one."""
-        row, cylinder = self.pairs()
+    def iterate_swept_pieces(self, low: float, high: float) -> Iterator[SweptPiece]:
+        """Yield the pieces of :meth:`list_swept_pieces`, making some thousands at a time."""
+        row, cylinder = self.pair_moves_with_cylinders()
         for start in range(0, len(row), AT_ONCE):
             part = slice(start, start + AT_ONCE)
-            yield from self.pieces_of(row[part], cylinder[part], low, high)
+            yield from self.iterate_pieces(row[part], cylinder[part], low, high)
 
-    def pieces_of(
+    def iterate_pieces(
         self, row: NDArray[np.int64], cylinder: NDArray[np.float64], low: float, high: float
     ) -> Iterator[SweptPiece]:
-        """The swept pieces of moves (N,) with cylinders (N, 3), see :meth:`pairs`, at some heights."""
-        found = self.arrays_of(row, cylinder, low, high)
+        """Yield the pieces swept at heights in [low, high] by
+        cylinders (N, 3) on the moves with the indices ``row`` (N,).
+
+        Both arrays are as from :meth:`pair_moves_with_cylinders`; pieces never at such a height are left out.
+        """
+        found = self.make_arrays(row, cylinder, low, high)
         rows = zip(*(one.tolist() for one in found), strict=True)
         for line, tool, cutting, (x, y), (to_x, to_y), span, tip, to_tip, shape, filled in rows:
             lower, upper, radius = shape
             path: tuple[PathVertex, ...]
             if filled:
-                path = box_path((x, y), (to_x, to_y))
+                path = make_box_path((x, y), (to_x, to_y))
             elif (x, y) == (to_x, to_y):
                 path = ((x, y, 0.0),)
             else:
@@ -250,14 +258,14 @@ class Program:
                 line, tool, CUT if cutting else RAPID, path, (tip, to_tip), radius, (lower, upper)
             )
 
-    def arrays_of(
+    def make_arrays(
         self, row: NDArray[np.int64], cylinder: NDArray[np.float64], low: float, high: float
     ) -> SweptArrays:
-        """What :meth:`pieces_of` yields, as arrays."""
+        """Return the pieces that :meth:`iterate_pieces` yields, as arrays, in the same order."""
         moves = self.moves
         first_low, last_high = low - cylinder[:, 1], high - cylinder[:, 0]
         start, end, bulge = moves.start[row], moves.end[row], moves.bulge[row]
-        box = self.boxed()[row]
+        box = self.find_boxed_moves()[row]
         first, last = find_shares_between_heights(start[:, 2], end[:, 2], first_low, last_high)
         inside = first <= last
         first, last = np.where(box, 0.0, first), np.where(box, 1.0, last)
@@ -269,8 +277,8 @@ class Program:
             line=moves.line[row],
             tool=moves.tool[row],
             cutting=moves.cutting[row],
-            start=along(start[:, :2], end[:, :2], bulge, first),
-            end=along(start[:, :2], end[:, :2], bulge, last),
+            start=compute_path_points(start[:, :2], end[:, :2], bulge, first),
+            end=compute_path_points(start[:, :2], end[:, :2], bulge, last),
             bulge=compute_bulges_of_shares(bulge, last - first),
             tip_first=np.where(first == 0.0, start[:, 2], start[:, 2] + first * rise),
             tip_last=np.where(last == 1.0, end[:, 2], start[:, 2] + last * rise),
@@ -278,8 +286,11 @@ class Program:
             box=box,
         )
 
-    def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Every move with every cylinder of its tool: (N,) numbers of moves, (N, 3) low, high and radius."""
+    def pair_moves_with_cylinders(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return a row for each move and each cylinder of its tool, in the order of the moves.
+
+        The arrays are the indices (N,) of the moves, and low, high, radius (N, 3) of the cylinders in mm.
+        """
         rows, cylinders = [np.zeros(0, np.int64)], [np.zeros((0, 3))]
         for number, tool in self.tools.items():
             moved = np.flatnonzero(self.moves.tool == number)
@@ -290,16 +301,20 @@ class Program:
         order = np.argsort(row, kind="stable")
         return row[order], np.concatenate(cylinders)[order]
 
-    def boxed(self) -> NDArray[np.bool_]:
-        """(M,) whether everything inside the box of a move's ends counts."""
+    def find_boxed_moves(self) -> NDArray[np.bool_]:
+        """Return (M,) True for rapid moves along two or three axes,
+        where ``rapid`` is "box": their whole box counts as swept.
+        """
         if self.rapid != "box":
             return np.zeros(len(self.moves), dtype=bool)
         moved = self.moves.start != self.moves.end
         boxed: NDArray[np.bool_] = ~self.moves.cutting & (moved.sum(axis=1) > 1)
         return boxed
 
-    def pressing_on(self, loops: Sequence[NDArray[np.float64]]) -> Program:
-        """The program with forces only on the stretches of moves on which a tool meets the stock of a part.
+    def keep_forces_on(self, loops: Sequence[NDArray[np.float64]]) -> Program:
+        """Return the program with forces only on those stretches of moves on which a tool meets the stock.
+
+        Return the program itself where it has no forces or no stock, or its forces are on a part already.
 
         Parameters
         ----------
@@ -307,25 +322,27 @@ class Program:
         """
         if self.forces is None or self.stock is None or self.is_placed:
             return self
-        border, acts = self.stock.border(loops), self.forces.acts
-        forces = self.forces.along(find_stretches_in_stock(self.moves, self.tools, self.stock, border, acts))
+        border, acts = self.stock.make_border(loops), self.forces.acts
+        forces = self.forces.keep_stretches(
+            find_stretches_in_stock(self.moves, self.tools, self.stock, border, acts)
+        )
         return evolve(self, forces=forces, is_placed=True)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
-        return {**self.head(), "pieces": list(self.iter_entries())}
+        """Return plain data as in a result file."""
+        return {**self.make_head(), "pieces": list(self.iterate_entries())}
 
-    def iter_entries(self) -> Iterator[dict[str, Any]]:
-        """Yields all swept pieces as in a result file, with the forces of their moves."""
-        pieces = (piece.to_dict() for piece in self.iter_swept(-inf, inf))
+    def iterate_entries(self) -> Iterator[dict[str, Any]]:
+        """Yield all swept pieces as entries of a result file, each with the forces of its move."""
+        pieces = (piece.to_dict() for piece in self.iterate_swept_pieces(-inf, inf))
         if self.forces is None:
             yield from pieces
             return
-        for piece, move in zip(pieces, self.pairs()[0].tolist(), strict=True):
-            yield piece | self.forces.entry(move)
+        for piece, move in zip(pieces, self.pair_moves_with_cylinders()[0].tolist(), strict=True):
+            yield piece | self.forces.make_entry(move)
 
-    def head(self) -> dict[str, Any]:
-        """Plain data as in a result file, without the pieces."""
+    def make_head(self) -> dict[str, Any]:
+        """Return the program as plain data as in a result file, without the pieces."""
         return {
             "name": self.name,
             "sha256": self.sha256,
@@ -337,31 +354,31 @@ class Program:
             "tools": {str(number): tool.to_dict() for number, tool in self.tools.items()},
             "skipped": list(self.skipped),
             "notes": list(self.notes),
-            **self.pressing(),
+            **self.describe_forces(),
         }
 
-    def pressing(self) -> dict[str, Any]:
-        """What is said of forces on the part, as plain data; nothing without any."""
+    def describe_forces(self) -> dict[str, Any]:
+        """Return the entries "stock" and "forces" of a result file; {} without forces."""
         if self.forces is None:
             return {}
         stock = {} if self.stock is None else {"stock": self.stock.to_dict()}
         return {**stock, "forces": self.forces.to_dict(self.moves, self.tools)}
 
     @classmethod
-    def of_entries(cls, entries: Mapping[str, Any]) -> Program:
-        """A program of a file's entries; feeds and speeds are not known of it.
+    def from_entries(cls, entries: Mapping[str, Any]) -> Program:
+        """Return a program from the entries of a result file; its feeds and spindle speeds are 0.
 
         Pieces may be entries, or packed as :func:`workhold.model.moves.pack_piece` does.
 
         Raises
         ------
         InputError, LookupError, TypeError, ValueError
-            For entries that lack something, or hold what cannot be.
+            For entries that lack something, or hold impossible values.
         """
-        tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
+        tools = {int(key): Tool.from_entries(int(key), value) for key, value in entries["tools"].items()}
         x, y = (convert_real(value) for value in entries["zero"])
         rows, said, stock = entries["pieces"], entries.get("forces"), entries.get("stock")
-        moves = moves_of([one if isinstance(one, bytes) else pack_piece(one) for one in rows], tools)
+        moves = unpack_moves([one if isinstance(one, bytes) else pack_piece(one) for one in rows], tools)
         # A move has a piece for each cylinder of its tool, all with the same force; packed ones have none.
         each = np.array([len(tools[number].cylinders) for number in moves.tool.tolist()], np.int64)
         first = [rows[place] for place in (np.cumsum(each) - each).tolist()]
@@ -377,7 +394,7 @@ class Program:
             moves=moves,
             skipped=[int(line) for line in entries["skipped"]],
             notes=[str(note) for note in entries.get("notes", ())],
-            forces=None if said is None else CuttingForces.of_entries(first, said),
-            stock=None if stock is None else Stock.of_entries(stock),
+            forces=None if said is None else CuttingForces.from_entries(first, said),
+            stock=None if stock is None else Stock.from_entries(stock),
             is_placed=True,
         )

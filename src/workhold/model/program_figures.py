@@ -8,7 +8,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.model.moves import Moves, along
+from workhold.model.moves import Moves, compute_path_points
 from workhold.model.program import Program
 
 __all__ = ["ToolFigures", "bound_tip", "measure_tools"]
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @frozen
 class ToolFigures:
-    """What one tool does; lengths in mm, heights above the plane on which the part lies.
+    """Figures of one tool in a program; lengths in mm, heights above the plane on which the part lies.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class ToolFigures:
 
 
 def measure_tools(program: Program) -> tuple[ToolFigures, ...]:
-    """The figures of each tool, in the order in which they move first."""
+    """Return the figures of each tool that moves, in the order of their first moves."""
     moves, length = program.moves, program.moves.length
     heights = np.stack([moves.start[:, 2], moves.end[:, 2]], axis=1)
     found = []
@@ -67,14 +67,18 @@ def measure_tools(program: Program) -> tuple[ToolFigures, ...]:
 
 
 def bound_tip(moves: Moves) -> tuple[Floats, Floats]:
-    """The smallest and the greatest x, y and z of the tip over all moves, of which there are some, in mm."""
-    points = [moves.start, moves.end, *extremes(moves)]
+    """Return the smallest and the greatest x,
+    y and z (3,) in mm of the tip over all moves; there is at least one.
+    """
+    points = [moves.start, moves.end, *find_arc_extremes(moves)]
     every = np.concatenate(points)
     return every.min(axis=0), every.max(axis=0)
 
 
-def extremes(moves: Moves) -> Sequence[Floats]:
-    """(K, 3) points of arcs where a coordinate is greatest or least, other than their ends."""
+def find_arc_extremes(moves: Moves) -> Sequence[Floats]:
+    """Return four arrays (K, 3) of points inside arcs at which
+    the path runs along +x, +y, -x, -y: extremes of x or y.
+    """
     arc = np.flatnonzero(moves.bulge)
     start, end, bulge = moves.start[arc], moves.end[arc], moves.bulge[arc]
     chord = end[:, :2] - start[:, :2]
@@ -87,7 +91,7 @@ def extremes(moves: Moves) -> Sequence[Floats]:
         ahead = (quarter * np.pi / 2 - heading) * np.sign(sweep)
         share = np.mod(ahead, 2 * np.pi) / np.abs(sweep)
         inside = share < 1.0
-        at = along(start[inside, :2], end[inside, :2], bulge[inside], share[inside])
+        at = compute_path_points(start[inside, :2], end[inside, :2], bulge[inside], share[inside])
         height = start[inside, 2] + share[inside] * (end - start)[inside, 2]
         found.append(np.column_stack([at, height]))
     return found

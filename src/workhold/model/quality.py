@@ -60,10 +60,10 @@ __all__ = [
     "list_figures_in_columns",
     "adapt_ranking_to_loads",
     "list_known_figures",
-    "listed",
+    "to_tuple",
     "find_ranked_number",
     "fill_figure_rows",
-    "words",
+    "to_words",
 ]
 
 # Digits of figures that others come after in an order.
@@ -115,24 +115,24 @@ class Figure:
 
     @property
     def words(self) -> str:
-        """The name in sentences: the key with spaces.
+        """Name in sentences: the key with spaces.
 
         >>> FIGURES[0].words
         'closure margin'
         """
         return self.key.replace("_", " ")
 
-    def named_for(self, mover: str) -> tuple[str, str]:
-        """The name and the meaning, with what moves called ``mover`` instead of a jaw.
+    def name_for(self, mover: str) -> tuple[str, str]:
+        """Return name and meaning with the word "jaw" replaced by ``mover``.
 
-        >>> FIGURES[1].named_for("clamp")
+        >>> FIGURES[1].name_for("clamp")
         ('clamp amplification', 'The largest peg force per unit of clamp force.')
         """
         return self.words.replace("jaw", mover), self.meaning.replace("jaw", mover)
 
     @property
     def option(self) -> str:
-        """The name on the command line.
+        """Name on the command line: the key with hyphens.
 
         >>> FIGURES[0].option
         'closure-margin'
@@ -259,14 +259,15 @@ RANKED = (*FIGURES, *SEATING_FIGURES, PROGRAM_FIGURE)
 
 
 def round_number_coarsely(value: float) -> float:
-    """Return a number to two significant digits, as it is written; what is no number as it is."""
+    """Return a number rounded to two significant digits; NaN and inf as they are."""
     return float(f"{value:.{COARSE_DIGITS - 1}e}")
 
 
 def list_figures_in_columns(columns: int) -> tuple[Figure, ...]:
-    """The figures of quality that stand in so many columns, without any seating.
+    """Return the figures in the columns of a table that has so many:
+    :data:`FIGURES`, then program clearance if one is left.
 
-    Those of how far pegs bend are left out where nobody knows at which heights pegs touch the part.
+    The figures of how far pegs bend are left out where the table is narrower than all of :data:`FIGURES`.
 
     >>> list_figures_in_columns(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words, list_figures_in_columns(BEFORE_PINS)[-1].words
     ('program clearance', 'jaw contact')
@@ -276,7 +277,11 @@ def list_figures_in_columns(columns: int) -> tuple[Figure, ...]:
 
 
 def fill_figure_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Figures (N, F) with a column for each of :data:`FIGURES`, NaN where there was none."""
+    """Return figures (N, F) with a column for each of :data:`FIGURES`:
+    missing figures of bending pegs are NaN.
+
+    A column of program clearance stays last.
+    """
     figures = list_figures_in_columns(quality.shape[1])
     if len(figures) >= len(FIGURES):
         return quality
@@ -285,13 +290,13 @@ def fill_figure_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def select_figure_column(quality: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
-    """The column (N,) of a figure of :data:`FIGURES` in figures (N, F); NaN where it is not known."""
+    """Return the column (N,) of a figure in figures (N, F); NaN where the table lacks it."""
     figures = list_figures_in_columns(quality.shape[1])
     return quality[:, figures.index(figure)] if figure in figures else np.full(len(quality), np.nan)
 
 
 def list_known_figures(values: Sequence[float]) -> dict[str, float]:
-    """The figures of a fixture by their keys, without those that are not known, from a row of a table.
+    """Return the figures of one row of a table by key, without those that are NaN.
 
     >>> list_known_figures([0.25, *[float("nan")] * 16, 4.5])
     {'closure_margin': 0.25, 'program_clearance': 4.5}
@@ -301,7 +306,7 @@ def list_known_figures(values: Sequence[float]) -> dict[str, float]:
 
 
 def find_figure_number(name: str) -> int | None:
-    """The place in :data:`FIGURES` of a figure's name; None where it has none.
+    """Return the index in :data:`FIGURES` of a figure's name; None where it is not among them.
 
     Hyphens, underscores and spaces in the name mean the same.
 
@@ -313,7 +318,8 @@ def find_figure_number(name: str) -> int | None:
 
 
 def find_ranked_number(name: str) -> int | None:
-    """The place in :data:`RANKED` of a figure's name, see :func:`find_figure_number`; None where it has none.
+    """Return the index in :data:`RANKED` of a figure's name,
+    hyphens, underscores and spaces alike; None if not there.
 
     >>> RANKED[find_ranked_number("capture opening")].option
     'capture-opening'
@@ -322,13 +328,15 @@ def find_ranked_number(name: str) -> int | None:
     return next((number for number, figure in enumerate(RANKED) if figure.key == key), None)
 
 
-def words(value: Iterable[str] | None) -> tuple[str, ...] | None:
-    """Several words as a tuple; one word alone is not taken for its letters."""
-    return value if value is None else (value,) if isinstance(value, str) else listed("names", value)
+def to_words(value: Iterable[str] | None) -> tuple[str, ...] | None:
+    """Return words as a tuple: a single string becomes a tuple of one; None stays None."""
+    return value if value is None else (value,) if isinstance(value, str) else to_tuple("names", value)
 
 
-def listed(name: str, values: Iterable[T]) -> tuple[T, ...]:
-    """Some values as a tuple; refuses what is not several values."""
+def to_tuple(name: str, values: Iterable[T]) -> tuple[T, ...]:
+    """Return the values of an iterable as a tuple;
+    raise InputError, which calls them ``name``, for anything else.
+    """
     try:
         return tuple(values)
     except TypeError as error:
@@ -342,11 +350,13 @@ def resolve_ranking(
     seated: bool = False,
     ended: bool = False,
 ) -> tuple[str, ...]:
-    """Keys of the figures to rank by, from their names as a user writes them; None is the default ranking.
+    """Return the keys of the figures to rank by,
+    from names as a user writes them; the default ranking for None.
 
-    A file that was ranked by the default names what that begins with, too. Refuses a name that is no figure,
-    one given twice, and none at all. Refuses a figure of loads without loads, of two clamps where there is
-    one, of seating where that is not asked for, and of a jaw's ends, unless it is ``ended``.
+    ``loaded`` are the loads or whether there are any; ``pairs`` says that two clamps clamp, ``seated`` that
+    seating is asked for, ``ended`` that a flat jaw has ends. Names may begin with :data:`HOUSE_ORDER`, as in
+    files. Raises InputError for an empty list, an unknown or repeated name, and a figure that these arguments
+    say is not known.
     """
     if names is None:
         return adapt_ranking_to_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)
@@ -391,7 +401,7 @@ def read_asked_ranking(
     loaded: Loaded,
     has_program: bool = False,
 ) -> tuple[str, ...] | None:
-    """The names of figures given, or the keys for a preference; None, the default, where both are None.
+    """Return the names of figures as given, or the keys for a preference; None where both are None.
 
     Raises
     ------
@@ -399,14 +409,16 @@ def read_asked_ranking(
         For both together, and as :func:`find_preferred_ranking`.
     """
     if preference is None:
-        return words(names)
+        return to_words(names)
     if names is not None:
         raise InputError("figures to rank by and a preference are two orders: give one of them.")
     return find_preferred_ranking(preference, loaded, has_program)
 
 
 def adapt_ranking_to_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
-    """An order with the load reaction instead of the clamp amplification where there are loads."""
+    """Return a ranking with the load reaction in place of the clamp amplification;
+    unchanged where there are no loads.
+    """
     if not loaded:
         return ranking
     reaction, bare = FIGURES[LOAD_REACTION].key, FIGURES[CLAMP_AMPLIFICATION].key
@@ -414,9 +426,10 @@ def adapt_ranking_to_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[st
 
 
 def find_preferred_ranking(preference: str, loaded: Loaded, has_program: bool = False) -> tuple[str, ...]:
-    """Keys of the figures to rank by for what a user wants most: square, strong, precise or roomy.
+    """Return the keys of figures to rank by for one of :data:`PREFERENCES`: square, strong, precise or roomy.
 
-    With a program a roomy fixture is first of all one that its tools pass by far. Refuses any other word.
+    With a program, "roomy" ranks by the program clearance right after the warnings. Raises InputError for
+    another word.
     """
     word = preference.strip().lower()
     if word not in PREFERENCES:

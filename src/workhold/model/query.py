@@ -13,9 +13,9 @@ from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.first_choice import has_house_order, list_ranking_figures
-from workhold.model.friction import SAFETY, Coefficients, coefficients_of
-from workhold.model.jaw_hold import hold_ranking
-from workhold.model.own_outlines import met_by
+from workhold.model.friction import SAFETY, Coefficients, to_coefficients
+from workhold.model.jaw_hold import choose_hold_ranking
+from workhold.model.own_outlines import adapt_outlines_to_toolkit
 from workhold.model.program import Program
 from workhold.model.quality import (
     CLOSURE_MARGIN,
@@ -27,12 +27,12 @@ from workhold.model.quality import (
     PROGRAM_FIGURE,
     SEATING_FIGURES,
     adapt_ranking_to_loads,
-    listed,
     resolve_ranking,
-    words,
+    to_tuple,
+    to_words,
 )
 from workhold.model.requirements import Load, Restrictions, Tolerance
-from workhold.model.straps import strap_ranking
+from workhold.model.straps import choose_strap_ranking
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Query"]
@@ -41,17 +41,18 @@ LOAD_KEYS = (FIGURES[LOAD_REACTION].key, FIGURES[JAW_FORCE_NEEDED].key)
 SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 
 
-def restrictions_of(value: Restrictions | None) -> Restrictions:
+def to_restrictions(value: Restrictions | None) -> Restrictions:
+    """Return the restrictions; no restriction at all for None."""
     return Restrictions() if value is None else value
 
 
 def make_tolerance(value: Tolerance | None) -> Tolerance:
-    """A tolerance as it is given; None until the toolkit is known, which may have one."""
+    """Return the value unchanged, None too: the query replaces None once it knows the toolkit."""
     return cast(Tolerance, value)
 
 
-def loads_of(loads: Load | Iterable[Load]) -> tuple[Load, ...]:
-    return (loads,) if isinstance(loads, Load) else listed("loads", loads)
+def to_loads(loads: Load | Iterable[Load]) -> tuple[Load, ...]:
+    return (loads,) if isinstance(loads, Load) else to_tuple("loads", loads)
 
 
 # What parts of a query must be, and how to get one.
@@ -64,7 +65,9 @@ KINDS: dict[str, tuple[type, str]] = {
 
 
 def refuse_other_kinds(query: Query) -> None:
-    """Refuses parts of a query whose type is wrong."""
+    """Raise InputError where workpiece, toolkit, restrictions,
+    tolerance or a load of a query has a wrong type.
+    """
     for name, (kind, remedy) in KINDS.items():
         refuse_kind(getattr(query, name), kind, f"the {name}", remedy)
     loads: tuple[Any, ...] = query.loads
@@ -77,7 +80,7 @@ def refuse_other_kinds(query: Query) -> None:
 
 @frozen
 class Query(SearchQuestion):
-    """What to hold, what to hold it in, and what is asked of the fixtures.
+    """A part, a toolkit, and all that is asked of the fixtures.
 
     Parameters
     ----------
@@ -87,7 +90,7 @@ class Query(SearchQuestion):
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
         restriction.
     rank_by : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
-        order, see :mod:`workhold.model.first_choice`.
+        order, see :mod:`workhold.model.choose_first_toolkit`.
     tolerance : how far pegs and faces may be off, for the location error; None is the toolkit's own where it
         has one, as presets have, or else the usual one. The workpiece's departure is added to that of the
         faces.
@@ -105,12 +108,15 @@ class Query(SearchQuestion):
         one.
     program : of the machine: list only fixtures that its tools do not come near, and judge them under its
         forces; None where it is not known.
-    peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm; None where nobody says.
+    peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm; None where nobody
+        says.
         With a program it is needed; where the part is read from a solid it is the solid's.
     max_location_error : list only fixtures whose location error is at most this, in mm; None for any.
-    thickness : of the part in mm, for how far pegs bend, and for what flat jaws grip; None where it is not known, and
+    thickness : of the part in mm, for how far pegs bend, and for what flat jaws grip; None where it is not
+        known, and
         of a solid, which says it itself.
-    friction : coefficients of friction by name where flat jaws or straps hold the part, such as {"jaw": 0.15}; None
+    friction : coefficients of friction by name where flat jaws or straps hold the part, such as {"jaw":
+        0.15}; None
         for the usual ones (``model.friction``).
     safety : factor on the loads there; None for the usual 2.
     weight : of the part in N, without that factor, where straps hold it; None counts as nothing.
@@ -125,40 +131,40 @@ class Query(SearchQuestion):
 
     workpiece: Workpiece
     toolkit: Toolkit
-    types: tuple[str, ...] = field(default=None, converter=words)
-    restrictions: Restrictions = field(default=None, converter=restrictions_of)
-    rank_by: tuple[str, ...] = field(default=None, converter=words)
+    types: tuple[str, ...] = field(default=None, converter=to_words)
+    restrictions: Restrictions = field(default=None, converter=to_restrictions)
+    rank_by: tuple[str, ...] = field(default=None, converter=to_words)
     tolerance: Tolerance = field(default=None, converter=make_tolerance)
-    loads: tuple[Load, ...] = field(default=(), converter=loads_of)
+    loads: tuple[Load, ...] = field(default=(), converter=to_loads)
     program: Program | None = None
-    friction: Coefficients | None = field(default=None, converter=coefficients_of, kw_only=True)
+    friction: Coefficients | None = field(default=None, converter=to_coefficients, kw_only=True)
 
     def __attrs_post_init__(self) -> None:
         given: Any = self.tolerance
         if given is None:
             object.__setattr__(self, "tolerance", getattr(self.toolkit, "tolerance", None) or Tolerance())
         refuse_other_kinds(self)
-        object.__setattr__(self, "workpiece", met_by(self.workpiece, self.toolkit))
+        object.__setattr__(self, "workpiece", adapt_outlines_to_toolkit(self.workpiece, self.toolkit))
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
         object.__setattr__(self, "types", check_arrangements(self.types, known))
         pairs = self.toolkit.travels > 1
         self.refuse_loads_across()
         if self.toolkit.flat_jaws is not None:
-            object.__setattr__(self, "rank_by", hold_ranking(self.rank_by))
+            object.__setattr__(self, "rank_by", choose_hold_ranking(self.rank_by))
         elif self.toolkit.strap_set is not None:
-            object.__setattr__(self, "rank_by", strap_ranking(self.rank_by))
+            object.__setattr__(self, "rank_by", choose_strap_ranking(self.rank_by))
         else:
-            asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
+            asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.wall_with_ends is not None
             object.__setattr__(self, "rank_by", resolve_ranking(self.rank_by, *asked))
         if PROGRAM_FIGURE.key in self.rank_by and self.program is None:
             raise InputError(f"there is no program to rank by the {PROGRAM_FIGURE.words}: give one.")
         if self.program is not None:
-            object.__setattr__(self, "program", self.program.pressing_on(self.workpiece.outer_loops))
+            object.__setattr__(self, "program", self.program.keep_forces_on(self.workpiece.outer_loops))
         if self.toolkit.flat_jaws is not None:
             object.__setattr__(self, "peg_height", None)
         elif self.program is not None or self.peg_height is not None:
-            object.__setattr__(self, "peg_height", height_of_pegs(self.peg_height, self.workpiece))
+            object.__setattr__(self, "peg_height", choose_peg_height(self.peg_height, self.workpiece))
         if self.workpiece.solid is not None:
             object.__setattr__(self, "thickness", None)
             if self.program is None:
@@ -186,9 +192,12 @@ class Query(SearchQuestion):
             )
 
     def refuse_loads_across(self) -> None:
-        """Refuses what only friction feels where none holds the part, and what only pegs do where it does.
+        """Raise InputError for loads and options that count only with friction,
+        or only with pegs, and cannot count here.
 
-        Of loads that act out of the plane flat jaws have to know how thick the part is, and straps of all.
+        Pegs hold without friction: no load along z, no friction, no safety factor. Flat jaws have no pegs: no
+        contact margin, seating, keep-out zone or largest location error; loads along z, and forces of a
+        program, need the part's height. Straps are checked by :meth:`refuse_beside_straps`.
         """
         across = next((number for number, load in enumerate(self.loads, 1) if load.upward), None)
         self.refuse_beside_straps()
@@ -227,7 +236,11 @@ class Query(SearchQuestion):
                 raise InputError(f"{asked} is asked of pegs, and flat jaws have none: leave it out.")
 
     def refuse_beside_straps(self) -> None:
-        """Refuses what only straps feel where there are none, and what is not reckoned where there are."""
+        """Raise InputError for a weight or a number of strapped seats without straps.
+
+        With straps, raise it for loads where the part's thickness is not known, and for a program, a jaw
+        force or seating.
+        """
         only_of_straps = {"a weight": self.weight, "a number of strapped seats": self.strapped}
         if self.toolkit.strap_set is None:
             for asked, value in only_of_straps.items():
@@ -255,22 +268,28 @@ class Query(SearchQuestion):
 
     @property
     def part_height(self) -> float | None:
-        """How high the part is in mm; None where nobody says."""
+        """Height of the part in mm: the solid's, else the thickness; None where neither is known."""
         solid = self.workpiece.solid
         return self.thickness if solid is None else solid.height
 
     @property
     def safety_factor(self) -> float:
-        """What loads are multiplied by where friction holds the part."""
+        """Factor on loads where friction holds the part."""
         return SAFETY if self.safety is None else self.safety
 
     @property
     def unit_force(self) -> float | None:
-        """The jaw force that is given times the safety factor, which holds the loads once where so much is needed."""
+        """Given jaw force times the safety factor, in N; None without a jaw force.
+
+        Divided by the force that loads need (safety factor included), it is the factor by which all loads may
+        grow.
+        """
         return None if self.jaw_force is None else self.jaw_force * self.safety_factor
 
     def refuse_untouchable(self) -> None:
-        """Refuses faces to touch that there are not, or more than a fixture can touch."""
+        """Raise InputError for faces to touch that do not exist,
+        that are more than a fixture's contacts, or with two clamps.
+        """
         faces, toolkit = self.restrictions.touch, self.toolkit
         if not faces:
             return
@@ -292,45 +311,51 @@ class Query(SearchQuestion):
 
     @property
     def is_sifted(self) -> bool:
-        """Whether not all that holds the part is listed, by rules that ask each fixture by itself."""
+        """Whether fixtures that hold the part are left out by faces to touch or a largest location error."""
         return bool(self.restrictions.touch) or self.max_location_error is not None
 
     @property
     def has_seating_rules(self) -> bool:
-        """Whether fixtures are ruled out by their seating."""
+        """Whether fixtures are left out by their seating (``foolproof`` or ``opening``)."""
         return self.foolproof or self.opening is not None
 
     @property
     def pressed_up_to(self) -> float | None:
-        """The height in mm up to which pegs touch a prism; None where nobody knows, and of a solid."""
+        """Height in mm up to which pegs touch a prism:
+        the lesser of thickness and peg height; None where unknown, and for solids.
+        """
         known = [one for one in (self.thickness, self.peg_height) if one is not None]
         return min(known) if known and self.workpiece.solid is None else None
 
     @property
     def knows_heights(self) -> bool:
-        """Whether it is known at which heights pegs touch the part."""
+        """Whether the heights at which pegs touch the part are known."""
         return self.workpiece.solid is not None or self.pressed_up_to is not None
 
     @property
     def passed(self) -> tuple[Program, float] | None:
-        """The program that fixtures are to let pass, and the height of pegs in mm; None without one."""
+        """Program whose tools must clear the fixture, and the height of the pegs in mm;
+        None where one of them is missing.
+        """
         if self.program is None or self.peg_height is None:
             return None
         return self.program, self.peg_height
 
     @property
     def is_loaded(self) -> bool:
-        """Whether anything acts on the part: a load, or the tools of the program."""
+        """Whether a load or the forces of the program's tools act on the part."""
         return bool(self.loads) or (self.program is not None and self.program.forces is not None)
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """What was asked for that rules fixtures out, in words, as an explanation calls it."""
+        """Names of all that was asked for and rules fixtures out,
+        by the query and by limits of the toolkit.
+        """
         return (*self.restricted_by, *(limit.rule for limit in self.toolkit.limits))
 
     @property
     def restricted_by(self) -> tuple[str, ...]:
-        """What of :attr:`asked` the query itself asks for, whatever the toolkit."""
+        """Those of :attr:`asked` that the query asks for, whatever the toolkit."""
         rules = {
             "faces to avoid": bool(self.restrictions.avoid),
             "keep-out zones": bool(self.restrictions.zones),
@@ -345,14 +370,14 @@ class Query(SearchQuestion):
 
     @property
     def asked_of_places(self) -> tuple[str, ...]:
-        """What of :attr:`asked` leaves fewer places for pegs along the part, or fewer holes for them."""
+        """Those of :attr:`asked` that leave fewer places for pegs along the part, or fewer holes for them."""
         places = ("faces to avoid", "keep-out zones", "tools of the program")
         holes = (limit.rule for limit in self.toolkit.limits if limit.bounds != "travel")
         return (*(name for name in self.restricted_by if name in places), *holes)
 
     @property
     def without_program(self) -> Query:
-        """The query of fixtures that no program has to pass."""
+        """Copy of the query without its program, and without the figures in its order that need one."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
         ranking = [key for key in self.rank_by if key not in of_program]
         known = list_ranking_figures(ranking)
@@ -360,9 +385,10 @@ class Query(SearchQuestion):
 
     @property
     def without_seating(self) -> Query:
-        """The query to answer before any seating is worked out.
+        """Query to answer first, before seating is worked out: without rules and figures of seating.
 
-        It asks for as many fixtures as the seating needs, in an order that does without seating.
+        It asks for at least as many fixtures as seating is wanted for. It is the query itself where no
+        seating is asked for.
         """
         if self.seating is None:
             return self
@@ -383,19 +409,23 @@ class Query(SearchQuestion):
 
     @property
     def has_house_order(self) -> bool:
-        """Whether fixtures stand in the usual order, so that one's place depends on the best of all."""
+        """Whether fixtures stand in the usual order,
+        in which a fixture's place depends on the best of all.
+        """
         return has_house_order(self.rank_by)
 
     @property
     def by_margin_alone(self) -> bool:
-        """Whether fixtures are ranked by the closure margin and nothing else, which a search can bound."""
+        """Whether fixtures are ranked by the closure margin only, which a search can bound."""
         return self.rank_by == (FIGURES[CLOSURE_MARGIN].key,)
 
 
-def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
-    """The height in mm up to which pegs, clamps and walls reach: that of a part's solid, else the one given.
+def choose_peg_height(given: float | None, workpiece: Workpiece) -> float:
+    """Return the height in mm up to which pegs, clamps and walls reach:
+    ``given``, else that of the part's solid.
 
-    Refuses a part of which neither is known, what is no height, and one that is not the solid's.
+    Raises InputError where neither is known, and where ``given`` is not the peg height that the solid was
+    read with.
     """
     solid = workpiece.solid
     if given is None and solid is None:
@@ -414,7 +444,9 @@ def height_of_pegs(given: float | None, workpiece: Workpiece) -> float:
 
 
 def check_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tuple[str, ...]:
-    """Names of arrangements in the toolkit's order, None being all; refuses others, and none at all."""
+    """Return the named arrangements in the toolkit's order, all for None;
+    raise InputError for others, and for none.
+    """
     for name in names or ():
         if name not in known:
             raise InputError(f"type {name} is unknown: choose {' or '.join(known)}.")

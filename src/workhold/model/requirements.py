@@ -16,20 +16,20 @@ from attrs import evolve, field, frozen
 from attrs.converters import optional
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.asking.search import RuledOut
+from workhold.asking.search import RestrictionQuestion
 from workhold.conventions import ANGLE_SLACK
 from workhold.errors import InputError, quote_value
 from workhold.geometry.loop import (
     LoopShape,
     check_vertices,
     compute_signed_area,
-    loop_segments,
+    make_loop_segments,
     refuse_self_crossing,
     reverse_vertices,
 )
 from workhold.geometry.segment import Box, Segment
 from workhold.limits import convert_real, name_number_fields, refuse_long, refuse_strong
-from workhold.model.dowels import Fit
+from workhold.model.dowels import DowelFit
 
 __all__ = [
     "ANY_DIRECTION",
@@ -46,10 +46,11 @@ __all__ = [
 ANY_DIRECTION = (0.0, 360.0)
 
 
-def number_pairs(values: Any, name: str, remedy: str) -> tuple[tuple[float, float], ...]:
-    """Pairs of numbers from several pairs, an array (N, 2), or one pair by itself; refuses anything else.
+def to_number_pairs(values: Any, name: str, remedy: str) -> tuple[tuple[float, float], ...]:
+    """Return pairs of floats from several pairs, an array (N, 2),
+    or one pair by itself; raise InputError for anything else.
 
-    ``name`` is of one pair, and ``remedy`` says what to give.
+    In the message, ``name`` is what one pair is called, and ``remedy`` says what to give.
     """
     given = list(values) if isinstance(values, Iterable) and not isinstance(values, str | bytes) else None
     if given is not None and len(given) == 2 and not any(isinstance(one, Iterable) for one in given):
@@ -67,15 +68,19 @@ def number_pairs(values: Any, name: str, remedy: str) -> tuple[tuple[float, floa
     return tuple(pairs)
 
 
-def point_pairs(points: Any) -> tuple[tuple[float, float], ...]:
-    return number_pairs(
+def to_points(points: Any) -> tuple[tuple[float, float], ...]:
+    """Return points (x, y) in mm of a load, from one point or several; raise InputError for anything else."""
+    return to_number_pairs(
         points, "a point of a load", "give x and y in mm, such as (30, 20), or several such points"
     )
 
 
-def direction_range(directions: Any) -> tuple[float, float]:
-    """A range of directions in degrees, from ``low`` counter-clockwise to ``high``, with low in [0, 360) and
-    low <= high <= low + 360; one number is that direction alone."""
+def to_direction_range(directions: Any) -> tuple[float, float]:
+    """Return directions as (low, high) in degrees, counter-clockwise from low to high.
+
+    0 <= low < 360 and low <= high <= low + 360; a whole turn is (0, 360), and one number is that direction
+    alone. Raises InputError for a range of more than 360 degrees and for what is no number or pair.
+    """
     if isinstance(directions, str | bytes) or not isinstance(directions, Iterable):
         directions = (convert_real(directions, "a direction"),) * 2
     values = tuple(convert_real(value, "a direction") for value in directions)
@@ -131,9 +136,9 @@ class Load:
     (330.0, 390.0)
     """
 
-    points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
+    points: tuple[tuple[float, float], ...] = field(default=(), converter=to_points)
     force: float = field(default=0.0, converter=convert_real)
-    directions: tuple[float, float] = field(default=ANY_DIRECTION, converter=direction_range)
+    directions: tuple[float, float] = field(default=ANY_DIRECTION, converter=to_direction_range)
     moment: float = field(default=0.0, converter=convert_real)
     name: str = ""
     upward: float = field(default=0.0, converter=convert_real)
@@ -172,7 +177,8 @@ class Load:
 
 
 def describe_far_loads(loads: Sequence[Load], part: Box) -> list[str]:
-    """Remarks on the loads that act farther from a part's box than the part is large, one sentence each.
+    """Return a sentence for each load that acts farther from
+    a part's bounding box than the diagonal of that box.
 
     Examples
     --------
@@ -217,12 +223,12 @@ class Zone:
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """The boundary, with the zone on its left."""
-        return tuple(loop_segments(self.loop))
+        """Boundary in mm, in the part's frame, with the zone on its left."""
+        return tuple(make_loop_segments(self.loop))
 
 
 def circle_zone(x: float, y: float, radius: float) -> Zone:
-    """A round zone.
+    """Return a round zone.
 
     Parameters
     ----------
@@ -232,7 +238,7 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
     Raises
     ------
     InputError
-        When it has no size.
+        For a radius that is not positive, and numbers that are not finite.
     """
     x, y, radius = (convert_real(value, "a number of a keep-out circle") for value in (x, y, radius))
     if not (isfinite(x) and isfinite(y) and isfinite(radius) and radius > 0):
@@ -243,21 +249,22 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
 
 
 def polygon_zone(points: ArrayLike) -> Zone:
-    """A zone with straight sides; points (x, y) in mm, an array (N, 2) or a list, either way round.
+    """Return a zone with straight sides between corners (x, y) in mm,
+    in the part's frame: an array (N, 2), either way round.
 
     Raises
     ------
     InputError
         For fewer than three points and for a boundary that crosses itself.
     """
-    corners = number_pairs(points, "a corner of a keep-out zone", "give x and y in mm for every corner")
+    corners = to_number_pairs(points, "a corner of a keep-out zone", "give x and y in mm for every corner")
     if len(corners) < 3:
         raise InputError(f"a keep-out polygon has {len(corners)} corners: give three or more.")
     return make_zone([[x, y, 0.0] for x, y in corners])
 
 
 def make_zone(vertices: Sequence[Sequence[float]]) -> Zone:
-    """A zone of (x, y, bulge) vertices in mm, run either way.
+    """Return the zone inside one closed loop of (x, y, bulge) vertices in mm, given either way round.
 
     Raises
     ------
@@ -266,33 +273,39 @@ def make_zone(vertices: Sequence[Sequence[float]]) -> Zone:
     """
 
     def place(k: int) -> str:
+        """Return a name for side k for messages."""
         return f"keep-out zone: side {k}"
 
     checked = check_vertices(vertices, "keep-out zone", place)
-    shape = LoopShape.of(loop_segments(checked))
+    shape = LoopShape.from_segments(make_loop_segments(checked))
     refuse_self_crossing(shape, place)
     if compute_signed_area(shape.segments) < 0:
         checked = reverse_vertices(checked)
     return Zone(checked)
 
 
-def angle_pairs(ranges: Any) -> tuple[Angles, ...]:
-    return number_pairs(ranges, "a range of angles", "give its two ends in degrees, such as (-10, 10)")
+def to_angle_pairs(ranges: Any) -> tuple[Angles, ...]:
+    """Return ranges of angles in degrees as pairs, from one range or several;
+    raise InputError for anything else.
+    """
+    return to_number_pairs(ranges, "a range of angles", "give its two ends in degrees, such as (-10, 10)")
 
 
 def make_zones(zones: Any) -> tuple[Zone, ...]:
-    """Zones, also of polygons of shapely; one may stand by itself."""
+    """Return zones as a tuple, from one or several zones or polygons of shapely."""
     several = isinstance(zones, Iterable) and not isinstance(zones, str | bytes)
-    return tuple(zone for one in (zones if several else [zones]) for zone in zones_of(one))
+    return tuple(zone for one in (zones if several else [zones]) for zone in find_zones(one))
 
 
-def zones_of(zone: Any) -> Iterator[Zone]:
-    """The zones that one object is: itself, or those of a polygon of shapely; refuses anything else."""
+def find_zones(zone: Any) -> Iterator[Zone]:
+    """Yield the zones of one object:
+    itself, or one for each polygon of a shapely geometry; raise InputError otherwise.
+    """
     if isinstance(zone, Zone):
         yield zone
     elif hasattr(zone, "geoms"):
         for one in zone.geoms:
-            yield from zones_of(one)
+            yield from find_zones(one)
     elif hasattr(zone, "exterior"):
         if len(zone.interiors):
             raise InputError(
@@ -306,8 +319,10 @@ def zones_of(zone: Any) -> Iterator[Zone]:
         )
 
 
-def face_numbers(numbers: Any) -> tuple[int, ...]:
-    """Numbers of faces in order, each once; one may stand by itself. Refuses anything else."""
+def to_face_numbers(numbers: Any) -> tuple[int, ...]:
+    """Return numbers of faces, ascending, each once, from one number or several;
+    raise InputError for what is no integer.
+    """
     several = isinstance(numbers, Iterable) and not isinstance(numbers, str | bytes)
     given = list(numbers) if several else [numbers]
     for one in given:
@@ -318,8 +333,11 @@ def face_numbers(numbers: Any) -> tuple[int, ...]:
 
 
 def lie_in_angle_ranges(degrees: Any, ranges: Sequence[Sequence[float]]) -> Any:
-    """Return whether angles in degrees, an array (N,) or one, lie in one of some ranges (from, to), ends included;
-    in any where there are none."""
+    """Return whether angles in degrees, an array (N,) or one,
+    lie in any of the ranges (from, to), ends included.
+
+    Ranges count modulo 360. Without ranges all angles do.
+    """
     if not ranges:
         return np.ones(np.shape(degrees), np.bool_)
     # A limit that is met exactly is kept, however a machine rounds.
@@ -328,8 +346,8 @@ def lie_in_angle_ranges(degrees: Any, ranges: Sequence[Sequence[float]]) -> Any:
 
 
 @frozen
-class Restrictions(RuledOut):
-    """What fixtures must keep clear of, and what they must touch.
+class Restrictions(RestrictionQuestion):
+    """Faces, places and angles that fixtures must avoid, and faces that they must touch.
 
     Parameters
     ----------
@@ -343,7 +361,7 @@ class Restrictions(RuledOut):
     Raises
     ------
     InputError
-        For a range of angles that is not one, and a face that is to be touched and avoided.
+        For an impossible range of angles, and a face that is both to be touched and to be avoided.
 
     Examples
     --------
@@ -353,10 +371,10 @@ class Restrictions(RuledOut):
 
     def __attrs_post_init__(self) -> None:
         for name, converted in (
-            ("avoid", face_numbers(self.avoid)),
+            ("avoid", to_face_numbers(self.avoid)),
             ("zones", make_zones(self.zones)),
-            ("angles", angle_pairs(self.angles)),
-            ("touch", face_numbers(self.touch)),
+            ("angles", to_angle_pairs(self.angles)),
+            ("touch", to_face_numbers(self.touch)),
         ):
             object.__setattr__(self, name, converted)
         for low, high in self.angles:
@@ -369,7 +387,7 @@ class Restrictions(RuledOut):
             raise InputError(f"face {both[0]} is to be touched and to be avoided: leave one of these out.")
 
     def __bool__(self) -> bool:
-        """Whether anything is asked."""
+        """Return whether anything is restricted or must be touched."""
         return bool(self.avoid or self.zones or self.angles or self.touch)
 
 
@@ -393,7 +411,7 @@ class Tolerance:
 
     peg: float = field(default=0.01, converter=convert_real)
     face: float = field(default=0.01, converter=convert_real)
-    fit: Fit | None = None
+    fit: DowelFit | None = None
     departure: float = field(default=0.0, converter=convert_real)
 
     def __attrs_post_init__(self) -> None:
@@ -408,7 +426,8 @@ class Tolerance:
 
     @classmethod
     def preset(cls, name: str) -> Tolerance:
-        """The tolerance that follows from the dowels of a toolkit by name, see :meth:`workhold.Vise.preset`.
+        """Return the tolerance that follows from the dowels of
+        a preset toolkit, see :meth:`workhold.Vise.preset`.
 
         Raises
         ------
@@ -426,7 +445,9 @@ class Tolerance:
         return load_preset_tolerance(name)
 
     def with_departure(self, departure: float) -> Tolerance:
-        """The tolerance for an outline that departs by up to ``departure`` mm from the drawn one.
+        """Return the tolerance for an outline that is up to ``departure`` mm off the drawn one.
+
+        The face's own error is kept: ``face`` loses the old departure and gains the new one.
 
         Examples
         --------

@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from workhold.errors import InputError, quote_value, refuse_kind
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture import Fixture, Listed
-from workhold.model.fixture_table import BLOCK, FixtureTable, fixtures_of, make_fixture_of_row
+from workhold.model.fixture import Fixture, ListPlace
+from workhold.model.fixture_table import BLOCK, FixtureTable, make_fixture_of_row, make_fixtures
 from workhold.model.jaw_hold import JawHold
 from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptBest, Note, make_notes
 from workhold.model.query import Query
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 from workhold.model.seating import Seating
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Load, Zone
     from workhold.model.support_request import Faces, SpatialLoad
     from workhold.model.support_triples import Supports
-    from workhold.presenting.notebook import StillPicture, WhyNone
+    from workhold.presenting.notebook import NoFixtureNote, StillPicture
     from workhold.presenting.papers import Picture
     from workhold.presenting.widget import FixtureWidget
 
@@ -37,7 +37,9 @@ __all__ = ["Result"]
 
 
 # What an editor need not offer: other rooms use it.
-INTERNAL = frozenset({"cut_short", "listed", "part", "reasons", "seated", "words"})
+INTERNAL = frozenset(
+    {"attach_seating", "find_list_place", "mark_cut_short", "reasons", "slice_rows", "words"}
+)
 
 
 @define(frozen=True, repr=False)
@@ -63,14 +65,14 @@ class Result:
     statistics : how much work the search was. It counts contact features, chord curves, sliding pairs, pairs
         of curves compared and those whose crossings were sought. It also counts simultaneous contacts
         examined (all four inside their features).
-    proof : the account of the search, see :class:`workhold.model.search_report.Proof`; None for a result that
+    proof : the account of the search, see :class:`workhold.model.search_report.ProofReport`; None for a result that
         came without.
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
     holds : of flat jaws and straps, how each fixture holds the part; none of other toolkits.
     least_effective_error : in mm, the least effective location error of all fixtures that are fit and without
-        warning, or as near to that as any is; steps count from it (``model.first_choice``). None where the
+        warning, or as near to that as any is; steps count from it (``model.choose_first_toolkit``). None where the
         order has no steps, and of results from before there were any.
     """
 
@@ -81,7 +83,7 @@ class Result:
     complete: bool = True
     notes: tuple[Note, ...] = field(default=(), converter=make_notes)
     statistics: Mapping[str, int] = field(factory=dict, hash=False)
-    proof: Proof | None = None
+    proof: ProofReport | None = None
     pairs: int | None = None
     seats: int | None = None
     seating: tuple[Seating, ...] = field(default=(), hash=False)
@@ -99,22 +101,22 @@ class Result:
 
     @property
     def reasons(self) -> tuple[Note, ...]:
-        """The notes but the one that there is of every part whose outline departs from the drawn one."""
+        """Notes without the one on an outline that departs from the drawn one."""
         return tuple(note for note in self.notes if not isinstance(note, FittedOutline))
 
     @property
     def workpiece(self) -> Workpiece:
-        """What is held."""
+        """Part that is held, from the query."""
         return self.query.workpiece
 
     @property
     def toolkit(self) -> Toolkit:
-        """What it is held in."""
+        """Toolkit that the part is held in, from the query."""
         return self.query.toolkit
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many fixtures of each arrangement are listed."""
+        """Number of listed fixtures of each arrangement, by its name."""
         return self.toolkit.count_arrangements(self.table.arrangement)
 
     def __len__(self) -> int:
@@ -123,9 +125,9 @@ class Result:
     def __iter__(self) -> Iterator[Fixture]:
         for start in range(0, len(self), BLOCK):
             block = self.table.take(slice(start, start + BLOCK))
-            where = map(self.listed, range(start, start + len(block)))
-            made = fixtures_of(block, self.toolkit, self.workpiece, where)
-            yield from map(self.seated, made, range(start, start + len(block)))
+            where = map(self.find_list_place, range(start, start + len(block)))
+            made = make_fixtures(block, self.toolkit, self.workpiece, where)
+            yield from map(self.attach_seating, made, range(start, start + len(block)))
 
     @overload
     def __getitem__(self, index: int) -> Fixture: ...
@@ -142,32 +144,38 @@ class Result:
             raise IndexError(f"fixture {index} of {len(self)}")
         index %= len(self)
         index = int(index)
-        made = make_fixture_of_row(self.table, self.toolkit, index, self.workpiece, self.listed(index))
-        return self.seated(made, index)
+        made = make_fixture_of_row(
+            self.table, self.toolkit, index, self.workpiece, self.find_list_place(index)
+        )
+        return self.attach_seating(made, index)
 
-    def seated(self, made: Fixture, index: int) -> Fixture:
-        """The fixture of an index with its seating, where that is known, and how friction holds it."""
+    def attach_seating(self, made: Fixture, index: int) -> Fixture:
+        """Return the fixture with the seating,
+        or the hold by jaws or straps, that this result has for an index.
+        """
         if index < len(self.holds):
             hold = self.holds[index]
             return evolve(made, hold=hold, quality={**made.quality, **hold.figures})
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
 
     def choose(self, rows: ArrayLike) -> Result:
-        """The result with some of the fixtures, in their order here, each once; it saves as any other.
+        """Return the result with some of the fixtures only,
+        in the same order, each once; it can be saved as any other.
 
-        What was found stays as it is, and a note says that only some are listed.
+        ``found`` stays as it is, and a note says that only some are listed. All rows chosen give the result
+        itself.
 
         Parameters
         ----------
-        rows : a mask (N,) of booleans, one for each fixture, or numbers from 0, where those below 0 count from
-            the end.
+        rows : a mask (N,) of booleans, one for each fixture, or numbers from 0, where those below 0 count
+            from the end.
 
         Raises
         ------
         InputError
-            For a mask of another length, and for what are no numbers.
+            For a mask of another length, and for rows that are neither.
         IndexError
-            For a number that there is no fixture of.
+            For a number without a fixture.
 
         Examples
         --------
@@ -207,7 +215,7 @@ class Result:
         )
 
     def where(self, condition: Callable[[Fixture], bool] | ArrayLike) -> Result:
-        """The result with the fixtures for which something holds, see :meth:`choose`.
+        """Return the result with the fixtures for which a condition holds, see :meth:`choose`.
 
         Parameters
         ----------
@@ -227,26 +235,25 @@ class Result:
             return self.choose(np.array([bool(condition(fixture)) for fixture in self], np.bool_))
         return self.choose(condition)
 
-    def part(self, rows: slice) -> Result:
-        """The result with the fixtures of a slice only."""
+    def slice_rows(self, rows: slice) -> Result:
+        """Return the result with the fixtures of a slice, notes unchanged."""
         holds = self.holds[rows]
         return evolve(self, table=self.table.take(rows), seating=self.seating[rows], holds=holds)
 
-    def cut_short(self, listed: int) -> Result:
-        """The result of a search that was stopped while its fixtures were sorted or written.
-
-        Only the best ``listed`` are in it, so it is incomplete.
+    def mark_cut_short(self, listed: int) -> Result:
+        """Return the result as incomplete,
+        with a note that only the best ``listed`` of those found are in it.
         """
         others = (note for note in self.notes if not isinstance(note, Cut))
         return evolve(self, complete=False, notes=(Cut(sum(self.found.values()), listed), *others))
 
-    def listed(self, index: int) -> Listed:
-        """Where the fixture of an index stands."""
-        return Listed(self, index, index + 1, len(self))
+    def find_list_place(self, index: int) -> ListPlace:
+        """Return the place in this result of the fixture with an index; ranks count from 1."""
+        return ListPlace(self, index, index + 1, len(self))
 
     @property
     def words(self) -> str:
-        """What is listed, of which part and in what, in a few words."""
+        """Phrase on what is listed, of which part and in what toolkit."""
         kinds = ", ".join(f"{count:,} of type {kind}" for kind, count in self.counts.items())
         whole = "" if self.complete else ", interrupted"
         only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
@@ -267,7 +274,8 @@ class Result:
         return render_result_html(self)
 
     def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> Picture:
-        """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
+        """Return the best twelve fixtures, near duplicates once,
+        as SVG text, which a notebook shows; write it if asked.
 
         Parameters
         ----------
@@ -293,15 +301,16 @@ class Result:
         jaw: str | float = "screw",
         supports: Mapping[str, Any] | None = None,
     ) -> FixtureWidget | StillPicture:
-        """A widget for notebooks that steps through the fixtures, lets a force push the part, and closes.
+        """Return a notebook widget that steps through the fixtures,
+        lets a force push the part, and opens and closes the jaws.
 
         Without the extra ``widget`` it is a picture of the fixture.
 
         Parameters
         ----------
         rank : of the fixture shown first.
-        usual : size in N of a force whose arrow has the usual length.
-        jaw_force : with which what moves presses, in N; as much as is needed if None.
+        usual : force in N that is drawn as an arrow of usual length.
+        jaw_force : of the jaw or the clamps, in N; as much as is needed if None.
         jaw : "screw", "constant", or how many times as stiff as one contact it is.
         supports : keywords of :meth:`Fixture.supports`, such as ``{"thickness": 12}``, to show the best three
             supports of each fixture with the clamp on top; None for none.
@@ -309,14 +318,15 @@ class Result:
         Raises
         ------
         InputError
-            For a result without a fixture, and values that cannot be.
+            For a result without a fixture, and impossible values.
         """
         from workhold.presenting.notebook import make_result_widget
 
         return make_result_widget(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw, supports=supports)
 
-    def why_none(self) -> WhyNone:
-        """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.
+    def why_none(self) -> NoFixtureNote:
+        """Return why there is no fixture: what each rule takes away,
+        the nearest miss, and changes that would help.
 
         A notebook shows it as tables; it takes longer than the search did.
 
@@ -330,7 +340,7 @@ class Result:
         return explain_no_fixtures(self)
 
     def to_pandas(self) -> DataFrame:
-        """All fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.
+        """Return all fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.
 
         Raises
         ------
@@ -342,7 +352,7 @@ class Result:
         return to_pandas(self)
 
     def to_arrow(self) -> pyarrow.Table:
-        """All fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
+        """Return all fixtures as a ``pyarrow.Table``, as :meth:`to_pandas` has them.
 
         Raises
         ------
@@ -375,21 +385,22 @@ class Result:
         reach: Sequence[tuple[float, float, float, float]] | None = None,
         point: tuple[float, float] | None = None,
     ) -> tuple[Supports, ...]:
-        """What holds the best fixtures up.
+        """Return the supports and clamps on top for each of the ``best`` first fixtures, in their order.
 
         Parameters
         ----------
         best : how many fixtures.
-        each : how many sets of three for each of them; the rest as in :meth:`Fixture.supports`.
+        each : how many sets of three for each of them. All other parameters are those of
+            :meth:`Fixture.supports`.
 
         Raises
         ------
         InputError
             As :meth:`Fixture.supports`.
         """
-        from workhold.supports.asking import result_supports
+        from workhold.supports.asking import find_result_supports
 
-        return result_supports(
+        return find_result_supports(
             self,
             thickness,
             best=best,

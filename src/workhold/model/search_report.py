@@ -21,11 +21,11 @@ __all__ = [
     "NEARLY_DOUBLE",
     "UNBOUNDED",
     "Explanation",
-    "Help",
+    "HelpfulChange",
     "NearestMiss",
-    "Proof",
-    "Removal",
-    "Undecided",
+    "ProofReport",
+    "RuleRemoval",
+    "UndecidedCandidate",
 ]
 
 # Why something is undecided.
@@ -36,7 +36,7 @@ AT_AN_EDGE = "a rule is met exactly at its edge"
 
 
 @frozen
-class Undecided:
+class UndecidedCandidate:
     """A candidate that is left undecided: four contacts, five with two clamps, or a pair of chords.
 
     Parameters
@@ -61,7 +61,7 @@ class Undecided:
 
 
 @frozen
-class Proof:
+class ProofReport:
     """The account of a proven search; ``candidates`` are those discarded, verified and left undecided.
 
     Parameters
@@ -81,12 +81,12 @@ class Proof:
     discarded_by_bound: int
     verified: int
     escalated: int
-    undecided: tuple[Undecided, ...] = field(default=())
+    undecided: tuple[UndecidedCandidate, ...] = field(default=())
 
 
 @frozen
-class Removal:
-    """What one rule took away.
+class RuleRemoval:
+    """Numbers of candidates before and after one rule.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Removal:
 
     @property
     def removed(self) -> int:
-        """How many it took away."""
+        """Number of sets that the rule took away."""
         return self.before - self.after
 
 
@@ -119,7 +119,7 @@ class NearestMiss:
 
 
 @frozen
-class Help:
+class HelpfulChange:
     """A change of what was asked for, and how many fixtures there are with it.
 
     Parameters
@@ -140,7 +140,7 @@ class Help:
 
 @frozen
 class Explanation:
-    """Why there is no fixture.
+    """Explanation of why there is no fixture.
 
     Parameters
     ----------
@@ -152,29 +152,28 @@ class Explanation:
     """
 
     contacts: int
-    removals: tuple[Removal, ...]
+    removals: tuple[RuleRemoval, ...]
     nearest: NearestMiss | None
-    helps: tuple[Help, ...]
+    helps: tuple[HelpfulChange, ...]
     no_contacts: Note | None = None
 
     @property
     def last_rule(self) -> str | None:
-        """The rule that took the last candidates away; None when four pegs cannot touch the part at all."""
+        """Rule that took the last candidates away; None where four pegs cannot touch the part at all."""
         return self.removals[-1].rule if self.removals else None
 
     @property
     def taken_by(self) -> tuple[str, ...]:
-        """What was asked for that takes the last fixtures, each alone or, where one alone does not, together.
+        """Rules asked for without which there are fixtures, each once, in the order of ``helps``.
 
-        There are fixtures without it, so the part is not to blame, whichever rule is the last.
+        So the part is not to blame, whichever rule was the last one applied.
         """
         return tuple(dict.fromkeys(rule for help in self.helps for rule in help.rules))
 
     @property
     def asked_words(self) -> str:
-        """The sentence that names what was asked for where it takes the last fixtures.
-
-        It is empty where nothing does, and where the last rule is just that.
+        """Sentence that names the rules of :attr:`taken_by`;
+        "" where there are none, or only the last rule.
         """
         if self.taken_by in ((), (self.last_rule,)):
             return ""

@@ -18,7 +18,7 @@ __all__ = [
     "DRY_STEEL",
     "SMALL_CAPTURE",
     "Cage",
-    "Pass",
+    "CagePass",
     "Seat",
     "SeatContact",
     "Seating",
@@ -64,22 +64,25 @@ class SeatContact:
 
     @property
     def words(self) -> str:
-        """What the peg touches, in words."""
+        """Words for what the peg touches, such as "face 3"."""
         return f"corner {self.face}" if self.corner else f"face {self.face}"
 
-    def as_fields(self) -> dict[str, int]:
-        """The contact as files have it; pegs count from 0."""
+    def to_fields(self) -> dict[str, int]:
+        """Return the contact as result files have it:
+        "peg" (index from 0), and "corner" or "face" with the number.
+        """
         return {"peg": self.peg, "corner" if self.corner else "face": self.face}
 
     @classmethod
-    def of_fields(cls, fields: Mapping[str, Any]) -> SeatContact:
+    def from_fields(cls, fields: Mapping[str, Any]) -> SeatContact:
+        """Return the contact that a result file has, the inverse of :meth:`to_fields`."""
         corner = fields.get("corner")
         return cls(fields["peg"], fields["face"] if corner is None else corner, corner is not None)
 
 
 @frozen
 class Seat:
-    """Where closing the vise comes to rest.
+    """An equilibrium in which the part can come to rest when the vise closes.
 
     Parameters
     ----------
@@ -109,25 +112,30 @@ class Seat:
 
     @property
     def is_wrong(self) -> bool:
-        """Whether the part in it lies elsewhere."""
+        """Whether the part lies elsewhere than in the fixture:
+        neither its own seat nor one that covers the same place.
+        """
         return not (self.is_own or self.same_place)
 
-    def as_fields(self) -> dict[str, Any]:
+    def to_fields(self) -> dict[str, Any]:
+        """Return the seat as result files have it;
+        lengths in mm and angles in degrees, rounded, None for inf.
+        """
         return {
             "kind": self.kind,
-            "pose": pose_fields(self.pose),
-            "jaw_separation": length(self.jaw_separation),
-            "difference": length(self.difference),
+            "pose": list_pose_fields(self.pose),
+            "jaw_separation": round_length(self.jaw_separation),
+            "difference": round_length(self.difference),
             "mirrored": self.mirrored,
             "same_place": self.same_place,
-            "contacts": [contact.as_fields() for contact in self.contacts],
-            "forces": [length(force) for force in self.forces],
-            "depth": length(self.depth),
+            "contacts": [contact.to_fields() for contact in self.contacts],
+            "forces": [round_length(force) for force in self.forces],
+            "depth": round_length(self.depth),
         }
 
     @classmethod
-    def of_fields(cls, fields: Mapping[str, Any]) -> Seat:
-        """The seat that a file has; whether it is the fixture's own follows from the fixture."""
+    def from_fields(cls, fields: Mapping[str, Any]) -> Seat:
+        """Return the seat that a result file has, with ``is_own`` False, which the fixture has to decide."""
         return cls(
             fields["kind"],
             Pose(**fields["pose"]),
@@ -135,21 +143,23 @@ class Seat:
             fields["difference"],
             fields["mirrored"],
             fields["same_place"],
-            tuple(map(SeatContact.of_fields, fields["contacts"])),
+            tuple(map(SeatContact.from_fields, fields["contacts"])),
             tuple(fields["forces"]),
             fields["depth"],
             False,
         )
 
     def is_at(self, pose: Pose) -> bool:
-        """Whether the part, as drawn, lies in a pose."""
+        """Return whether the seat is the fixture's own:
+        settled, not mirrored, in this pose and at no difference of opening.
+        """
         turn = abs((self.pose.theta_deg - pose.theta_deg + 180.0) % 360.0 - 180.0)
         away = max(turn, abs(self.pose.x - pose.x), abs(self.pose.y - pose.y), abs(self.difference))
         return not self.mirrored and self.kind != "unsettled" and away < IS_OWN
 
 
 @frozen
-class Pass:
+class CagePass:
     """The equilibrium through which a part gets out of its cage first.
 
     Parameters
@@ -164,7 +174,8 @@ class Pass:
 
 @frozen
 class Cage:
-    """How far a part may lie off its pose, jaws open by less than the capture opening, and still come home.
+    """Range in which a part can lie and still settle in its place, with the jaws open by less than the
+    capture opening.
 
     Parameters
     ----------
@@ -202,7 +213,7 @@ class Seating:
 
     capture_opening: float | None
     room_factor: float
-    lowest_pass: Pass | None
+    lowest_pass: CagePass | None
     way_out: float | None
     cage: Cage | None
     placing: float | None
@@ -217,12 +228,12 @@ class Seating:
 
     @property
     def words(self) -> str:
-        """How wide open the jaws may be, and in how many other places the part can rest, in a few words."""
+        """Phrase on how far the jaws may be open, and on the number of wrong seats."""
         caught = (
             "never lost" if self.capture_opening is None else f"caught below {self.capture_opening:.3f} mm"
         )
         caught = "it is not known how far you may open" if self.is_untold else caught
-        wrong = len(self.wrong_within())
+        wrong = len(self.list_wrong_seats())
         return f"{caught}, {wrong:,} wrong seat{'s' * (wrong != 1)}"
 
     def __repr__(self) -> str:
@@ -233,8 +244,10 @@ class Seating:
 
         return render_seating_html(self)
 
-    def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
-        """A copy with what follows from a toolkit, and an opening up to which seats count."""
+    def with_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
+        """Return a copy with ``most``, ``clamping`` and ``opened`` of a toolkit,
+        and with this ``opening`` in mm.
+        """
         travel, sign = toolkit.moving.travel, toolkit.clamping
         most, opened = (
             None if travel is None else travel.most,
@@ -244,20 +257,22 @@ class Seating:
 
     @property
     def is_untold(self) -> bool:
-        """Whether it is not known from where on the part is caught, so that nothing is claimed."""
+        """Whether the cage could not be worked out, so that no capture opening can be claimed."""
         return self.lowest_pass is None and self.capture_opening is not None
 
     @property
     def drop_room(self) -> float | None:
-        """Room in mm at every peg when the jaws are open by the capture opening, to first order."""
+        """Room in mm at every peg, to first order,
+        with the jaws open by the capture opening; None where that is None.
+        """
         return None if self.capture_opening is None else self.capture_opening / self.room_factor
 
-    def wrong_within(self, opening: float | None = None) -> list[Seat]:
-        """The seats in which the part lies elsewhere and that can be reached.
+    def list_wrong_seats(self, opening: float | None = None) -> list[Seat]:
+        """Return the wrong seats that can be reached within an opening and the toolkit's largest separation.
 
         Parameters
         ----------
-        opening : how far the jaws are opened, in mm; as far as counts if None.
+        opening : how far the jaws are opened, in mm; :attr:`opening` if None.
         """
         reach = self.opening if opening is None else opening
         wrong = [seat for seat in self.seats if seat.is_wrong]
@@ -265,29 +280,33 @@ class Seating:
             wrong = [seat for seat in wrong if self.clamping * seat.difference < reach]
         return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
 
-    def reading_of(self, opening: float | None = None) -> float | None:
-        """The least difference in mm between the openings of the right and a wrong seat; None without any."""
-        return min((abs(seat.difference) for seat in self.wrong_within(opening)), default=None)
+    def find_least_reading(self, opening: float | None = None) -> float | None:
+        """Return the least difference in mm between the fixture's opening and a wrong seat's;
+        None without a wrong seat.
+        """
+        return min((abs(seat.difference) for seat in self.list_wrong_seats(opening)), default=None)
 
-    def catches(self, opening: float) -> bool:
-        """Whether the part comes home from anywhere in its cage with the jaws open by so many mm."""
+    def is_caught_from(self, opening: float) -> bool:
+        """Return whether the part, let go anywhere in its cage
+        with the jaws open by so many mm, settles in its place.
+        """
         return self.capture_opening is None or opening < self.capture_opening
 
     @property
     def is_foolproof(self) -> bool:
-        """Whether a caliper shows each wrong seat that counts; what is unsettled counts as one."""
-        reading = self.reading_of()
+        """Whether a caliper can tell each wrong seat within reach from the fixture by its opening."""
+        reading = self.find_least_reading()
         return reading is None or round(reading, DECIMALS) >= CLOSE_READING
 
     @property
     def is_hardly_caught(self) -> bool:
-        """Whether the part is caught only while the jaws stand open by very little."""
+        """Whether the capture opening is known and smaller than :data:`SMALL_CAPTURE`."""
         return self.capture_opening is not None and round(self.capture_opening, DECIMALS) < SMALL_CAPTURE
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings, one sentence each without a full stop; lengths in mm."""
-        out, reading = list[str](), self.reading_of()
+        """Warnings as sentences without a capital and full stop; lengths in mm."""
+        out, reading = list[str](), self.find_least_reading()
         if self.is_untold:
             out.append("it is not known how far you may open without losing the part")
         elif self.is_hardly_caught:
@@ -301,67 +320,74 @@ class Seating:
 
     @property
     def warning_count(self) -> int:
-        """The number of warnings of quality for which these count.
+        """Number of warnings that the seating adds to those of quality.
 
-        A small capture opening counts for two, because what is let go in its cage needs no reading.
+        A small capture opening counts for two, because a part let go in its cage needs no reading.
         """
         return len(self.warnings) + self.is_hardly_caught
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures of ``model.quality.SEATING_FIGURES``; what has no end is infinite."""
+        """Figures of ``model.quality.SEATING_FIGURES`` by key; inf where one has no bound."""
         known = {
             "capture_opening": self.capture_opening,
             "drop_room": self.drop_room,
             "way_out": self.way_out,
             "placing": 0.0 if self.is_untold else self.placing,
             "sticking_friction": self.sticking_friction,
-            "wrong_seats": float(len(self.wrong_within())),
-            "reading": self.reading_of(),
+            "wrong_seats": float(len(self.list_wrong_seats())),
+            "reading": self.find_least_reading(),
         }
         return {name: inf if value is None else value for name, value in known.items()}
 
-    def as_fields(self) -> dict[str, Any]:
-        """The seating as a result file has it: lengths in mm, angles in degrees."""
-        top, opening = self.lowest_pass, length(self.capture_opening)
+    def to_fields(self) -> dict[str, Any]:
+        """Return the seating as a result file has it:
+        lengths in mm, angles in degrees, rounded, None for inf.
+        """
+        top, opening = self.lowest_pass, round_length(self.capture_opening)
         # Of numbers as they are written, so that reading and writing changes nothing.
         factor = round(self.room_factor, DECIMALS)
         return {
             "capture_opening": opening,
-            "drop_room": None if opening is None else length(opening / factor),
+            "drop_room": None if opening is None else round_length(opening / factor),
             "room_factor": factor,
             "pass": None
             if top is None
             else {
-                "pose": pose_fields(top.pose),
-                "jaw_separation": length(top.jaw_separation),
-                "contacts": [contact.as_fields() for contact in top.contacts],
+                "pose": list_pose_fields(top.pose),
+                "jaw_separation": round_length(top.jaw_separation),
+                "contacts": [contact.to_fields() for contact in top.contacts],
             },
-            "way_out": length(self.way_out),
+            "way_out": round_length(self.way_out),
             "cage": None
             if self.cage is None
             else {
-                name: [length(end) for end in getattr(self.cage, name)] for name in ("theta_deg", "x", "y")
+                name: [round_length(end) for end in getattr(self.cage, name)]
+                for name in ("theta_deg", "x", "y")
             },
             "cage_short": None if self.cage is None else dict(CAGE_SHORT),
-            "placing": length(self.placing),
-            "sticking_friction": length(self.sticking_friction),
-            "stop": length(self.stop),
-            "seats": [seat.as_fields() for seat in self.seats],
-            "wrong_seats": len(self.wrong_within()),
-            "reading": length(self.reading_of()),
+            "placing": round_length(self.placing),
+            "sticking_friction": round_length(self.sticking_friction),
+            "stop": round_length(self.stop),
+            "seats": [seat.to_fields() for seat in self.seats],
+            "wrong_seats": len(self.list_wrong_seats()),
+            "reading": round_length(self.find_least_reading()),
             "unsettled": list(self.unsettled),
         }
 
     @classmethod
-    def of_fields(cls, fields: Mapping[str, Any], pose: Pose) -> Seating:
-        """The seating that a file has of a fixture in a pose. Fields that follow from others are not read."""
+    def from_fields(cls, fields: Mapping[str, Any], pose: Pose) -> Seating:
+        """Return the seating that a result file has for a fixture in this pose;
+        derived fields of the file are not read.
+        """
         top, cage = fields["pass"], fields["cage"]
-        seats = [Seat.of_fields(seat) for seat in fields["seats"]]
+        seats = [Seat.from_fields(seat) for seat in fields["seats"]]
         lowest = None
         if top is not None:
-            lowest = Pass(
-                Pose(**top["pose"]), top["jaw_separation"], tuple(map(SeatContact.of_fields, top["contacts"]))
+            lowest = CagePass(
+                Pose(**top["pose"]),
+                top["jaw_separation"],
+                tuple(map(SeatContact.from_fields, top["contacts"])),
             )
         friction = fields["sticking_friction"]
         return cls(
@@ -378,10 +404,11 @@ class Seating:
         )
 
 
-def length(value: float | None) -> float | None:
-    """A number as files have it; what is infinite is none."""
+def round_length(value: float | None) -> float | None:
+    """Return a number rounded as files have it; None for None, inf and NaN."""
     return None if value is None or not isfinite(value) else round(value, DECIMALS) + 0.0
 
 
-def pose_fields(pose: Pose) -> dict[str, float | None]:
-    return {"theta_deg": length(pose.theta_deg), "x": length(pose.x), "y": length(pose.y)}
+def list_pose_fields(pose: Pose) -> dict[str, float | None]:
+    """Return a pose as result files have it: "theta_deg" in degrees, "x" and "y" in mm, rounded."""
+    return {"theta_deg": round_length(pose.theta_deg), "x": round_length(pose.x), "y": round_length(pose.y)}

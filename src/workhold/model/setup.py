@@ -22,7 +22,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier, Measure
 from workhold.fixels.contacts import CLAMP_TIP
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Point, bounding_box
+from workhold.geometry.segment import Arc, Point, compute_bounding_box
 from workhold.limits import refuse_long
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.workpiece import Workpiece
@@ -33,7 +33,7 @@ __all__ = [
     "PartZero",
     "name_contacts",
     "find_hole_centers",
-    "part_zero",
+    "choose_part_zero",
     "list_length_settings",
 ]
 
@@ -54,10 +54,10 @@ class PartZero:
     words: str
 
 
-def part_zero(
+def choose_part_zero(
     workpiece: Workpiece, asked: str | Sequence[float] | None = None, unit: Unit = MILLIMETRE
 ) -> PartZero:
-    """Part zero, as asked for or by default.
+    """Return part zero as asked for, else the default described at the head of this module.
 
     Parameters
     ----------
@@ -80,7 +80,9 @@ def part_zero(
     x0, y0, x1, y1 = workpiece.bounds
     if asked is None:
         within = min(-x0, -y0, x1, y1) >= -AGREEMENT
-        return PartZero((0.0, 0.0), "origin of the drawing") if within else part_zero(workpiece, "corner")
+        return (
+            PartZero((0.0, 0.0), "origin of the drawing") if within else choose_part_zero(workpiece, "corner")
+        )
     if not isinstance(asked, str):
         return PartZero(check_point(list(map(str, asked)), str(asked), unit), "point given")
     word = asked.strip().lower()
@@ -98,7 +100,10 @@ def part_zero(
 
 
 def check_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
-    """The point in mm that two numbers give; refuses others than two, infinite ones and too large ones."""
+    """Return the point in mm that two numbers, written in the unit, give; ``words`` names it in messages.
+
+    Raises InputError unless there are exactly two finite numbers, not too large.
+    """
     try:
         x, y = (unit.to_mm(float(number)) for number in numbers)
     except (ValueError, OverflowError):
@@ -111,9 +116,9 @@ def check_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
 
 
 def find_hole_centers(workpiece: Workpiece) -> list[Point]:
-    """The centre of each hole, in the order of the part's loops.
+    """Return the centre (x, y) in mm of each hole, in the order of the part's loops.
 
-    A round hole has the centre of its circle, any other the middle of its outside dimensions.
+    A round hole has the centre of its circle, any other the middle of its bounding box.
     """
     outer = workpiece.outer_count
     round_ones = {
@@ -123,7 +128,7 @@ def find_hole_centers(workpiece: Workpiece) -> list[Point]:
     }
     centers, number = [], outer
     for loop in workpiece.hole_segments:
-        boxes = [bounding_box(segment) for segment in loop]
+        boxes = [compute_bounding_box(segment) for segment in loop]
         middle = [(min(box[k] for box in boxes) + max(box[k + 2] for box in boxes)) / 2 for k in (0, 1)]
         x, y = round_ones.get(number, middle)
         centers.append((float(x), float(y)))
@@ -194,33 +199,35 @@ class LengthSetting:
 
     @property
     def short(self) -> str:
-        """What it is called over a column of lengths."""
+        """Name over a column of such lengths."""
         return self.name if self.carrier.measure == "tip" else self.sign
 
     @property
     def mounting(self) -> Mounting:
+        """Words for how the clamp is put on its plate."""
         return MOUNTINGS[self.carrier.measure]
 
     @property
     def label(self) -> str:
-        """What stands above the clamp's place."""
+        """Heading above the clamp's place."""
         return f"{self.carrier.noun.capitalize()} {self.mounting.label}"
 
     @property
     def place(self) -> str:
-        """The clamp's hole, or its line; nothing of what has a lattice of its own."""
+        """The clamp's hole or line, without the noun; "" where ``tip`` is None."""
         if self.tip is None:
             return ""
-        return self.carrier.place_name(self.tip.column, self.tip.row).removeprefix(f"{self.carrier.noun} ")
+        return self.carrier.name_place(self.tip.column, self.tip.row).removeprefix(f"{self.carrier.noun} ")
 
     @property
     def caption(self) -> str:
-        """The title with a capital letter, as a sentence begins."""
+        """Title with a capital letter."""
         return f"{self.title[0].upper()}{self.title[1:]}"
 
 
 def list_length_settings(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSetting, ...]:
-    """The lengths to set: one of a vise, one of each clamp in their order, none where nothing moves.
+    """Return the lengths to set: one for a vise's opening,
+    one for each moving clamp in order; () where nothing moves.
 
     Examples
     --------
@@ -245,8 +252,8 @@ def list_length_settings(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSett
             title=f"{name} of the {carrier.noun}s",
             sign="S",
             length=travelled,
-            start=carrier.place(0, 0),
-            end=carrier.place(0, 0, travelled),
+            start=carrier.compute_hole_center(0, 0),
+            end=carrier.compute_hole_center(0, 0, travelled),
             carrier=carrier,
         )
         for carrier in toolkit.carriers
@@ -255,11 +262,17 @@ def list_length_settings(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSett
 
 
 def measure_clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> LengthSetting:
-    """The length to set on one clamp of ``clamps`` that hold the part."""
+    """Return the length to set on one clamp: its stroke, or its tip's distance from the first column or row.
+
+    Parameters
+    ----------
+    travelled : travel of the clamp in mm.
+    clamps : number of clamps of the fixture; with several the clamp is named by its place.
+    """
     carrier, end = toolkit.find_carrier(tip.carrier), (tip.x, tip.y)
-    named = f"the {carrier.noun}" if clamps == 1 else carrier.place_name(tip.column, tip.row)
+    named = f"the {carrier.noun}" if clamps == 1 else carrier.name_place(tip.column, tip.row)
     if carrier.measure == "stroke":
-        start, stroke = carrier.place(tip.column, tip.row), 0.0 - toolkit.clamping * travelled
+        start, stroke = carrier.compute_hole_center(tip.column, tip.row), 0.0 - toolkit.clamping * travelled
         return LengthSetting(
             "stroke", f"stroke of {named}, from hole to tip", "stroke", stroke, start, end, carrier, tip
         )
@@ -274,6 +287,8 @@ def measure_clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: 
 
 
 def name_contacts(fixture: Fixture, toolkit: Toolkit) -> list[str]:
-    """Names of the contacts of a fixture in a table: their holes or lines; the only clamp has its noun."""
+    """Return the names of a fixture's contacts in the order of its pegs:
+    those of holes or lines; a sole clamp has its noun.
+    """
     clamps = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).contact is CLAMP_TIP]
     return [toolkit.find_carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]

@@ -39,21 +39,21 @@ from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 from workhold.model.setup import LengthSetting, list_length_settings
 from workhold.model.straps import StrappedHold
-from workhold.model.wall_ends import standouts
+from workhold.model.wall_ends import measure_standouts
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "MOST_HOLES",
     "Axis",
-    "Hole",
-    "Shown",
+    "ShownHole",
+    "ShownSetUp",
     "ShownJaws",
     "ShownCarrier",
     "Side",
     "bound_held_part",
     "bound_placed_part",
     "bound_placed_parts",
-    "shown",
+    "find_shown",
     "find_shown_beside",
 ]
 
@@ -66,9 +66,9 @@ ROUNDING = 1e-6
 def bound_held_part(
     part: Box, fixture: Fixture, clamps: Sequence[ShownClamp], bolts: Sequence[Point] = ()
 ) -> Box:
-    """The extent of part, pegs, clamps and bolts of straps, in mm."""
+    """Return the bounding box in mm of the part's box, the centres of pegs and the backs of clamps."""
     places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps), *bolts]
-    return reduce(Box.union, (Box(x, y, x, y) for x, y in places), part)
+    return reduce(Box.unite, (Box(x, y, x, y) for x, y in places), part)
 
 
 def list_strap_bolts(fixture: Fixture, toolkit: Toolkit) -> list[Point]:
@@ -76,7 +76,7 @@ def list_strap_bolts(fixture: Fixture, toolkit: Toolkit) -> list[Point]:
     straps, hold = toolkit.strap_set, fixture.hold
     if straps is None or not isinstance(hold, StrappedHold):
         return []
-    places = (straps.bolts.place(*one.hole) for one in hold.straps)
+    places = (straps.bolts.compute_hole_center(*one.hole) for one in hold.straps)
     return [(float(x), float(y)) for x, y in places]
 
 
@@ -89,7 +89,7 @@ def list_strap_holes(fixture: Fixture, toolkit: Toolkit) -> frozenset[tuple[int,
     return frozenset([*bolts, *hold.supports])
 
 
-def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
+def bound_reach(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
     """The reach about the extent of part, pegs, clamps and bolts, in mm; see the glossary."""
     reach = held
     more = max(reach.width, reach.height) / 14
@@ -98,20 +98,23 @@ def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
     for carrier in carriers:
         if carrier.travel is not None:
             along_x, along_y = carrier.travel.unit
-            for x, y in (carrier.place(0, 0), carrier.place(0, 0, fixture.travel)):
+            for x, y in (
+                carrier.compute_hole_center(0, 0),
+                carrier.compute_hole_center(0, 0, fixture.travel),
+            ):
                 x, y = x if along_x else reach.x0, y if along_y else reach.y0
-                reach = reach.union(Box(x, y, x, y))
+                reach = reach.unite(Box(x, y, x, y))
     return reach
 
 
 def find_cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) -> tuple[range, range]:
-    """Columns and rows of a carrier in reach, at least one of each.
+    """Return the columns and the rows of a carrier whose holes lie in reach, at least one of each.
 
-    A lattice without an end has those before the first ones too that lie under what is held, whose lower left
-    corner is ``held`` in mm. Rows that are counted from a wall begin there. Refuses so many holes that no
-    fixture of a search has them in reach.
+    A lattice without an end also has those before the first ones that lie under the held part, whose lower
+    left corner is ``held`` in mm; give inf there for rows that begin at a wall. Raises InputError for more
+    than MOST_STEPS holes.
     """
-    x, y = carrier.place(0, 0, travelled)
+    x, y = carrier.compute_hole_center(0, 0, travelled)
     columns = find_numbers_in_reach(
         reach.x0 - x, reach.x1 - x, carrier.pitch[0], carrier.columns, held[0] - x
     )
@@ -125,9 +128,10 @@ def find_cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Po
 
 
 def find_numbers_in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
-    """Columns or rows between two distances in mm from the first one; at least one.
+    """Return the numbers of columns or rows at distances in [low, high] mm from the first one; at least one.
 
-    Without a number of them, they begin within half a pitch of ``held`` if that is before the first one.
+    ``count`` is the number of them, None without an end: then they begin within half a pitch of ``held``
+    where that is negative.
     """
     last, first = max(floor(high / pitch + ROUNDING), 0), max(ceil(low / pitch - ROUNDING), 0)
     if count is not None:
@@ -137,17 +141,20 @@ def find_numbers_in_reach(low: float, high: float, pitch: float, count: int | No
     return range(first, max(last, first) + 1)
 
 
-def span(carrier: Carrier, travelled: float, columns: range, rows: range) -> Box:
-    """The box of the centres of the holes in some columns and rows."""
-    first, last = (carrier.place(columns[end], rows[end], travelled) for end in (0, -1))
+def bound_hole_centers(carrier: Carrier, travelled: float, columns: range, rows: range) -> Box:
+    """Return the bounding box of the centres of the holes in these columns and rows, in mm."""
+    first, last = (carrier.compute_hole_center(columns[end], rows[end], travelled) for end in (0, -1))
     return Box(*first, *last)
 
 
 def measure_facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
-    """The sides of each box that face another box, with the smallest gap there in mm."""
+    """Return for each box a dict of its sides that face another box,
+    each with the smallest gap there in mm.
+    """
     gaps: list[dict[Side, float]] = [{} for _ in spans]
 
     def face(one: int, side: Side, gap: float) -> None:
+        """Note the gap at a side of box ``one``, where it is smaller than that known before."""
         gaps[one][side] = min(gap, gaps[one].get(side, inf))
 
     for i, k in combinations(range(len(spans)), 2):
@@ -180,7 +187,7 @@ USUAL_PITCH, JAW, PARALLEL, WIDEST_PARALLEL, STOP = 10.0, 0.16, 0.2, 8.0, 0.07
 
 
 @frozen
-class Hole:
+class ShownHole:
     """A hole that shows; ``center`` in mm, ``used`` by a peg or a clamp, ``blocked`` for all pegs."""
 
     column: int
@@ -192,7 +199,7 @@ class Hole:
 
 @frozen
 class ShownCarrier:
-    """What shows of a carrier that has a plate; lengths in mm.
+    """A carrier with a plate, as pictures show it; lengths in mm.
 
     Parameters
     ----------
@@ -204,7 +211,6 @@ class ShownCarrier:
     pegs : of the fixture, those that stand on it.
     bolted : those of clamps that are bolted to it.
     clamping : unit vector along which it slides and pushes when it clamps; None when it stands still.
-    strapped : its holes, column and row, in which bolts of straps and supports stand.
     """
 
     carrier: Carrier
@@ -221,61 +227,69 @@ class ShownCarrier:
 
     @property
     def used(self) -> set[tuple[int, int]]:
-        """The holes, column and row, in which something stands."""
+        """Holes, (column, row), in which a peg or a clamp stands."""
         clamps = {(clamp.tip.column, clamp.tip.row) for clamp in self.bolted if clamp.hole is not None}
         return clamps | {(peg.column, peg.row) for peg in self.pegs} | self.strapped
 
     @property
     def used_columns(self) -> set[int]:
-        """The columns in which something stands, or along which a clamp moves."""
+        """Columns in which a peg or a clamp stands, or along which a clamp moves."""
         lines = {clamp.tip.column for clamp in self.bolted if clamp.is_upright}
         return lines | {column for column, _ in self.used}
 
     @property
     def used_rows(self) -> set[int]:
-        """The rows in which something stands, or along which a clamp moves."""
+        """Rows in which a peg or a clamp stands, or along which a clamp moves."""
         lines = {clamp.tip.row for clamp in self.bolted if not clamp.is_upright}
         return lines | {row for _, row in self.used}
 
     @property
     def named_columns(self) -> list[tuple[int, float]]:
-        """Every column that shows and has a name, and its x."""
+        """Columns that show and have a name (number 0 or more), each with its x in mm."""
         return [
-            (column, self.carrier.place(column, 0, self.travelled)[0])
+            (column, self.carrier.compute_hole_center(column, 0, self.travelled)[0])
             for column in self.columns
             if column >= 0
         ]
 
     @property
     def named_rows(self) -> list[tuple[int, float]]:
-        """Every row that shows and has a name, and its y."""
-        return [(row, self.carrier.place(0, row, self.travelled)[1]) for row in self.rows if row >= 0]
+        """Rows that show and have a name (number 0 or more), each with its y in mm."""
+        return [
+            (row, self.carrier.compute_hole_center(0, row, self.travelled)[1])
+            for row in self.rows
+            if row >= 0
+        ]
 
     @property
     def names_at(self) -> Side:
-        """The side at which the rows are named: the left one, unless a carrier stands there or this slides
-        right.
+        """Side at which rows are named:
+        "left", or "right" where another carrier stands on the left or this one slides right.
         """
         slides_right = self.carrier.travel is not None and self.carrier.travel.unit[0] > 0
         return "right" if "left" in self.facing or slides_right else "left"
 
     @property
     def hole_radius(self) -> float:
-        """Radius in mm of the holes in a picture: that of the pegs, or a seventh of the pitch."""
+        """Radius in mm to draw holes with: that of the pegs, at most 0.42 pitches;
+        a seventh of the pitch for very thin pegs.
+        """
         pitch, radius = min(self.carrier.pitch), self.carrier.peg_radius
         return min(radius, 0.42 * pitch) if radius > 0.05 * pitch else pitch / 7
 
-    def holes(self, most: float = inf) -> list[Hole]:
-        """The holes that show, row by row; when they are more than ``most``, those near a peg only."""
+    def list_holes(self, most: float = inf) -> list[ShownHole]:
+        """Return the holes that show, row by row;
+        where there are more than ``most``, only those near a used one.
+        """
         cells = [(column, row) for row in self.rows for column in self.columns]
         if len(cells) > most:
             near = range(-NEAR, NEAR + 1)
             wanted = {(column + i, row + j) for column, row in self.used for i in near for j in near}
             cells = [cell for cell in cells if cell in wanted]
         return [
-            Hole(
+            ShownHole(
                 *cell,
-                self.carrier.place(*cell, self.travelled),
+                self.carrier.compute_hole_center(*cell, self.travelled),
                 cell in self.used,
                 self.carrier.is_blocked(*cell),
             )
@@ -284,7 +298,7 @@ class ShownCarrier:
 
 
 @frozen
-class Dimension:
+class ShownLength:
     """A length to set, and the axes square to it that it is measured between.
 
     Parameters
@@ -302,7 +316,7 @@ class Dimension:
 
 @frozen
 class ShownWall:
-    """What shows of a straight wall along x at y = 0; lengths in mm.
+    """A straight wall along x at y = 0, as pictures show it; lengths in mm.
 
     Parameters
     ----------
@@ -320,7 +334,7 @@ class ShownWall:
 
 @frozen
 class ShownJaws:
-    """What shows of two flat jaws seen from above; lengths in mm.
+    """Two flat jaws seen from above, as pictures show them; lengths in mm.
 
     Parameters
     ----------
@@ -336,13 +350,14 @@ class ShownJaws:
 
     @property
     def extent(self) -> Box:
+        """Bounding box of jaws and work stop."""
         boxes = [self.fixed, self.moving, *([] if self.stop is None else [self.stop])]
-        return reduce(Box.union, boxes)
+        return reduce(Box.unite, boxes)
 
 
 @frozen
-class Shown:
-    """What shows of a toolkit and a part.
+class ShownSetUp:
+    """A toolkit with a part, as pictures show it.
 
     Parameters
     ----------
@@ -356,36 +371,39 @@ class Shown:
 
     carriers: tuple[ShownCarrier, ...]
     clamps: tuple[ShownClamp, ...]
-    measured: tuple[Dimension, ...]
+    measured: tuple[ShownLength, ...]
     part: Box
     walls: tuple[ShownWall, ...] = ()
     jaws: ShownJaws | None = None
 
     @property
     def extent(self) -> Box:
+        """Bounding box of all that shows, with room behind each clamp."""
         boxes = [
             *([] if self.jaws is None else [self.jaws.extent]),
             *(one.plate for one in self.carriers),
             *(one.room for one in self.clamps),
             *(one.bar for one in self.walls),
         ]
-        return reduce(Box.union, boxes, self.part)
+        return reduce(Box.unite, boxes, self.part)
 
     @property
     def pitch(self) -> float:
-        """The smallest distance between neighbouring holes, in mm; some usual one where there are none."""
+        """Smallest distance between neighbouring holes in mm; :data:`USUAL_PITCH` where there are none."""
         return min((min(shown.carrier.pitch) for shown in self.carriers), default=USUAL_PITCH)
 
 
-def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
-    """What shows of a toolkit that holds a workpiece; raises as :func:`find_shown_beside`."""
+def find_shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> ShownSetUp:
+    """Return what shows of a toolkit that holds a workpiece;
+    raises InputError as :func:`find_shown_beside`.
+    """
     if isinstance(fixture.hold, JawHold):
-        return shown_between(workpiece, fixture, toolkit)
+        return find_shown_between_jaws(workpiece, fixture, toolkit)
     return find_shown_beside(bound_placed_part(workpiece, fixture.pose), fixture, toolkit)
 
 
-def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Shown:
-    """What shows of two flat jaws and a workpiece between them."""
+def find_shown_between_jaws(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> ShownSetUp:
+    """Return what shows of two flat jaws with a workpiece between them."""
     jaws, hold, part = toolkit.flat_jaws, fixture.hold, bound_placed_part(workpiece, fixture.pose)
     assert jaws is not None and isinstance(hold, JawHold)
     width, opening = jaws.width, hold.opening
@@ -399,7 +417,7 @@ def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> S
         points = (
             point
             for segment in workpiece.segments[: workpiece.outer_count]
-            for point in far_points(segment, fixture.pose)
+            for point in find_far_points(segment, fixture.pose)
         )
         there = [y for at, y in points if abs(at - x) < 1e-6] or [opening / 2]
         y = (min(there) + max(there)) / 2
@@ -412,22 +430,24 @@ def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> S
         stop,
     )
     faces = ((0.0, 0.0), (width, 0.0)), ((0.0, opening), (width, opening))
-    measured = tuple(Dimension(setting, faces, True) for setting in list_length_settings(fixture, toolkit))
-    return Shown((), (), measured, part, jaws=seen)
+    measured = tuple(ShownLength(setting, faces, True) for setting in list_length_settings(fixture, toolkit))
+    return ShownSetUp((), (), measured, part, jaws=seen)
 
 
-def far_points(segment: Segment, pose: Pose) -> list[Point]:
-    """The ends of a segment in a pose, and of an arc the points farthest left and right."""
+def find_far_points(segment: Segment, pose: Pose) -> list[Point]:
+    """Return the ends of a segment in a pose,
+    and for an arc its points farthest left and right where it has them.
+    """
     placed = pose.carry(segment)
     points = [placed.start, placed.end]
     if isinstance(placed, Arc):
         ways = [(placed.center[0] + way * placed.radius, placed.center[1]) for way in (-1, 1)]
-        points += [point for point in ways if abs(placed.parameter(point)) <= placed.half_sweep]
+        points += [point for point in ways if abs(placed.find_parameter(point)) <= placed.half_sweep]
     return points
 
 
 def bound_placed_part(workpiece: Workpiece, pose: Pose) -> Box:
-    """The extent of a workpiece in a pose, in mm."""
+    """Return the bounding box of a workpiece in a pose, in mm, in the toolkit's frame."""
     (box,) = bound_placed_parts(workpiece, *np.array([[np.radians(pose.theta_deg)], [pose.x], [pose.y]]))
     return Box(*map(float, box))
 
@@ -435,9 +455,11 @@ def bound_placed_part(workpiece: Workpiece, pose: Pose) -> Box:
 def bound_placed_parts(
     workpiece: Workpiece, theta: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Extents (N, 4) of a workpiece in N poses, as x0, y0, x1, y1 in mm; theta (N,) in radians.
+    """Return the bounding boxes (N, 4), x0, y0, x1, y1 in mm,
+    of a workpiece in N poses: theta in radians, x and y in mm.
 
-    The farthest point in a direction is the end of a segment or the point of an arc that faces that way.
+    The farthest point in a direction is the end of a segment, or the point of an arc whose normal has that
+    direction.
     """
     outer = workpiece.segments[: workpiece.outer_count]
     corners = np.array([segment.start for segment in outer])
@@ -446,6 +468,9 @@ def bound_placed_parts(
     center_x, center_y, radius, middle, half = round_ones.T
 
     def farthest(direction: float) -> NDArray[np.float64]:
+        """Return the greatest coordinate (N,) in mm along a direction,
+        in radians, of the part turned by theta alone.
+        """
         turned = direction - theta[:, None]
         reach = rotate_vectors(corners[:, 0], corners[:, 1], -turned)[0].max(axis=1)
         faces = np.abs((turned - middle + np.pi) % (2 * np.pi) - np.pi) <= half
@@ -456,18 +481,21 @@ def bound_placed_parts(
     return np.stack([x - left, y - bottom, x + right, y + top], axis=1)
 
 
-def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
-    """What shows of a toolkit beside a part of an extent.
+def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> ShownSetUp:
+    """Return what shows of a toolkit with pegs that holds a part of this bounding box.
 
-    Refuses a part and pegs so far apart that too many holes would show.
+    Raises InputError where part and pegs are so far apart that too many holes would show.
     """
     travelled = fixture.travel
     carriers = toolkit.plates
     clamps = tuple(list_shown_clamps(fixture, toolkit))
     held = bound_held_part(part, fixture, clamps, list_strap_bolts(fixture, toolkit))
-    reach, lowest = reach_of(held, fixture, carriers), inf if toolkit.ends_on_walls else held.y0
+    reach, lowest = bound_reach(held, fixture, carriers), inf if toolkit.ends_on_walls else held.y0
     ranges = [find_cells_in_reach(carrier, travelled, reach, (held.x0, lowest)) for carrier in carriers]
-    spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
+    spans = [
+        bound_hole_centers(carrier, travelled, *cells)
+        for carrier, cells in zip(carriers, ranges, strict=True)
+    ]
     gaps = measure_facing_gaps(spans)
     out = []
     for carrier, (columns, rows), holes, facing in zip(carriers, ranges, spans, gaps, strict=True):
@@ -495,19 +523,20 @@ def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
                 strapped=list_strap_holes(fixture, toolkit),
             )
         )
-    measured = tuple(measured_between(out, setting) for setting in list_length_settings(fixture, toolkit))
-    seen = Shown(tuple(out), clamps, measured, part)
+    measured = tuple(make_shown_length(out, setting) for setting in list_length_settings(fixture, toolkit))
+    seen = ShownSetUp(tuple(out), clamps, measured, part)
     walls = [carrier for carrier in toolkit.carriers if carrier.contact is WALL_END]
     return reduce(lambda before, wall: add_wall_to_view(before, fixture, wall), walls, seen)
 
 
-def add_wall_to_view(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
-    """What shows, with a wall below the part: a bar as long as the plate, or as the wall where that has ends.
+def add_wall_to_view(seen: ShownSetUp, fixture: Fixture, carrier: Carrier) -> ShownSetUp:
+    """Return the view with a wall added below the part:
+    a bar as long as plate and part, or as the wall where that has ends.
 
-    A plate that stands still goes on below the bar.
+    There is one plate; if it stands still, it is extended below the bar.
     """
     (plate,), thick = seen.carriers, BAR * min(carrier.pitch)
-    around = plate.plate.union(seen.part)
+    around = plate.plate.unite(seen.part)
     reach = carrier.reach
     bar = Box(*(around.x0, -thick, around.x1, 0.0) if reach is None else (reach[0], -thick, reach[1], 0.0))
     left, right = (peg.x for peg in fixture.pegs if peg.carrier == carrier.name)
@@ -515,11 +544,12 @@ def add_wall_to_view(seen: Shown, fixture: Fixture, carrier: Carrier) -> Shown:
     # first.
     low = -thick if plate.clamping is None else plate.plate.y0
     plate = evolve(plate, plate=evolve(plate.plate, y0=low), broken=plate.broken - {"bottom"})
-    beyond = None if reach is None else standouts(seen.part, reach)
+    beyond = None if reach is None else measure_standouts(seen.part, reach)
     return evolve(seen, carriers=(plate,), walls=(ShownWall(carrier, bar, (left, right), beyond),))
 
 
-def measured_between(seen: Sequence[ShownCarrier], setting: LengthSetting) -> Dimension:
+def make_shown_length(seen: Sequence[ShownCarrier], setting: LengthSetting) -> ShownLength:
+    """Return a length to set with the two axes that it is measured between."""
     mover = setting.carrier
     assert mover.travel is not None
     along, across = mover.travel.unit
@@ -528,10 +558,13 @@ def measured_between(seen: Sequence[ShownCarrier], setting: LengthSetting) -> Di
     own = [one.plate for one in seen if one.carrier.name == mover.name]
 
     def axis(at: Point, plates: list[Box]) -> Axis:
+        """Return the line through a point, square to the length,
+        across these plates; for a clamp it begins at the point.
+        """
         first, last = min(plate.x0 for plate in plates), max(plate.x1 for plate in plates)
         low, high = min(plate.y0 for plate in plates), max(plate.y1 for plate in plates)
         if setting.tip is not None:
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
-    return Dimension(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)
+    return ShownLength(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)

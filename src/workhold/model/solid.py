@@ -24,7 +24,7 @@ __all__ = [
     "RunRows",
     "SolidOutline",
     "flip_up_axis",
-    "run_at",
+    "interpolate_run",
     "slides_at_every_height",
 ]
 
@@ -48,7 +48,7 @@ Loops = tuple[tuple[tuple[float, ...], ...], ...]
 
 
 def flip_up_axis(axis: str) -> str:
-    """The axis that points up where the part lies on its other side.
+    """Return the opposite axis, which points up once the part is turned onto its other side.
 
     >>> flip_up_axis("z"), flip_up_axis("-x")
     ('-z', 'x')
@@ -56,15 +56,15 @@ def flip_up_axis(axis: str) -> str:
     return axis[1:] if axis.startswith("-") else f"-{axis}"
 
 
-def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
-    """Bands as pairs of floats, None where nothing may touch."""
+def to_bands(values: Iterable[Any]) -> tuple[Band | None, ...]:
+    """Return bands as pairs (low, high) of floats, None kept where nothing may touch."""
     return tuple(
         None if value is None else (convert_real(value[0]), convert_real(value[1])) for value in values
     )
 
 
-def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
-    """Loops of (x, y, bulge) as tuples of floats; refuses anything else."""
+def to_loops(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
+    """Return loops of (x, y, bulge) as nested tuples of floats; raise InputError for anything else."""
     loops = tuple(tuple(tuple(convert_real(one) for one in vertex) for vertex in loop) for loop in values)
     if any(len(vertex) != 3 or not all(map(isfinite, vertex)) for loop in loops for vertex in loop):
         raise InputError("a loop of the solid cannot be used: give x, y and bulge of every vertex.")
@@ -72,19 +72,22 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
 
 
 def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
-    """Numbers as a tuple of floats; refuses one that is not finite."""
+    """Return numbers as a tuple of floats; raise InputError where one is not finite."""
     numbers = tuple(convert_real(value) for value in values)
     if not all(map(isfinite, numbers)):
         raise InputError("a height of an upper face of the solid is no length: give it in mm.")
     return numbers
 
 
-def numbers_of(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
+def to_numbers(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
+    """Return nested tuples of ints."""
     return tuple(tuple(int(number) for number in value) for value in values)
 
 
-def runs_of(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
-    """Rows of runs as tuples of floats; refuses anything else."""
+def to_runs(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
+    """Return runs as tuples of rows (share, low, high) of floats;
+    raise InputError where one is not a run, see RunRows.
+    """
     found = []
     for value in values:
         rows = tuple(tuple(convert_real(one) for one in row) for row in value)
@@ -100,15 +103,17 @@ def runs_of(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
 
 
 def is_run(rows: Sequence[Sequence[float]]) -> bool:
-    """Whether rows are a run from one end of a segment to the other."""
+    """Return whether rows (share, low, high) make a run:
+    3 n + 1 of them, shares rising from 0 to 1, 0 <= low <= high.
+    """
     shares = [row[0] for row in rows]
     rise = all(a < b for a, b in pairwise(shares))
     stand = all(0.0 <= row[1] <= row[2] < 1e9 for row in rows)
     return len(rows) % 3 == 1 and len(rows) > 1 and (shares[0], shares[-1]) == (0.0, 1.0) and rise and stand
 
 
-def run_at(rows: RunRows, share: float) -> Band:
-    """The heights of a run at a share of its segment.
+def interpolate_run(rows: RunRows, share: float) -> Band:
+    """Return the lower and upper height in mm of a run at a share of its segment; the run is not empty.
 
     >>> run_at(((0.0, 0.0, 6.0), (1 / 3, 0.0, 7.0), (2 / 3, 0.0, 8.0), (1.0, 0.0, 9.0)), 0.5)
     (0.0, 7.5)
@@ -152,13 +157,13 @@ class SolidOutline:
     rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
     hanging, hanging_heights : loops of what hangs of ``top``: under it the material does not reach down to
         where the part lies; and for each the height of its face.
-    unclear_heights : of level upper faces beside which it is not known what rises, so that nothing of them
-        is in ``top``.
+    unclear_heights : of level upper faces beside which it is not known what rises, so that nothing of them is
+        in ``top``.
 
     Raises
     ------
     InputError
-        For an axis that there is none of, heights that are no lengths, and bands that end below their start.
+        For an unknown axis, impossible heights, and bands that end below their start.
     """
 
     axis: str
@@ -166,16 +171,16 @@ class SolidOutline:
     peg_height: float = field(converter=convert_real)
     head_room: float = field(converter=convert_real)
     least_band: float = field(converter=convert_real)
-    bands: tuple[Band | None, ...] = field(converter=bands_of)
-    faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
-    bottom: Loops | None = field(default=None, converter=optional(loops_of))
-    top: Loops | None = field(default=None, converter=optional(loops_of))
+    bands: tuple[Band | None, ...] = field(converter=to_bands)
+    faces: tuple[tuple[int, ...], ...] = field(default=(), converter=to_numbers)
+    bottom: Loops | None = field(default=None, converter=optional(to_loops))
+    top: Loops | None = field(default=None, converter=optional(to_loops))
     top_heights: tuple[float, ...] = field(default=(), converter=check_reals)
     low: float = field(default=0.0, converter=convert_real)
-    runs: tuple[RunRows, ...] = field(default=(), converter=runs_of)
-    rising: Loops = field(default=(), converter=loops_of)
+    runs: tuple[RunRows, ...] = field(default=(), converter=to_runs)
+    rising: Loops = field(default=(), converter=to_loops)
     rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)
-    hanging: Loops = field(default=(), converter=loops_of)
+    hanging: Loops = field(default=(), converter=to_loops)
     hanging_heights: tuple[float, ...] = field(default=(), converter=check_reals)
     unclear_heights: tuple[float, ...] = field(default=(), converter=check_reals)
 
@@ -208,13 +213,14 @@ class SolidOutline:
                 )
 
     @classmethod
-    def of_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:
-        """The solid of a file's entries ``solid`` and ``workpiece``; the second has the bands.
+    def from_entries(cls, solid: Mapping[str, Any], workpiece: Mapping[str, Any]) -> SolidOutline:
+        """Return the solid of a result file's entries ``solid`` and ``workpiece``;
+        the second has bands, faces and loops.
 
         Raises
         ------
         InputError, LookupError, TypeError, ValueError
-            For entries that lack something, or hold what cannot be.
+            For entries that lack something, or hold impossible values.
         """
         return cls(
             **{key: solid[key] for key in STANDING},
@@ -233,39 +239,41 @@ class SolidOutline:
 
     @property
     def lies_on_no_face(self) -> bool:
-        """Whether its level faces are known, and none of them is one on which it lies."""
+        """Whether the level faces are known, and none of them is at the plane on which the part lies."""
         return self.bottom is not None and not self.bottom
 
     @property
     def has_no_top(self) -> bool:
-        """Whether its level faces are known, and nothing of them is known to be open to above."""
+        """Whether the level faces are known, and none of the upper ones is known to be free above."""
         return self.top is not None and not self.top
 
-    def for_segments(self, count: int) -> SolidOutline:
-        """Checks that there is a band for each of so many segments, and returns itself."""
+    def check_segment_count(self, count: int) -> SolidOutline:
+        """Return the solid itself; raise InputError unless it has a band
+        (and faces and runs, if any) for each of ``count`` segments.
+        """
         if len(self.bands) != count or any(len(one) not in (0, count) for one in (self.faces, self.runs)):
             raise InputError(
                 f"the outline has {count} segments and {len(self.bands)} bands: give one band for each."
             )
         return self
 
-    def reordered(self, order: Sequence[int], turned: Set[int] = frozenset()) -> SolidOutline:
-        """A copy with the bands of the segments in another order.
+    def reorder(self, order: Sequence[int], turned: Set[int] = frozenset()) -> SolidOutline:
+        """Return a copy whose k-th band, faces and run are those of segment ``order[k]``.
 
-        Segments whose numbers are ``turned`` are run in the other direction.
+        Segments whose (old) numbers are in ``turned`` now run in the other direction, and so do their runs.
         """
         return evolve(
             self,
             bands=[self.bands[k] for k in order],
             faces=[self.faces[k] for k in order] if self.faces else (),
-            runs=[turned_rows(self.runs[k]) if k in turned else self.runs[k] for k in order]
+            runs=[reverse_run(self.runs[k]) if k in turned else self.runs[k] for k in order]
             if self.runs
             else (),
         )
 
 
-def turned_rows(rows: RunRows) -> RunRows:
-    """A run along its segment from the other end."""
+def reverse_run(rows: RunRows) -> RunRows:
+    """Return the rows of a run for the reversed segment: shares 1 - share, in reverse order."""
     return tuple((1.0 - share, low, high) for share, low, high in reversed(rows))
 
 
@@ -316,6 +324,9 @@ class HeightRow:
 
 
 def slides_at_every_height(rows: Iterable[HeightRow]) -> bool:
-    """Whether a solid slides along what pegs can touch, however high they are."""
+    """Return whether, at every peg height at which pegs can touch, the part slides along all that they touch.
+
+    Return False where pegs can touch nothing.
+    """
     touching = [row for row in rows if row.touchable > 0]
     return bool(touching) and all(row.slides for row in touching)

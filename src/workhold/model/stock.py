@@ -32,9 +32,9 @@ from workhold.asking.program import StockQuestion
 from workhold.errors import InputError
 from workhold.limits import convert_real, name_number_fields, refuse_long
 from workhold.model.cutting_tool import Tool
-from workhold.model.moves import Moves, Stretches, along, find_shares_between_heights
+from workhold.model.moves import Moves, MoveStretches, compute_path_points, find_shares_between_heights
 
-__all__ = ["OUTLINE", "STOCK_SHAPES", "Border", "Stock", "StockShape", "find_stretches_in_stock"]
+__all__ = ["OUTLINE", "STOCK_SHAPES", "StockBorder", "Stock", "StockShape", "find_stretches_in_stock"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -53,7 +53,7 @@ AT_ONCE = 1 << 19
 
 @frozen(field_transformer=name_number_fields)
 class Stock(StockQuestion):
-    """What the part is cut from.
+    """The raw stock that the part is cut from.
 
     Parameters
     ----------
@@ -78,17 +78,20 @@ class Stock(StockQuestion):
 
     @property
     def upper(self) -> float:
-        """The height in mm up to which it reaches; infinite where nobody knows."""
+        """Height in mm up to which the stock reaches; inf where the part's height is not known."""
         return inf if self.height is None else self.height + self.top
 
     @classmethod
-    def of(cls, value: Stock | Mapping[str, Any] | str | None, height: float | None) -> Stock:
-        """A stock on a part of a height in mm, of one or of its fields by name; None is the usual one.
+    def from_value(cls, value: Stock | Mapping[str, Any] | str | None, height: float | None) -> Stock:
+        """Return a stock on a part of this height in mm (None where unknown).
+
+        ``value`` is a stock, whose own height is kept, its fields by name, or its shape; None is the usual
+        stock.
 
         Raises
         ------
         InputError
-            For a name that there is none of, and as the class.
+            For an unknown name, and the errors of the class.
         """
         if isinstance(value, Stock):
             return cls(value.side, value.top, value.shape, height if value.height is None else value.height)
@@ -99,26 +102,33 @@ class Stock(StockQuestion):
         return cls(**given, height=height)
 
     @classmethod
-    def of_entries(cls, entries: Mapping[str, Any]) -> Stock:
+    def from_entries(cls, entries: Mapping[str, Any]) -> Stock:
+        """Return the stock that a result file has, the inverse of :meth:`to_dict`."""
         return cls(**{name: entries[name] for name in FIELDS})
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
+        """Return plain data as in a result file."""
         return {name: getattr(self, name) for name in FIELDS}
 
-    def border(self, loops: Sequence[Floats]) -> Border:
-        """What is grown to the stock: outer loops of (N, 3) vertices x, y and bulge, or the box around them."""
+    def make_border(self, loops: Sequence[Floats]) -> StockBorder:
+        """Return the border that is grown sideways to the stock:
+        the outer loops, or the box around them for a block.
+
+        ``loops`` are (N, 3) vertices x, y in mm and bulge.
+        """
         if self.shape == OUTLINE:
-            return Border.of(loops)
-        x0, y0, x1, y1 = box_around(Border.of(loops))
-        return Border.of([np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]])])
+            return StockBorder.from_loops(loops)
+        x0, y0, x1, y1 = compute_box(StockBorder.from_loops(loops))
+        return StockBorder.from_loops(
+            [np.array([[x0, y0, 0.0], [x1, y0, 0.0], [x1, y1, 0.0], [x0, y1, 0.0]])]
+        )
 
 
 FIELDS = ("side", "top", "shape", "height")
 
 
 @frozen(eq=False)
-class Curves:
+class BorderCurves:
     """N lines and arcs.
 
     Parameters
@@ -140,7 +150,10 @@ class Curves:
     is_arc: Mask
 
     @classmethod
-    def of(cls, start: Floats, end: Floats, bulge: Floats) -> Curves:
+    def from_ends(cls, start: Floats, end: Floats, bulge: Floats) -> BorderCurves:
+        """Return curves with centre, radius,
+        start angle and sweep worked out from ends (N, 2) in mm and bulges (N,).
+        """
         chord = end - start
         is_arc = (bulge != 0.0) & (chord != 0.0).any(axis=1)
         safe = np.where(is_arc, bulge, 1.0)
@@ -154,24 +167,27 @@ class Curves:
     def __len__(self) -> int:
         return len(self.bulge)
 
-    def take(self, chosen: Integers) -> Curves:
-        return Curves.of(self.start[chosen], self.end[chosen], self.bulge[chosen])
+    def take(self, chosen: Integers) -> BorderCurves:
+        """Return the curves with these indices."""
+        return BorderCurves.from_ends(self.start[chosen], self.end[chosen], self.bulge[chosen])
 
     @property
     def length(self) -> Floats:
-        """(N,) in mm."""
+        """(N,) lengths in mm."""
         straight = np.hypot(*(self.end - self.start).T)
         return np.where(self.is_arc, self.radius * np.abs(self.sweep), straight)
 
-    def at(self, share: Floats) -> Floats:
-        """(N, C, 2) places at shares (N, C)."""
+    def compute_points(self, share: Floats) -> Floats:
+        """Return the points (N, C, 2) in mm at shares (N, C) of the curves."""
         count = share.shape[1]
         start, end = (np.repeat(one, count, axis=0) for one in (self.start, self.end))
         bulge = np.repeat(np.where(self.is_arc, self.bulge, 0.0), count)
-        return along(start, end, bulge, share.ravel()).reshape(*share.shape, 2)
+        return compute_path_points(start, end, bulge, share.ravel()).reshape(*share.shape, 2)
 
-    def distances(self, points: Floats) -> Floats:
-        """(N, C) distances in mm of points (N, C, 2), or of the same (1, C, 2) for all, from each."""
+    def measure_distances(self, points: Floats) -> Floats:
+        """Return the distances (N, C) in mm of points (N, C, 2) from their curves;
+        (1, C, 2) are the same points for all.
+        """
         chord = self.end - self.start
         long = (chord * chord).sum(axis=1)
         arm = points - self.start[:, None]
@@ -192,32 +208,34 @@ class Curves:
 
 
 @frozen(eq=False)
-class Border:
+class StockBorder:
     """The edges of outer loops, loop by loop."""
 
-    edges: Curves
+    edges: BorderCurves
     loop: Integers
 
     @classmethod
-    def of(cls, loops: Sequence[Floats]) -> Border:
-        """The border of loops of (N, 3) vertices x, y and bulge."""
+    def from_loops(cls, loops: Sequence[Floats]) -> StockBorder:
+        """Return the border made of loops of (N, 3) vertices x, y in mm and bulge;
+        each closes from its last to its first vertex.
+        """
         start = np.concatenate([loop[:, :2] for loop in loops])
         end = np.concatenate([np.roll(loop[:, :2], -1, axis=0) for loop in loops])
         bulge = np.concatenate([loop[:, 2] for loop in loops])
         number = np.concatenate([np.full(len(loop), k) for k, loop in enumerate(loops)])
-        return cls(Curves.of(start, end, bulge), number)
+        return cls(BorderCurves.from_ends(start, end, bulge), number)
 
-    def distance(self, points: Floats) -> Floats:
-        """(N,) distances in mm of points (N, 2) from the nearest edge."""
+    def measure_distance(self, points: Floats) -> Floats:
+        """Return the distances (N,) in mm of points (N, 2) from the nearest edge."""
         parts = split(len(points), len(self.edges))
-        found = [self.edges.distances(points[None, part]).min(axis=0) for part in parts]
+        found = [self.edges.measure_distances(points[None, part]).min(axis=0) for part in parts]
         return np.concatenate([np.zeros(0), *found])
 
     def encloses(self, points: Floats) -> Mask:
-        """(N,) whether points (N, 2), none of them on an edge, lie within a loop.
+        """Return (N,) whether points (N, 2), none of them on an edge, lie within a loop.
 
-        The angles that the chords turn around a point, and a whole turn for each arc between which and its
-        chord the point lies, add up to a whole turn for each loop around it.
+        For each loop the angles that its chords subtend at the point are added, with a whole turn for each
+        arc where the point lies between arc and chord. The sum is ±2 pi for a loop around the point, else 0.
         """
         edges, found = self.edges, [np.zeros(0, np.bool_)]
         side = np.where(edges.is_arc, np.sign(edges.bulge), 0.0)
@@ -235,8 +253,8 @@ class Border:
         return np.concatenate(found)
 
 
-def box_around(border: Border) -> tuple[float, float, float, float]:
-    """The smallest and the largest x and y of a border, in mm."""
+def compute_box(border: StockBorder) -> tuple[float, float, float, float]:
+    """Return x0, y0, x1, y1 in mm of the bounding box of a border."""
     edges = border.edges
     points = [edges.start, edges.end]
     for k in range(4):
@@ -251,20 +269,22 @@ def box_around(border: Border) -> tuple[float, float, float, float]:
 
 
 def split(count: int, width: int) -> list[slice]:
-    """Slices of so many rows that each has no more than some numbers."""
+    """Return slices that cover ``count`` rows of ``width`` numbers,
+    each of at most :data:`AT_ONCE` numbers or one row.
+    """
     step = max(AT_ONCE // max(width, 1), 1)
     return [slice(k, k + step) for k in range(0, count, step)]
 
 
 def find_stretches_in_stock(
-    moves: Moves, tools: Mapping[int, Tool], stock: Stock, border: Border | None, asked: Mask
-) -> Stretches:
-    """The stretches of some moves on which their tools meet the stock.
+    moves: Moves, tools: Mapping[int, Tool], stock: Stock, border: StockBorder | None, asked: Mask
+) -> MoveStretches:
+    """Return the stretches of the moves asked for on which the flutes of their tools meet the stock.
 
     Parameters
     ----------
-    border : of what is grown to the stock; None where only heights are known.
-    asked : (M,) which moves.
+    border : of the shape that is grown to the stock; None where only heights are known.
+    asked : (M,) mask of the moves that count.
     """
     rows = np.flatnonzero(asked)
     reach, flute = np.zeros(len(moves)), np.zeros(len(moves))
@@ -277,33 +297,37 @@ def find_stretches_in_stock(
     kept = last > first
     rows, first, last = rows[kept], first[kept], last[kept]
     if border is None or not len(rows):
-        return Stretches(rows, first, last)
-    which, low, high = near(
-        Curves.of(moves.start[rows, :2], moves.end[rows, :2], moves.bulge[rows]), reach[rows], border
+        return MoveStretches(rows, first, last)
+    which, low, high = find_near_parts(
+        BorderCurves.from_ends(moves.start[rows, :2], moves.end[rows, :2], moves.bulge[rows]),
+        reach[rows],
+        border,
     )
     low, high = np.maximum(low, first[which]), np.minimum(high, last[which])
     long = high > low
-    return Stretches(rows[which[long]], low[long], high[long])
+    return MoveStretches(rows[which[long]], low[long], high[long])
 
 
-def near(paths: Curves, reach: Floats, border: Border) -> tuple[Integers, Floats, Floats]:
-    """The parts of paths within a border or nearer to it than some reach (N,) each.
+def find_near_parts(
+    paths: BorderCurves, reach: Floats, border: StockBorder
+) -> tuple[Integers, Floats, Floats]:
+    """Return the parts of P paths that lie within a border or nearer to it than ``reach`` (P,) in mm.
 
-    Numbers (K,) of the paths, rising, and the shares (K,) at which each part begins and ends.
+    They are given as path indices (K,), rising, and shares (K,) at which each part begins and ends.
     """
     half = paths.length / 2
-    middle = paths.at(np.full((len(paths), 1), 0.5))[:, 0]
+    middle = paths.compute_points(np.full((len(paths), 1), 0.5))[:, 0]
     away = np.full(len(paths), inf)
-    x0, y0, x1, y1 = box_around(border)
+    x0, y0, x1, y1 = compute_box(border)
     off = np.maximum([x0, y0] - middle, middle - [x1, y1])
     close = np.flatnonzero(np.hypot(*np.maximum(off, 0.0).T) <= reach + half)
-    away[close] = border.distance(middle[close])
+    away[close] = border.measure_distance(middle[close])
     whole = away < reach - half
     # Of what lies deep enough on one side of the border the middle says which side that is.
     deep = np.flatnonzero(~whole & np.isfinite(away) & (away > half))
     whole[deep] = border.encloses(middle[deep])
     mixed = np.flatnonzero(~whole & (away <= reach + half))
-    which, low, high = parts_of(paths, reach, border, mixed)
+    which, low, high = find_mixed_parts(paths, reach, border, mixed)
     sure = np.flatnonzero(whole)
     which = np.concatenate([sure, which])
     low, high = np.concatenate([np.zeros(len(sure)), low]), np.concatenate([np.ones(len(sure)), high])
@@ -311,24 +335,28 @@ def near(paths: Curves, reach: Floats, border: Border) -> tuple[Integers, Floats
     return which[order], low[order], high[order]
 
 
-def parts_of(
-    paths: Curves, reach: Floats, border: Border, mixed: Integers
+def find_mixed_parts(
+    paths: BorderCurves, reach: Floats, border: StockBorder, mixed: Integers
 ) -> tuple[Integers, Floats, Floats]:
-    """The parts of those paths of which one may be within reach and another not, see :func:`near`."""
+    """Return the parts within reach, as :func:`near` does, of only the paths with the ascending indices
+    ``mixed``.
+
+    Such a path may be within reach in some parts and not in others.
+    """
     which, low, high = [np.zeros(0, np.int64)], [np.zeros(0)], [np.zeros(0)]
     half = paths.length / 2
     for part in split(len(mixed), len(border.edges) * 16):
         rows = mixed[part]
-        middle = paths.take(rows).at(np.full((len(rows), 1), 0.5))[:, 0]
-        distance = border.edges.distances(middle[None])
+        middle = paths.take(rows).compute_points(np.full((len(rows), 1), 0.5))[:, 0]
+        distance = border.edges.measure_distances(middle[None])
         edge, own = np.nonzero(distance <= (reach + half)[rows])
         pairs = paths.take(rows[own])
-        one, other, pair = covered(pairs, border.edges.take(edge), reach[rows[own]])
-        own, one, other = merged(own[pair], one, other)
-        gap, begin, finish = gaps(len(rows), own, one, other)
-        between = paths.take(rows[gap]).at(((begin + finish) / 2)[:, None])[:, 0]
+        one, other, pair = find_covered_parts(pairs, border.edges.take(edge), reach[rows[own]])
+        own, one, other = merge_parts(own[pair], one, other)
+        gap, begin, finish = find_gaps(len(rows), own, one, other)
+        between = paths.take(rows[gap]).compute_points(((begin + finish) / 2)[:, None])[:, 0]
         inside = border.encloses(between)
-        own, one, other = merged(
+        own, one, other = merge_parts(
             np.concatenate([own, gap[inside]]),
             np.concatenate([one, begin[inside]]),
             np.concatenate([other, finish[inside]]),
@@ -339,30 +367,45 @@ def parts_of(
     return np.concatenate(which), np.concatenate(low), np.concatenate(high)
 
 
-def covered(paths: Curves, edges: Curves, reach: Floats) -> tuple[Floats, Floats, Integers]:
-    """The parts of paths (P,) nearer to an edge of their own than a reach (P,): shares of their ends (K,), and
-    of which pair (K,) each is."""
+def find_covered_parts(
+    paths: BorderCurves, edges: BorderCurves, reach: Floats
+) -> tuple[Floats, Floats, Integers]:
+    """Return the parts of P paths that are nearer than ``reach`` (P,) to the edge in the same row.
+
+    They are given as first shares (K,), last shares (K,) and row indices (K,), rising; parts of a row may
+    adjoin.
+    """
     chord = edges.end - edges.start
     size = np.hypot(*chord.T)
     normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.where(size > 0.0, size, 1.0)[:, None]
     level = (normal * edges.start).sum(axis=1)
     straight = ~edges.is_arc & (size > 0.0)
-    cuts = [on_circle(paths, edges.start, reach), on_circle(paths, edges.end, reach)]
-    cuts += [on_line(paths, normal, np.where(straight, level + way * reach, np.nan)) for way in (-1.0, 1.0)]
+    cuts = [
+        intersect_with_circles(paths, edges.start, reach),
+        intersect_with_circles(paths, edges.end, reach),
+    ]
+    cuts += [
+        intersect_with_lines(paths, normal, np.where(straight, level + way * reach, np.nan))
+        for way in (-1.0, 1.0)
+    ]
     for radius in (edges.radius + reach, np.abs(edges.radius - reach)):
-        cuts.append(on_circle(paths, edges.center, np.where(edges.is_arc, radius, np.nan)))
+        cuts.append(intersect_with_circles(paths, edges.center, np.where(edges.is_arc, radius, np.nan)))
     found = np.hstack(cuts)
     found = np.where((found > 0.0) & (found < 1.0), found, 1.0)
     count = len(reach)
     shares = np.sort(np.hstack([np.zeros((count, 1)), found, np.ones((count, 1))]), axis=1)
     middle = (shares[:, 1:] + shares[:, :-1]) / 2
-    inside = edges.distances(paths.at(middle)) < reach[:, None]
+    inside = edges.measure_distances(paths.compute_points(middle)) < reach[:, None]
     pair, number = np.nonzero(inside & (shares[:, 1:] > shares[:, :-1]))
     return shares[pair, number], shares[pair, number + 1], pair
 
 
-def on_circle(paths: Curves, center: Floats, radius: Floats) -> Floats:
-    """Shares (P, 2) at which paths meet circles; NaN where they do not."""
+def intersect_with_circles(paths: BorderCurves, center: Floats, radius: Floats) -> Floats:
+    """Return two shares (P, 2) at which each path's line or
+    circle meets a circle, unordered; NaN where it does not.
+
+    Shares outside [0, 1] lie off the path. ``center`` is (P, 2) and ``radius`` (P,), in mm.
+    """
     chord, arm = paths.end - paths.start, paths.start - center
     long = (chord * chord).sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -375,12 +418,16 @@ def on_circle(paths: Curves, center: Floats, radius: Floats) -> Floats:
         away = np.hypot(*to.T)
         size = ((paths.radius - radius) * (paths.radius + radius) / away + away) / (2 * paths.radius)
         spread, middle = np.arccos(size), np.arctan2(to[:, 1], to[:, 0])
-    bent = share_of(paths, np.stack([middle - spread, middle + spread], axis=1))
+    bent = compute_shares(paths, np.stack([middle - spread, middle + spread], axis=1))
     return np.where(paths.is_arc[:, None], bent, straight)
 
 
-def on_line(paths: Curves, normal: Floats, level: Floats) -> Floats:
-    """Shares (P, 2) at which paths meet lines normal · x = level; NaN where they do not."""
+def intersect_with_lines(paths: BorderCurves, normal: Floats, level: Floats) -> Floats:
+    """Return two shares (P, 2) at which each path's line or circle
+    meets the line normal · x = level; NaN where it does not.
+
+    Shares outside [0, 1] lie off the path; a straight path has one, and NaN beside it.
+    """
     with np.errstate(invalid="ignore", divide="ignore"):
         place = (level - (normal * paths.start).sum(axis=1)) / (normal * (paths.end - paths.start)).sum(
             axis=1
@@ -388,19 +435,23 @@ def on_line(paths: Curves, normal: Floats, level: Floats) -> Floats:
         spread = np.arccos((level - (normal * paths.center).sum(axis=1)) / paths.radius)
     straight = np.stack([place, np.full(len(place), np.nan)], axis=1)
     middle = np.arctan2(normal[:, 1], normal[:, 0])
-    bent = share_of(paths, np.stack([middle - spread, middle + spread], axis=1))
+    bent = compute_shares(paths, np.stack([middle - spread, middle + spread], axis=1))
     return np.where(paths.is_arc[:, None], bent, straight)
 
 
-def share_of(paths: Curves, angle: Floats) -> Floats:
-    """Shares (P, C) of arcs at which they are at angles (P, C) about their centres; more than 1 where never."""
+def compute_shares(paths: BorderCurves, angle: Floats) -> Floats:
+    """Return the shares (P, C) at which arcs reach angles (P, C),
+    in radians about their centres; more than 1 where never.
+    """
     with np.errstate(invalid="ignore", divide="ignore"):
         ahead = np.mod((angle - paths.turn[:, None]) * np.sign(paths.sweep)[:, None], 2 * pi)
         return np.asarray(ahead / np.abs(paths.sweep)[:, None])
 
 
-def merged(own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
-    """Parts of paths, those of one path that meet as one, in the order of paths and along them."""
+def merge_parts(own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
+    """Return parts sorted by path index and along each path,
+    with parts of a path that overlap or meet joined into one.
+    """
     order = np.lexsort((low, own))
     own, low, high = own[order], low[order], high[order]
     if not len(own):
@@ -412,8 +463,10 @@ def merged(own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, 
     return own[first], low[first], np.maximum.reduceat(high, first)
 
 
-def gaps(count: int, own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
-    """What merged parts leave of so many paths: their numbers, and where each gap begins and ends."""
+def find_gaps(count: int, own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
+    """Return the gaps between merged parts of ``count`` paths:
+    path indices, and first and last share of each gap.
+    """
     every = np.arange(count)
     ends = np.concatenate([every, own]), np.concatenate([np.zeros(count), high])
     begins = np.concatenate([own, every]), np.concatenate([low, np.ones(count)])

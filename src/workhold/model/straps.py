@@ -19,7 +19,7 @@ from workhold.errors import InputError
 from workhold.fixels.strap_set import StrapSet
 from workhold.limits import convert_real, refuse_long
 from workhold.model.first_choice import has_house_order
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.quality import Figure
 
 __all__ = [
@@ -30,7 +30,7 @@ __all__ = [
     "Strap",
     "StrapHardware",
     "StrappedHold",
-    "strap_ranking",
+    "choose_strap_ranking",
 ]
 
 MOST_STRAPS = 4
@@ -53,12 +53,12 @@ STRAP_RANKING = ("square", "clamp_needed", "location_error", "edge_distance")
 SEAT_FIGURES = ("end_distance", "smallest_face")
 
 
-def strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
-    """What seats under straps are ranked by, from figures as a user writes them; the usual order for None.
+def choose_strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the figures that rank seats under straps, from a user's names; the usual order for None.
 
     An order that fixtures with clamps have stands for the usual one.
 
-    >>> strap_ranking(["location-error"])
+    >>> choose_strap_ranking(["location-error"])
     ('location_error',)
     """
     keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or STRAP_RANKING]
@@ -114,8 +114,8 @@ class StrapHardware:
         refuse_long("the tip radius of a strap", self.tip_radius)
 
     @classmethod
-    def of(cls, straps: StrapSet) -> StrapHardware:
-        """The straps of a plate."""
+    def from_straps(cls, straps: StrapSet) -> StrapHardware:
+        """Return the hardware of a plate's straps."""
         return cls(straps.count, straps.tip_radius, straps.reach, straps.max_force)
 
 
@@ -183,7 +183,7 @@ class StrappedHold:
     max_force: float | None = None
     is_looked_at: bool = True
     supports: tuple[tuple[int, int], ...] = ()
-    program_need: ProgramNeed | None = None
+    program_need: ProgramJawForce | None = None
 
     @property
     def needs(self) -> tuple[float | None, ...]:
@@ -227,8 +227,8 @@ class StrappedHold:
         named = {figure.key: getattr(self, figure.key) for figure in STRAP_FIGURES}
         return {key: float(value) for key, value in named.items() if value is not None and value != inf}
 
-    def as_data(self) -> dict[str, Any]:
-        """What files and other programs are given."""
+    def to_data(self) -> dict[str, Any]:
+        """Return what files and other programs are given."""
         push = self.push
         return {
             "straps": [

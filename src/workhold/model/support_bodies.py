@@ -16,7 +16,7 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Point, measure_distance_to_segment, segment_rows
+from workhold.geometry.segment import Arc, Point, make_segment_rows, measure_distance_to_segment
 from workhold.kernels.base.distance import is_inside
 from workhold.model.bodies import (
     FILM,
@@ -29,17 +29,17 @@ from workhold.model.bodies import (
     list_fixture_bodies,
 )
 from workhold.model.fixture import Fixture
-from workhold.model.shown import shown
+from workhold.model.shown import find_shown
 from workhold.model.support_triples import ChosenSupports, SupportPad, Supports, Triple
 
 __all__ = [
     "list_bodies_on_supports",
     "list_bodies_with_supports",
     "size_clamp_pieces",
-    "clamped_height",
+    "find_clamped_height",
     "find_support_height",
     "size_supported_bodies",
-    "with_room",
+    "cut_room",
 ]
 
 # Of the screw on top, in mm: how high its tip and its knob are, and the least height of its spindle; their
@@ -49,7 +49,7 @@ KNOB_ROOM = 5.0
 
 
 def find_support_height(toolkit: Toolkit) -> float | None:
-    """How high the supports are that a toolkit has, in mm; None where nobody says."""
+    """Return the height in mm of a toolkit's own supports; None where it has none or does not say."""
     return None if toolkit.supports is None else toolkit.supports.height
 
 
@@ -61,22 +61,22 @@ def size_supported_bodies(
     support_height: float | None = None,
     thickness: float | None = None,
 ) -> BodySizes:
-    """Heights of the bodies of a fixture on supports, in mm; the usual ones where nobody says.
+    """Return the heights in mm of the bodies of a fixture on supports, with defaults for what is None.
 
     Parameters
     ----------
     peg_length, peg_height : of the pegs, and how far they stand out of the plates.
     support_height : of the supports above the plates; if None that of the toolkit's own.
-    thickness : of the part; that which the supports were asked for if None.
+    thickness : of the part; if None that for which the supports were asked.
 
     Raises
     ------
     InputError
-        For a length that is not positive, as of pegs that end below the part.
+        For a length that is not positive, such as that of pegs that end below the part.
     """
     own = find_support_height(supports.query.toolkit) if support_height is None else support_height
     raised = SUPPORT_HEIGHT if own is None else own
-    return BodySizes.of(
+    return BodySizes.from_workpiece(
         supports.query.workpiece,
         supports.request.thickness if thickness is None else thickness,
         peg_length=peg_length,
@@ -88,7 +88,8 @@ def size_supported_bodies(
 def list_bodies_with_supports(
     chosen: ChosenSupports, sizes: BodySizes | None = None
 ) -> tuple[FixtureBody, ...]:
-    """All bodies of a fixture as a set of three asks for, in holes that have names.
+    """Return all bodies of a fixture on the chosen supports,
+    with its holes renumbered so that all have names.
 
     Parameters
     ----------
@@ -111,11 +112,12 @@ def list_bodies_with_supports(
 def list_bodies_on_supports(
     supports: Supports, triple: Triple, fixture: Fixture, pads: Sequence[SupportPad], sizes: BodySizes
 ) -> tuple[FixtureBody, ...]:
-    """The bodies of a fixture on the supports of a set, with these and the clamp on top last.
+    """Return the bodies of a fixture on a set of supports:
+    first those of the fixture, then supports, then the clamp on top.
 
     Parameters
     ----------
-    fixture, pads : as their holes are counted, see ``model.support_triples``.
+    fixture, pads : with holes renumbered so that all have names, see ``model.support_triples``.
     sizes : heights, those of the supports included.
 
     Raises
@@ -125,23 +127,23 @@ def list_bodies_on_supports(
     """
     if supports.request.pad_radius <= 0.0:
         raise InputError("pads of radius 0 have no body to write or show: give a pad radius.")
-    query, clamp = supports.query, screw(supports, triple, fixture, sizes)
+    query, clamp = supports.query, make_clamp_screw(supports, triple, fixture, sizes)
     more = (*make_pad_bodies(supports, fixture, pads, sizes), clamp)
     part, *others = list_fixture_bodies(fixture, query.workpiece, query.toolkit, sizes, more)
     center, radius = fixture.pose.apply(*triple.clamp.at), supports.request.tip_radius
-    slabs = [piece for slab in part.slabs for piece in with_room(slab, center, radius, clamp.slabs[0].low)]
+    slabs = [piece for slab in part.slabs for piece in cut_room(slab, center, radius, clamp.slabs[0].low)]
     return evolve(part, slabs=tuple(slabs)), *others
 
 
-def with_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[Slab]:
-    """A slab of a part with room above a height in mm for what stands within a circle there.
+def cut_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[Slab]:
+    """Yield a slab of a part, cut so that a vertical cylinder above the height ``low`` is free, all in mm.
 
-    A circle inside leaves a round well. One that meets the border of the slab leaves nothing of it above the
-    height.
+    A cylinder inside the slab leaves a round well. Where it meets the slab's border, nothing is left above
+    ``low``. A slab that it does not reach is yielded as it is.
     """
     border = [segment for loop in (slab.outer, *slab.holes) for segment in loop]
     away = min(measure_distance_to_segment(center, segment) for segment in border)
-    inside = is_inside(*center, segment_rows(border))
+    inside = is_inside(*center, make_segment_rows(border))
     if low >= slab.high or (away >= radius and not inside):
         yield slab
         return
@@ -153,9 +155,11 @@ def with_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[
 def make_pad_bodies(
     supports: Supports, fixture: Fixture, pads: Sequence[SupportPad], sizes: BodySizes
 ) -> Iterator[FixtureBody]:
-    """The supports: each a pad under the part, with its pin through the plate."""
+    """Yield the supports: each a pin through the plate,
+    and a pad up to the part where that lies above the plates.
+    """
     query, floor = supports.query, sizes.floor
-    carriers = {one.carrier.name: one for one in shown(fixture, query.toolkit, query.workpiece).carriers}
+    carriers = {one.carrier.name: one for one in find_shown(fixture, query.toolkit, query.workpiece).carriers}
     for pad in pads:
         center, carrier = fixture.pose.apply(pad.x, pad.y), carriers[pad.carrier]
         pin = tuple(make_peg_outline(center, carrier.carrier.peg_radius))
@@ -168,26 +172,30 @@ def make_pad_bodies(
 
 
 def size_clamp_pieces(low: float, highest: float) -> tuple[tuple[float, float], ...]:
-    """Heights in mm of the pieces of the clamp on top, from its tip upward, and their radii in tips.
+    """Return (height in mm, radius over tip radius) of the tip, spindle and knob of the clamp on top.
 
     Parameters
     ----------
-    low : where the tip presses.
-    highest : of what the knob has to stand above.
+    low : height at which the tip presses, in mm.
+    highest : height of part and pegs, above which the knob has to stand, in mm.
     """
     spindle = max(SPINDLE[0], highest + KNOB_ROOM - low - TIP[0])
     return TIP, (spindle, SPINDLE[1]), KNOB
 
 
-def clamped_height(supports: Supports, triple: Triple, sizes: BodySizes) -> float:
-    """The height in mm of the upper face on which the clamp presses."""
-    asked = supports.request.clamped_height(triple.clamp.at)
+def find_clamped_height(supports: Supports, triple: Triple, sizes: BodySizes) -> float:
+    """Return the height in mm of the upper face under the clamp's tip."""
+    asked = supports.request.find_clamped_height(triple.clamp.at)
     return sizes.thickness if asked == supports.request.thickness else min(asked, sizes.thickness)
 
 
-def screw(supports: Supports, triple: Triple, fixture: Fixture, sizes: BodySizes) -> FixtureBody:
-    """The clamp on top, its tip on the upper face at its place."""
-    center, low, slabs = fixture.pose.apply(*triple.clamp.at), clamped_height(supports, triple, sizes), []
+def make_clamp_screw(supports: Supports, triple: Triple, fixture: Fixture, sizes: BodySizes) -> FixtureBody:
+    """Return the clamp on top as a body, its tip on the upper face at its place."""
+    center, low, slabs = (
+        fixture.pose.apply(*triple.clamp.at),
+        find_clamped_height(supports, triple, sizes),
+        [],
+    )
     for height, share in size_clamp_pieces(low, max(sizes.thickness, sizes.top, sizes.others)):
         outline = tuple(make_peg_outline(center, share * supports.request.tip_radius))
         slabs.append(Slab(outline, (), low, low + height))

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.errors import InputError, quote_value
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import check_vertices, loop_segments
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.loop import check_vertices, make_loop_segments
+from workhold.geometry.segment import make_segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.limits import convert_real, name_number_fields, refuse_long, refuse_strong
 from workhold.model.fixture import Fixture, Peg
@@ -32,9 +32,9 @@ from workhold.model.requirements import (
     ANY_DIRECTION,
     Load,
     Zone,
-    direction_range,
     make_zones,
-    point_pairs,
+    to_direction_range,
+    to_points,
 )
 from workhold.model.solid import BESIDE_TOP, SolidOutline, check_reals
 from workhold.model.workpiece import Workpiece
@@ -47,8 +47,8 @@ __all__ = [
     "Loops",
     "SpatialLoad",
     "SupportRequest",
-    "loops_of",
-    "pressed_by",
+    "to_loops",
+    "find_pressed_heights",
     "compute_usual_head",
     "find_usual_pad_radius",
 ]
@@ -67,19 +67,19 @@ Span = tuple[float, float]
 
 
 def compute_usual_head(tip_radius: float) -> float:
-    """How far in mm the head of a clamp reaches around its tip, where nobody says."""
+    """Return the usual radius in mm of a clamp's head above a tip of this radius."""
     return HEAD * tip_radius
 
 
-def pair_of(values: Any) -> Span:
-    """Two numbers in their order."""
+def to_pair(values: Any) -> Span:
+    """Return two numbers as floats in their order; raise InputError for anything else."""
     if not isinstance(values, Iterable) or isinstance(values, str) or len(pair := tuple(values)) != 2:
         raise InputError(f"two numbers cannot be {quote_value(values)}: give two.")
     return convert_real(pair[0]), convert_real(pair[1])
 
 
 def make_span(value: Any) -> Span:
-    """A range of numbers from one number or two, the smaller first."""
+    """Return (low, high) from two numbers in any order, or from one number twice."""
     if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str) and len(value) == 2:
         low, high = (convert_real(one) for one in value)
         return (low, high) if low <= high else (high, low)
@@ -87,16 +87,16 @@ def make_span(value: Any) -> Span:
     return number, number
 
 
-def loops_of(loops: Iterable[Any]) -> Loops:
-    """Loops of (x, y, bulge) vertices as read-only arrays; refuses what is no loop."""
+def to_loops(loops: Iterable[Any]) -> Loops:
+    """Return loops of (x, y, bulge) vertices as (N, 3) arrays; raise InputError for what is no loop."""
     return tuple(
         check_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)
     )
 
 
-def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, float, float], ...]:
-    """Rings as (x, y, least, most); refuses what is none."""
+def to_rings(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, float, float], ...]:
+    """Return rings as tuples (x, y, least, most) in mm; raise InputError for anything else."""
     rings = [tuple(convert_real(value) for value in ring) for ring in reach]
     for ring in rings:
         if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
@@ -130,13 +130,13 @@ class SpatialLoad:
     (400.0, 400.0)
     """
 
-    points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
+    points: tuple[tuple[float, float], ...] = field(default=(), converter=to_points)
     force: float = field(default=0.0, converter=convert_real)
-    directions: Span = field(default=ANY_DIRECTION, converter=direction_range)
+    directions: Span = field(default=ANY_DIRECTION, converter=to_direction_range)
     heights: Span | None = field(default=None, converter=optional(make_span))
     axial: Span = field(default=(0.0, 0.0), converter=make_span)
     moment: float = field(default=0.0, converter=convert_real)
-    tilt: Span = field(default=(0.0, 0.0), converter=pair_of)
+    tilt: Span = field(default=(0.0, 0.0), converter=to_pair)
     name: str = ""
 
     def __attrs_post_init__(self) -> None:
@@ -160,8 +160,8 @@ class SpatialLoad:
             )
 
     @classmethod
-    def of(cls, load: Load) -> SpatialLoad:
-        """A planar load, which acts at the top of the part."""
+    def from_planar_load(cls, load: Load) -> SpatialLoad:
+        """Return a planar load as one in space, at its own height, else at the top of the part."""
         heights = None if load.height is None else (load.height, load.height)
         axial = (0.0 - load.upward, 0.0 - load.upward)
         return cls(
@@ -170,19 +170,19 @@ class SpatialLoad:
 
     @property
     def planar(self) -> Load | None:
-        """What of it pegs have to resist; None where that is nothing."""
+        """The force and moment in the plane as a load on the pegs; None where both are 0."""
         if self.force == 0 and self.moment == 0:
             return None
         return Load(self.points if self.force else (), self.force, self.directions, self.moment, self.name)
 
-    def at_height(self, thickness: float) -> SpatialLoad:
-        """The load with its heights written out, for a part of a thickness in mm."""
+    def with_height(self, thickness: float) -> SpatialLoad:
+        """Return the load with the top of a part of this thickness in mm as its height, where it has none."""
         return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
 
 
 @frozen(field_transformer=name_number_fields)
 class SupportRequest:
-    """What supports and the clamp are, and where they may touch; lengths in mm, the part's coordinates.
+    """Sizes of supports and clamp, and places where they may touch; lengths in mm, in the part's coordinates.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ class SupportRequest:
     Raises
     ------
     InputError
-        For lengths that cannot be.
+        For impossible lengths.
 
     Examples
     --------
@@ -221,29 +221,29 @@ class SupportRequest:
     thickness: float = field(converter=convert_real)
     pad_radius: float = field(converter=convert_real)
     tip_radius: float = field(converter=convert_real)
-    band: Span | None = field(default=None, converter=optional(pair_of))
+    band: Span | None = field(default=None, converter=optional(to_pair))
     bands: tuple[Span | None, ...] | None = None
     pad_margin: float = field(default=0.0, converter=convert_real)
-    bottom: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
-    top: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
+    bottom: Loops | None = field(default=None, converter=optional(to_loops), eq=False)
+    top: Loops | None = field(default=None, converter=optional(to_loops), eq=False)
     bottom_zones: tuple[Zone, ...] = field(default=(), converter=make_zones)
     top_zones: tuple[Zone, ...] = field(default=(), converter=make_zones)
     inside: float = field(
         default=Factory(lambda self: self.tip_radius, takes_self=True), converter=convert_real
     )
     reach: tuple[tuple[float, float, float, float], ...] | None = field(
-        default=None, converter=optional(rings_of)
+        default=None, converter=optional(to_rings)
     )
-    point: Span | None = field(default=None, converter=optional(pair_of))
+    point: Span | None = field(default=None, converter=optional(to_pair))
     top_heights: tuple[float, ...] | None = field(default=None, converter=optional(check_reals))
     tip_margin: float = field(default=0.0, converter=convert_real)
     head_radius: float = field(
         default=Factory(lambda self: compute_usual_head(self.tip_radius), takes_self=True),
         converter=convert_real,
     )
-    rising: Loops = field(default=(), converter=loops_of, eq=False)
+    rising: Loops = field(default=(), converter=to_loops, eq=False)
     rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)
-    hanging: Loops = field(default=(), converter=loops_of, eq=False)
+    hanging: Loops = field(default=(), converter=to_loops, eq=False)
     hanging_heights: tuple[float, ...] = field(default=(), converter=check_reals)
 
     def __attrs_post_init__(self) -> None:
@@ -285,7 +285,7 @@ class SupportRequest:
             raise InputError("the clamp's point is not a place: give finite coordinates in mm.")
 
     @classmethod
-    def of(
+    def from_workpiece(
         cls,
         workpiece: Workpiece,
         thickness: float | None = None,
@@ -294,7 +294,8 @@ class SupportRequest:
         tip_radius: float | None = None,
         toolkit: Toolkit | None = None,
     ) -> SupportRequest:
-        """What is usual for a part: its solid says how thick it is, and which faces are level.
+        """Return the usual request for a part:
+        thickness and level faces are those of its solid, radii those of the toolkit.
 
         Parameters
         ----------
@@ -306,12 +307,12 @@ class SupportRequest:
         Raises
         ------
         InputError
-            When nobody says how thick the part is.
+            When the thickness of the part is not known.
 
         Examples
         --------
         >>> plate = Workpiece.from_loops("plate", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
-        >>> SupportRequest.of(plate, 12).pad_radius
+        >>> SupportRequest.from_workpiece(plate, 12).pad_radius
         4.0
         """
         solid = workpiece.solid
@@ -338,8 +339,10 @@ class SupportRequest:
             **({} if solid is None else {name: getattr(solid, name) for name in BESIDE_TOP}),
         )
 
-    def clamped_height(self, point: tuple[float, float]) -> float:
-        """The height in mm of the upper face at a point (x, y); the thickness where nobody says."""
+    def find_clamped_height(self, point: tuple[float, float]) -> float:
+        """Return the height in mm of the highest upper face at a point (x, y) of the part;
+        the thickness where none is known.
+        """
         found = self.thickness
         for height in sorted(set(self.top_heights or ())):
             loops = [
@@ -347,23 +350,25 @@ class SupportRequest:
                 for loop, own in zip(self.top or (), self.top_heights or (), strict=True)
                 if own == height
             ]
-            rows = segment_rows([segment for loop in loops for segment in loop_segments(loop)])
+            rows = make_segment_rows([segment for loop in loops for segment in make_loop_segments(loop)])
             if is_inside(*point, rows):
                 found = min(height, self.thickness)
         return found
 
-    def for_fixture(
+    def adapt_to_fixture(
         self,
         fixture: Fixture,
         solid: SolidOutline | None,
         peg_height: float | None = None,
         numbered: NumberedOutlines | None = None,
     ) -> SupportRequest:
-        """The request with its bands written out: those given, or what each peg can press on of a solid.
+        """Return the request with its bands filled in:
+        those given, else the heights at which each peg can press on a solid.
 
         Parameters
         ----------
-        peg_height : how far pegs reach above where a prism lies, in mm; over all of it if None.
+        peg_height : how far pegs reach above the plane on which a prism lies, in mm; over all its height if
+            None.
         numbered : the segments of the part with the run of heights over each; if None, pegs press on no more
             than the bands of their faces.
         """
@@ -371,19 +376,21 @@ class SupportRequest:
         if self.band is not None or self.bands is not None or solid is None:
             return self if self.band is not None else evolve(self, band=whole)
         own = [
-            band_of(peg, solid) if numbered is None else pressed_by(peg, fixture, numbered)
+            find_touched_band(peg, solid)
+            if numbered is None
+            else find_pressed_heights(peg, fixture, numbered)
             for peg in fixture.pegs
         ]
         cut = (band and (min(band[0], self.thickness), min(band[1], self.thickness)) for band in own)
         return evolve(self, band=whole, bands=tuple(cut))
 
-    def peg_bands(self, pegs: int) -> NDArray[np.float64]:
-        """The band (P, 2) of each of P pegs.
+    def list_peg_bands(self, pegs: int) -> NDArray[np.float64]:
+        """Return the bands (P, 2), low and high in mm, of P pegs.
 
         Raises
         ------
         InputError
-            When there is another number of bands than of pegs.
+            When the numbers of bands and of pegs differ.
         """
         bands = self.bands or (None,) * pegs
         if len(bands) != pegs:
@@ -394,7 +401,7 @@ class SupportRequest:
         return np.array([others if band is None else band for band in bands], np.float64)
 
     def refuse_fat_pads(self, toolkit: Toolkit) -> None:
-        """Refuses pads that could overlap in neighbouring holes of a toolkit."""
+        """Raise InputError where pads in neighbouring holes of a toolkit would overlap."""
         apart = find_least_hole_distance(toolkit)
         if 2 * self.pad_radius > apart:
             raise InputError(
@@ -414,15 +421,20 @@ def find_usual_pad_radius(toolkit: Toolkit | None) -> float:
 
 
 def find_least_hole_distance(toolkit: Toolkit) -> float:
-    """How near two holes of a toolkit can come to each other, in mm."""
+    """Return the least distance in mm between two holes of a toolkit:
+    a pitch or, with several plates, their gap.
+    """
     apart = [pitch for plate in toolkit.plates for pitch in plate.pitch]
     if toolkit.gap is not None and len(toolkit.plates) > 1:
         apart.append(toolkit.gap)
     return min(apart)
 
 
-def band_of(peg: Peg, solid: SolidOutline) -> Span | None:
-    """The band of the face that a peg touches, of a corner on a wall that of both faces; None without one."""
+def find_touched_band(peg: Peg, solid: SolidOutline) -> Span | None:
+    """Return the band (low, high) in mm of the face that a peg touches; None where it has none.
+
+    On a corner it spans the bands of both faces.
+    """
     faces = (peg.face,) if peg.beside is None else (peg.face, peg.beside)
     bands = [band for face in faces if (band := solid.bands[face]) is not None]
     if not bands:
@@ -430,11 +442,15 @@ def band_of(peg: Peg, solid: SolidOutline) -> Span | None:
     return min(low for low, _ in bands), max(high for _, high in bands)
 
 
-def pressed_by(peg: Peg, fixture: Fixture, numbered: NumberedOutlines) -> Span | None:
-    """The heights on which a peg can press: the run where it touches, of a corner that of both faces."""
+def find_pressed_heights(peg: Peg, fixture: Fixture, numbered: NumberedOutlines) -> Span | None:
+    """Return the heights (low, high) in mm at which a peg can press where it touches its face;
+    None where there are none.
+
+    On a corner they span those of both faces.
+    """
     faces = (peg.face,) if peg.beside is None else (peg.face, peg.beside)
     point = fixture.pose.inverse.apply(peg.x, peg.y)
-    runs = [run for face in faces if (run := numbered.pressed(face, point)) is not None]
+    runs = [run for face in faces if (run := numbered.find_pressed_band(face, point)) is not None]
     if not runs:
         return None
     return min(low for low, _ in runs), max(high for _, high in runs)

@@ -21,7 +21,15 @@ from workhold.model.moved_setup import find_move_to_middle, move_to, shift_hole_
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
-__all__ = ["ChosenSupports", "ClampFigures", "Recounted", "SupportPad", "Supports", "Triple", "recounted"]
+__all__ = [
+    "ChosenSupports",
+    "ClampFigures",
+    "RecountedSupports",
+    "SupportPad",
+    "Supports",
+    "Triple",
+    "recount_holes",
+]
 
 Point = tuple[float, float]
 # Set-ups are moved by no more columns and rows than this.
@@ -32,7 +40,7 @@ Hole = tuple[int, int]
 
 @frozen
 class ClampFigures:
-    """The clamp at one point, and how good it is there.
+    """A clamp on top at one point, with its figures.
 
     Parameters
     ----------
@@ -74,7 +82,7 @@ class SupportPad:
 
     @property
     def hole(self) -> str:
-        """The hole's name; one before column A or row 1 by its numbers, where A1 is (1,1).
+        """Name of the hole; before column A or row 1 its numbers, where A1 is (1,1).
 
         >>> SupportPad("left", 2, 3, 0.0, 0.0).hole, SupportPad("plate", -1, 3, 0.0, 0.0).hole
         ('L-C4', '(0,4)')
@@ -113,14 +121,16 @@ class Triple:
 
     @property
     def stands(self) -> bool:
-        """Whether the part stands on them unclamped, so that no touch tips it."""
+        """Whether the part stands on the supports unclamped with a margin,
+        so that a touch does not tip it.
+        """
         return self.standing >= STEADY
 
     @property
     def clamp(self) -> ClampFigures:
-        """The clamp at the point asked for, where it may stand there, else at its best.
+        """The clamp at the point asked for, where it may stand there, else where it needs the least force.
 
-        Where it needs no force its best place has the largest tipping arm.
+        Where no force is needed, that is the place with the largest tipping arm.
         """
         return self.given or self.best
 
@@ -154,7 +164,7 @@ class Supports:
 
     @property
     def words(self) -> str:
-        """What is listed, of which part, in a few words."""
+        """Phrase on how many sets are listed, and under which part."""
         whole = "" if self.count is None else f" of {self.count:,}"
         sets = f"the best {len(self.triples):,}{whole} sets of three" if self.triples else "no set of three"
         return f"{sets} under {self.query.workpiece.name}"
@@ -172,18 +182,20 @@ class Supports:
         """Whether every valid triple is listed."""
         return self.count == len(self.triples)
 
-    def ranked(self, rank: int) -> Triple:
-        """The set of three of a rank from 1."""
+    def find_triple(self, rank: int) -> Triple:
+        """Return the set of three with this rank, from 1; raise InputError where there is none."""
         count = len(self.triples)
         if not 1 <= rank <= count:
             there = f"{count} are listed" if count else "there is no set of three"
             raise InputError(f"there is no set {rank} of supports: {there}.")
         return self.triples[rank - 1]
 
-    def clamp_with_friction(self, friction: float, rank: int = 1) -> float:
-        """The least clamp force in N for which friction could balance the loads, if all goes well.
+    def bound_clamp_force(self, friction: float, rank: int = 1) -> float:
+        """Return a lower bound in N of the clamp force needed if
+        friction helps as much as it can to balance the loads.
 
-        It is optimistic, ranks nothing and is at most that without friction; see ``supports.friction``.
+        It is optimistic, is not used for ranking, and is at most the force without friction; see
+        ``supports.friction``.
 
         Parameters
         ----------
@@ -193,19 +205,19 @@ class Supports:
         Raises
         ------
         InputError
-            For a coefficient that is none, without loads, and when there is no such set.
+            For an impossible coefficient, without loads, and when there is no such set.
         """
-        from workhold.supports.friction import clamp_with_friction
+        from workhold.supports.friction import compute_clamp_force
 
-        return clamp_with_friction(self, self.ranked(rank), friction)
+        return compute_clamp_force(self, self.find_triple(rank), friction)
 
-    def best(self, count: int) -> Supports:
-        """A copy with the first triples only."""
+    def keep_best(self, count: int) -> Supports:
+        """Return a copy with only the first ``count`` triples."""
         return evolve(self, triples=self.triples[:count])
 
 
 @frozen
-class Recounted:
+class RecountedSupports:
     """A fixture and its supports in holes that all have names.
 
     Parameters
@@ -222,35 +234,41 @@ class Recounted:
 
     @property
     def move(self) -> Hole:
+        """(columns, rows)."""
         return self.columns, self.rows
 
 
-def recounted(fixture: Fixture, toolkit: Toolkit, triple: Triple, start: Hole = (0, 0)) -> Recounted:
-    """The set-up of a fixture and three supports in the holes nearest to where it may stand.
+def recount_holes(
+    fixture: Fixture, toolkit: Toolkit, triple: Triple, start: Hole = (0, 0)
+) -> RecountedSupports:
+    """Return a fixture and three supports renumbered into holes that exist, as near as possible to ``start``.
 
     Parameters
     ----------
-    start : columns and rows by which it is to stand further on if supports have holes there.
+    start : preferred (columns, rows) by which to move the set-up; the nearest possible move is taken.
 
     Raises
     ------
     InputError
-        When there are no such holes, as of supports that do not fit the toolkit.
+        When there are no such holes, as for supports that do not fit the toolkit.
     """
     plates = [plate for plate in toolkit.carriers if plate.has_lattice]
     travel = fixture.travel if triple.travel is None else triple.travel
-    for columns, rows in moves(toolkit, start):
+    for columns, rows in iterate_moves(toolkit, start):
         shifts = {
-            plate.name: shift_of(plate, plates[0], (columns, rows), travel - fixture.travel)
+            plate.name: compute_shift(plate, plates[0], (columns, rows), travel - fixture.travel)
             for plate in plates
         }
         if all(fits(plate, shifts[plate.name], fixture, toolkit, triple) for plate in plates):
-            return moved(fixture, toolkit, triple, (columns, rows), shifts, travel)
+            return move_setup(fixture, toolkit, triple, (columns, rows), shifts, travel)
     raise InputError("the supports have no holes in the plates of the toolkit: list them again.")
 
 
-def moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
-    """Columns and rows by which part and pegs may stand further on, the nearest to a start first."""
+def iterate_moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
+    """Yield (columns, rows) to move a set-up by, by rising distance |columns| + |rows| from ``start``.
+
+    Neither goes beyond :data:`FARTHEST`; rows stay at ``start`` where a wall fixes them.
+    """
     # A wall stays where it is.
     most_rows = 0 if toolkit.datum.fixes_rows or toolkit.ends_on_walls else FARTHEST
     for steps in range(FARTHEST + most_rows + 1):
@@ -260,11 +278,11 @@ def moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
                 yield from ((start[0] + columns, start[1] + row) for row in sorted({-rows, rows}))
 
 
-def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
-    """Columns and rows by which a plate's holes count further on.
+def compute_shift(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
+    """Return the columns and rows to add to a plate's hole numbers when part and pegs move.
 
-    All stands ``move`` columns and rows of the first plate further on, and the plate that slides has
-    travelled by ``opened`` mm more than before.
+    All moves by ``move`` columns and rows of the plate ``first``; a plate that slides has travelled by
+    ``opened`` mm more than before, which takes its holes along.
     """
     shift = [
         round((steps * own - (0.0 if plate.travel is None else opened * along)) / pitch)
@@ -279,10 +297,12 @@ def shift_of(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
     return shift[0], shift[1]
 
 
-def holes_on(
+def list_taken_holes(
     plate: Carrier, fixture: Fixture, toolkit: Toolkit, triple: Triple
 ) -> Iterator[tuple[int | None, int | None]]:
-    """Columns and rows on a plate that pegs, clamps and supports take up; None for what says nothing."""
+    """Yield (column, row) on a plate of each peg, clamp and support;
+    None for a coordinate that no hole gives.
+    """
     for peg in fixture.pegs:
         carrier = toolkit.find_carrier(peg.carrier)
         if carrier.stands_on == plate.name:
@@ -294,8 +314,10 @@ def holes_on(
 
 
 def fits(plate: Carrier, shift: Hole, fixture: Fixture, toolkit: Toolkit, triple: Triple) -> bool:
-    """Whether all holes of a plate exist and are open, counted further on by a shift."""
-    for column, row in holes_on(plate, fixture, toolkit, triple):
+    """Return whether the holes of pegs, clamps and supports on a plate,
+    shifted, exist and are not blocked.
+    """
+    for column, row in list_taken_holes(plate, fixture, toolkit, triple):
         new = [None if old is None else old + by for old, by in zip((column, row), shift, strict=True)]
         for number, most in zip(new, (plate.columns, plate.rows), strict=True):
             if number is not None and not 0 <= number < (number + 1 if most is None else most):
@@ -305,15 +327,17 @@ def fits(plate: Carrier, shift: Hole, fixture: Fixture, toolkit: Toolkit, triple
     return True
 
 
-def moved(
+def move_setup(
     fixture: Fixture,
     toolkit: Toolkit,
     triple: Triple,
     move: Hole,
     shifts: dict[str, Hole],
     travel: float,
-) -> Recounted:
-    """The set-up with its holes counted further on."""
+) -> RecountedSupports:
+    """Return the set-up moved by ``move`` columns and rows of the first plate,
+    hole numbers shifted by plate name.
+    """
     first = next(plate for plate in toolkit.carriers if plate.has_lattice)
     dx, dy = move[0] * first.pitch[0], move[1] * first.pitch[1]
     new = shift_hole_numbers(fixture, toolkit, (dx, dy), shifts, travel)
@@ -321,7 +345,7 @@ def moved(
         evolve(pad, column=pad.column + shifts[pad.carrier][0], row=pad.row + shifts[pad.carrier][1])
         for pad in triple.supports
     )
-    return Recounted(new, pads, *move)
+    return RecountedSupports(new, pads, *move)
 
 
 @frozen
@@ -337,27 +361,31 @@ class ChosenSupports:
 
     supports: Supports
     number: int
-    recounted: Recounted
+    recounted: RecountedSupports
 
     @classmethod
-    def of(cls, supports: Supports, number: int = 1) -> ChosenSupports:
+    def from_supports(cls, supports: Supports, number: int = 1) -> ChosenSupports:
+        """Return the set with this number, from 1, in holes with names,
+        as near as possible to the middle of the plate.
+        """
         if not isinstance(supports, Supports):
             raise InputError("supports are what the fixture's own method of that name returns: give these.")
-        triple = supports.ranked(number)
+        triple = supports.find_triple(number)
         query = supports.query
         start = find_move_to_middle(supports.fixture, query.toolkit, query.workpiece)
-        return cls(supports, number, recounted(supports.fixture, query.toolkit, triple, start))
+        return cls(supports, number, recount_holes(supports.fixture, query.toolkit, triple, start))
 
     @classmethod
-    def under(cls, fixture: Fixture, supports: Supports, number: int = 1) -> ChosenSupports:
-        """The set of a number that holds up a fixture of a result.
+    def from_fixture(cls, fixture: Fixture, supports: Supports, number: int = 1) -> ChosenSupports:
+        """Return the set with this number, from 1, for a fixture of a result;
+        the supports must be this fixture's own.
 
         Raises
         ------
         InputError
-            When there is none, or the supports are of another fixture, part or toolkit.
+            When there is no such set, or the supports are of another fixture, part or toolkit.
         """
-        chosen, query = cls.of(supports, number), fixture.listing.result.query
+        chosen, query = cls.from_supports(supports, number), fixture.listing.result.query
         belongs = (
             query.workpiece.is_alike(supports.query.workpiece) and query.toolkit == supports.query.toolkit
         )
@@ -367,17 +395,18 @@ class ChosenSupports:
             )
         return chosen
 
-    def standing_at(self, name: str) -> ChosenSupports:
-        """The set with the lowest column and row of pegs and clamps at a hole's of a name, such as "D4".
+    def move_to_hole(self, name: str) -> ChosenSupports:
+        """Return the set moved so that pegs and clamps have their
+        lowest column and row at a named hole, such as "D4".
 
         Raises
         ------
         InputError
-            For what is no hole, and where pegs or supports have none then.
+            For text that names no hole, and where pegs or supports would have no hole.
         """
         query, fixture = self.supports.query, self.supports.fixture
         start = move_to(fixture, query.toolkit, name)
-        found = recounted(fixture, query.toolkit, self.triple, start)
+        found = recount_holes(fixture, query.toolkit, self.triple, start)
         if found.move != start:
             raise InputError(
                 f"the supports have no holes with the set-up at {name.strip()[:40]}: leave the place out, or "
@@ -387,14 +416,15 @@ class ChosenSupports:
 
     @property
     def triple(self) -> Triple:
-        """The set with its figures, its holes as they were listed."""
-        return self.supports.ranked(self.number)
+        """The set with its figures, and with its holes as they were listed."""
+        return self.supports.find_triple(self.number)
 
     @property
     def clamp(self) -> ClampFigures:
+        """The clamp over the set, see :attr:`Triple.clamp`."""
         return self.triple.clamp
 
     @property
     def pads(self) -> tuple[SupportPad, ...]:
-        """The supports in holes that have names."""
+        """Supports in holes that have names."""
         return self.recounted.supports

@@ -20,22 +20,31 @@ from workhold.geometry.hull import HullTouch, find_touches_along
 from workhold.geometry.segment import Box
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["CommonStretch", "WallEnds", "find_common_stretch", "standouts", "list_hull_touches", "wall_ends"]
+__all__ = [
+    "CommonStretch",
+    "WallEnds",
+    "find_common_stretch",
+    "measure_standouts",
+    "list_hull_touches",
+    "find_wall_ends",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
 def list_hull_touches(workpiece: Workpiece, edge: int) -> tuple[HullTouch, ...]:
-    """Where a workpiece touches the line of a hull edge, by the edge's number; see :func:`find_touches_along`."""
-    own, _ = workpiece.outline_of(WALL)
+    """Return what of a workpiece touches the line of the hull
+    edge with this index, as :func:`find_touches_along`.
+    """
+    own, _ = workpiece.find_outline(WALL)
     segments = [face.segment for face in own.outer_faces]
     return find_touches_along(workpiece.hull_edges[edge], segments, own.outer_face_counts)
 
 
 @frozen(eq=False)
 class CommonStretch:
-    """What a part and walls at N places along a hull edge have in common, in mm from the edge's start.
+    """Common stretches of a part and walls at N places along a hull edge, in mm from the edge's start.
 
     Parameters
     ----------
@@ -50,12 +59,16 @@ class CommonStretch:
 
     @property
     def length(self) -> Array:
-        """Lengths (N,); minus infinity where there is no stretch."""
+        """Lengths (N,) in mm; -inf where there is no stretch."""
         return self.end - self.start
 
 
 def find_common_stretch(touches: Sequence[HullTouch], low: Array, high: Array) -> CommonStretch:
-    """The common stretch of what touches along a hull edge and walls from ``low`` to ``high`` (N,)."""
+    """Return what the touches along a hull edge have in
+    common with N walls that reach from ``low`` to ``high``.
+
+    ``low`` and ``high`` are (N,), in mm from the edge's start.
+    """
     ends = np.array([(one.low, one.high) for one in touches])
     start, end = np.maximum(ends[:, 0], low[:, None]), np.minimum(ends[:, 1], high[:, None])
     inside = start <= end + GAP_SLACK
@@ -86,44 +99,48 @@ class WallEnds:
 
     @property
     def face(self) -> IntArray:
-        """The number (N, 2) of the face that touches, of a corner the lower one."""
+        """Number (N, 2) of the face that touches at each end;
+        of a corner the lower number of its two faces.
+        """
         lower = np.array([faces[0] for faces in self.named], np.int64)
         return np.asarray(lower[self.which])
 
     @property
     def shared(self) -> IntArray:
-        """Numbers (N, 2) that are equal where one face's error moves both ends alike.
+        """Labels (N, 2), equal for both ends where the error of one face moves both alike.
 
-        That is the face's number; for a corner a number below zero of its own.
+        A label is the number of the face; a corner at the first end has -1, at the second -2.
         """
         is_corner = np.array([len(faces) > 1 for faces in self.named])
         return np.where(is_corner[self.which], np.array([-1, -2]), self.face)
 
-    def touching(self, row: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """The numbers of the faces that touch at both ends of a fixture; of a corner two, the lower first."""
+    def list_touching_faces(self, row: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Return the numbers of the faces that touch at the first and the second end in a row:
+        one each, two at a corner.
+        """
         one, other = self.which[row].tolist()
         return self.named[one], self.named[other]
 
 
-def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Array) -> WallEnds:
-    """The ends of the contact with the wall of a toolkit of N fixtures.
+def find_wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Array) -> WallEnds:
+    """Return the two ends of the contact with a toolkit's wall for N poses.
 
-    Where the wall does not reach the part, they are those of an endless one.
+    Where a wall with ends does not reach the part, they are those of an endless wall.
 
     Parameters
     ----------
     theta, position : (N,) in radians and (N, 2) in mm, of the poses.
     """
-    flush, jaw = workpiece.flush, toolkit.reaching
+    flush, jaw = workpiece.flush, toolkit.wall_with_ends
     reach = None if jaw is None else jaw.reach
-    edge, x = flush.number(theta), flush.x(theta, position)
+    edge, x = flush.find_nearest_edges(theta), flush.compute_end_x(theta, position)
     named = [faces for pair in flush.touching for faces in pair]
     which = 2 * edge[:, None] + np.arange(2)
     if reach is None or len(flush.theta) == 0:
         return WallEnds(x, flush.length[edge], tuple(named), which)
     length = flush.length[edge].copy()
-    numbers = [face.number for face in workpiece.outline_of(WALL)[0].faces]
-    first: int = workpiece.outline_of(WALL)[1]
+    numbers = [face.number for face in workpiece.find_outline(WALL)[0].faces]
+    first: int = workpiece.find_outline(WALL)[1]
     for number in np.unique(edge).tolist():
         rows = np.flatnonzero(edge == number)
         touches, start = list_hull_touches(workpiece, number), x[rows, 0].copy()
@@ -137,6 +154,6 @@ def wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Ar
     return WallEnds(x, length, tuple(named), which)
 
 
-def standouts(part: Box, reach: tuple[float, float]) -> tuple[float, float]:
-    """How far a part of an extent stands out to the left and to the right of a wall, in mm; 0 where not."""
+def measure_standouts(part: Box, reach: tuple[float, float]) -> tuple[float, float]:
+    """Return how far a part's box reaches beyond a wall's left and right end, in mm; 0 where it does not."""
     return max(reach[0] - part.x0, 0.0), max(part.x1 - reach[1], 0.0)

@@ -16,15 +16,15 @@ from numpy.typing import ArrayLike, NDArray
 from workhold.conventions import READING, SHORTEST
 from workhold.errors import InputError, make_encodable, refuse_kind
 from workhold.fixels.carrier import WALL
-from workhold.geometry.hull import HullEdge, hull_edges
+from workhold.geometry.hull import HullEdge, find_hull_edges
 from workhold.geometry.loop import (
-    Comparisons,
+    ComparisonBudget,
     Face,
     LoopShape,
     check_vertices,
     compute_signed_area,
     list_loop_faces,
-    loop_segments,
+    make_loop_segments,
     refuse_meeting,
     refuse_no_area,
     refuse_self_crossing,
@@ -36,10 +36,15 @@ from workhold.geometry.merged_runs import (
     merge_chords,
     put_arcs_on_one_circle,
 )
-from workhold.geometry.segment import Point, Segment, bounding_box
+from workhold.geometry.segment import Point, Segment, compute_bounding_box
 from workhold.limits import convert_real, make_real_array
-from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
-from workhold.model.pose import Flush, Pose
+from workhold.model.numbered_outlines import (
+    NumberedOutlines,
+    count_outer_loops,
+    drop_equal_values,
+    refuse_misplaced_holes,
+)
+from workhold.model.pose import FlushContacts, Pose
 from workhold.model.solid import SolidOutline
 
 if TYPE_CHECKING:
@@ -50,13 +55,15 @@ if TYPE_CHECKING:
 __all__ = ["Workpiece"]
 
 
-def numbers_of(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
-    """What makes loops equal: their numbers, zeros without sign."""
+def encode_loops(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
+    """Return the bytes of each loop's numbers, -0.0 made 0.0, as a key for comparing loops."""
     return tuple((loop + 0.0).tobytes() for loop in loops)
 
 
-def checked_name(name: Any) -> str:
-    """The name of a part; refuses what is no text."""
+def check_name(name: Any) -> str:
+    """Return the name of a part, without characters that cannot be encoded;
+    raise InputError for what is no text.
+    """
     refuse_kind(name, str, "the name of a part", "give text")
     return make_encodable(name)
 
@@ -64,7 +71,9 @@ def checked_name(name: Any) -> str:
 # What an editor need not offer: other rooms use it.
 INTERNAL = frozenset(
     {
+        "apply_pose",
         "every_outline",
+        "find_outline",
         "flush",
         "hole_segments",
         "hull_edges",
@@ -75,10 +84,8 @@ INTERNAL = frozenset(
         "outer_face_counts",
         "outer_faces",
         "outer_loops",
-        "outline_of",
         "outlines",
         "pieces",
-        "placed",
         "turned_over",
         "untouchable",
     }
@@ -111,8 +118,8 @@ class Workpiece:
     [0, 1, 2, 3]
     """
 
-    name: str = field(converter=checked_name)
-    loops: tuple[NDArray[np.float64], ...] = field(eq=numbers_of)
+    name: str = field(converter=check_name)
+    loops: tuple[NDArray[np.float64], ...] = field(eq=encode_loops)
     remarks: tuple[str, ...] = field(default=(), eq=False)
     departure: float = 0.0
     solid: SolidOutline | None = None
@@ -121,7 +128,7 @@ class Workpiece:
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.loops, Sequence, "the loops", "give a tuple of arrays")
         if self.solid is not None:
-            self.solid.for_segments(sum(len(loop) for loop in self.loops))
+            self.solid.check_segment_count(sum(len(loop) for loop in self.loops))
         for loop in self.loops:
             refuse_kind(loop, np.ndarray, "a loop", "give an array (N, 3) of vertices: x, y and bulge")
             loop.setflags(write=False)
@@ -139,8 +146,8 @@ class Workpiece:
         departure: float = 0.0,
         solid: SolidOutline | None = None,
     ) -> Workpiece:
-        """Makes a part of loops of (x, y, bulge) vertices in mm, checked and turned so that material is on
-        the left.
+        """Return a part made of loops of (x, y, bulge) vertices in mm,
+        checked and turned so that material is on the left.
 
         Parameters
         ----------
@@ -148,15 +155,15 @@ class Workpiece:
         loops : the outer loop first, then any holes; each (N, 3), run in either direction. With a solid,
             there may be several outer loops before the holes.
         labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
-        departure : how far these loops may be from what was drawn, in mm; below ``READING`` it is none.
+        departure : how far these loops may be from what was drawn, in mm; below ``READING`` it counts as 0.
         solid : with a band for every segment, in the order of these loops; None for a prism.
 
         Raises
         ------
         InputError
             For open or degenerate loops, numbers that are not finite, segments of zero length, loops that
-            cross or touch, holes outside the outer loop or inside one another.
-            Where there are several outer loops also for holes that come before one.
+            cross or touch, holes outside the outer loop or inside one another. Also for holes that come
+            before an outer loop.
         """
         try:
             loops = list(loops)
@@ -168,11 +175,12 @@ class Workpiece:
             raise InputError(f"{name} has no loop: give at least an outer loop.")
 
         def segment_place(loop: int, k: int) -> str:
+            """Return a name for segment k of a loop for messages, with its label if there are labels."""
             # Labels follow the loop as drawn, so a message before turning must not use later numbers.
             label = f" ({labels[loop][k]})" if labels else ""
             return f"{name}: loop {loop}, segment {k}{label}"
 
-        comparisons = Comparisons(name)
+        comparisons = ComparisonBudget(name)
         straightened = rounded = 0
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
@@ -180,10 +188,10 @@ class Workpiece:
             place = partial(segment_place, index)
             vertices = check_vertices(loop, f"{name}: loop {index}", place)
             straightened += int((np.asarray(loop)[:, 2] != vertices[:, 2]).sum())
-            segments = loop_segments(vertices)
+            segments = make_loop_segments(vertices)
             vertices, changed = put_arcs_on_one_circle(vertices, segments)
             rounded += changed
-            shape = LoopShape.of(loop_segments(vertices) if changed else segments)
+            shape = LoopShape.from_segments(make_loop_segments(vertices) if changed else segments)
             refuse_self_crossing(shape, place, comparisons)
             refuse_no_area(shape, f"{name}: loop {index}")
             used.append(vertices)
@@ -193,7 +201,7 @@ class Workpiece:
         if solid is None:
             refuse_misplaced_holes(name, drawn, comparisons)
         else:
-            pieces = outer_count(name, drawn)
+            pieces = count_outer_loops(name, drawn)
         order: list[int] = []
         turned: set[int] = set()
         for index, shape in enumerate(drawn):
@@ -205,29 +213,29 @@ class Workpiece:
             else:
                 order += numbers
         if solid is not None:
-            solid = solid.for_segments(len(order)).reordered(order, turned)
+            solid = solid.check_segment_count(len(order)).reorder(order, turned)
         return cls(
-            name, tuple(used), describe_arc_changes(straightened, rounded), departure_of(departure), solid
+            name, tuple(used), describe_arc_changes(straightened, rounded), check_departure(departure), solid
         )
 
     @classmethod
     def from_points(
         cls, name: str, outline: ArrayLike, holes: Sequence[ArrayLike] = (), *, fit: float | None = None
     ) -> Workpiece:
-        """A part of corners, as other programs have them; chords that are an arc but for 0.001 mm become it.
+        """Return a part made of corners; chords within 0.001 mm of an arc are replaced by the arc.
 
         Parameters
         ----------
         name : what the user calls the part.
         outline : (N, 2) corners in mm, run in either direction; the first may stand at the end again.
         holes : the same for each hole.
-        fit : how far chords may be from an arc that stands for them, in mm, where 0.001 mm is too fine; the
-            part's ``departure`` is how far they are.
+        fit : how far chords may be from the arc that replaces them, in mm, where 0.001 mm is too fine; the
+            part's ``departure`` then says how far they are.
 
         Raises
         ------
         InputError
-            As :meth:`from_loops`, and for a fit that is no length.
+            As :meth:`from_loops`, and for a fit that is not a positive length.
 
         Examples
         --------
@@ -245,7 +253,7 @@ class Workpiece:
             raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
         loops, away, chorded = [], 0.0, []
         for index, points in enumerate([outline, *holes]):
-            merged = merge_chords(corners_of(points, f"{name}: loop {index}"), fit)
+            merged = merge_chords(to_vertices(points, f"{name}: loop {index}"), fit)
             loops.append(merged.vertices)
             away = max(away, merged.departure)
             left = find_chorded_arcs(merged.vertices)
@@ -254,7 +262,7 @@ class Workpiece:
         return evolve(part, remarks=(*part.remarks, *describe_chords(chorded, "fit")))
 
     def is_alike(self, other: Workpiece) -> bool:
-        """Whether another part is this one, whatever it is called."""
+        """Return whether another part equals this one apart from its name."""
         return self is other or (isinstance(other, Workpiece) and evolve(other, name=self.name) == self)
 
     def __dir__(self) -> list[str]:
@@ -282,12 +290,14 @@ class Workpiece:
         unit: str = "mm",
         overwrite: bool = False,
     ) -> Picture:
-        """The part with its faces numbered: SVG text, which a notebook shows as a picture.
+        """Return a drawing of the part with its faces numbered as SVG text,
+        which a notebook shows; write it if asked.
 
         Parameters
         ----------
         path : also write it into this file, whose name ends in .svg or .png.
-        peg_radius : in mm; draw where the centre of such a peg lies when it touches a face as well.
+        peg_radius : in mm; also draw the curves on which the centre of such a peg lies when it touches a
+            face.
         unit : of the lengths written: "mm", "cm", "m" or "inch".
         overwrite : whether a file that workhold has not written may be replaced.
 
@@ -301,16 +311,17 @@ class Workpiece:
         return draw_and_save_workpiece(self, path, peg_radius=peg_radius, unit=unit, overwrite=overwrite)
 
     def to_shapely(self, tolerance: float = 0.01) -> shapely.Polygon | shapely.MultiPolygon:
-        """The part as a polygon of shapely in mm, in its own frame; of several pieces a multipolygon.
+        """Return the part as a shapely polygon in mm, in its own frame;
+        a multipolygon where it has several pieces.
 
         Parameters
         ----------
-        tolerance : how far chords may be from the arcs that they stand for, in mm; their ends lie on these.
+        tolerance : how far chords may be from the arcs that they replace, in mm; their ends lie on the arcs.
 
         Raises
         ------
         InputError
-            For a tolerance that is no length, and where shapely is not installed.
+            For a tolerance that is not a positive length, and where shapely is not installed.
         """
         from workhold.presenting.data import to_shapely
 
@@ -318,17 +329,17 @@ class Workpiece:
 
     @cached_property
     def loop_segments(self) -> tuple[tuple[Segment, ...], ...]:
-        """Segments of each loop."""
-        return tuple(loop_segments(vertices) for vertices in self.loops)
+        """Segments of each loop, in the order of its vertices."""
+        return tuple(make_loop_segments(vertices) for vertices in self.loops)
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
-        """All segments; their places in this tuple are their numbers."""
+        """All segments, loop by loop; a segment's index is its number."""
         return tuple(segment for loop in self.loop_segments for segment in loop)
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """All faces, ordered by their numbers."""
+        """All faces, in the order of their numbers; a face has the number of its first segment."""
         faces: list[Face] = []
         number = 0
         for loop in self.loop_segments:
@@ -339,22 +350,26 @@ class Workpiece:
 
     @cached_property
     def every_outline(self) -> tuple[Workpiece, ...]:
-        """Itself, and the outlines of carriers with heights of their own, each once."""
-        return tuple(unlike([self, *(own for _, own in self.outlines)]))
+        """The part itself, then the outlines of carriers with heights of their own, equal ones once."""
+        return tuple(drop_equal_values([self, *(own for _, own in self.outlines)]))
 
     @cached_property
     def numbered(self) -> NumberedOutlines:
-        """The segments and faces of every outline, numbered on."""
-        return NumberedOutlines.of(self.every_outline)
+        """Segments and faces of :attr:`every_outline`;
+        the numbers of each outline go on after those of the one before.
+        """
+        return NumberedOutlines.from_outlines(self.every_outline)
 
-    def outline_of(self, role: str) -> tuple[Workpiece, int]:
-        """The outline that carriers of a role meet, this one where they have none, and its first number."""
+    def find_outline(self, role: str) -> tuple[Workpiece, int]:
+        """Return the own outline that carriers of a role meet, else the part,
+        and the number that its first segment has in :attr:`numbered`.
+        """
         every, own = self.every_outline, dict(self.outlines).get(role, self)
         return own, sum(len(one.segments) for one in every[: every.index(own)])
 
     @cached_property
     def untouchable(self) -> frozenset[int]:
-        """Numbers of the faces that no peg, clamp or wall may touch, whatever is asked."""
+        """Numbers of the faces that no peg, clamp or wall may touch: those with a segment without a band."""
         if self.solid is None:
             return frozenset()
         bands = self.solid.bands
@@ -362,28 +377,28 @@ class Workpiece:
 
     @cached_property
     def pieces(self) -> int:
-        """How many loops are outer ones, which come first: 1, but for a solid that pegs meet in pieces."""
+        """Number of outer loops, which come first: 1, except for a solid that pegs meet in several pieces."""
         areas = [compute_signed_area(loop) for loop in self.loop_segments[1:]]
         return 1 + next((k for k, area in enumerate(areas) if area <= 0), len(areas))
 
     @cached_property
     def outer_count(self) -> int:
-        """How many segments the outer loops have; they come first, and so do their faces' numbers."""
+        """Number of segments of the outer loops; faces with lower numbers than this belong to them."""
         return sum(len(loop) for loop in self.loops[: self.pieces])
 
     @property
     def outer_loops(self) -> tuple[NDArray[np.float64], ...]:
-        """The vertices of the outer loops."""
+        """Vertices of the outer loops, each (N, 3)."""
         return self.loops[: self.pieces]
 
     @property
     def outer_faces(self) -> tuple[Face, ...]:
-        """The faces of the outer loops."""
+        """Faces of the outer loops."""
         return tuple(face for face in self.faces if face.number < self.outer_count)
 
     @property
     def outer_face_counts(self) -> list[int]:
-        """How many faces each outer loop has."""
+        """Number of faces of each outer loop."""
         ends = [0, *accumulate(len(loop) for loop in self.loops[: self.pieces])]
         return list(np.diff(np.searchsorted([face.number for face in self.outer_faces], ends)).tolist())
 
@@ -394,46 +409,52 @@ class Workpiece:
 
     @cached_property
     def hull_edges(self) -> tuple[HullEdge, ...]:
-        """The straight pieces of the hull's boundary of the outline that walls meet, by index of face."""
-        own, _ = self.outline_of(WALL)
-        return hull_edges([face.segment for face in own.outer_faces], own.outer_face_counts)
+        """Straight edges of the convex hull of the outline that walls meet;
+        they name faces by their index in it.
+        """
+        own, _ = self.find_outline(WALL)
+        return find_hull_edges([face.segment for face in own.outer_faces], own.outer_face_counts)
 
     @cached_property
-    def flush(self) -> Flush:
-        """How it lies on a wall, hull edge by hull edge."""
-        own, first = self.outline_of(WALL)
-        return Flush.of(self.hull_edges, [first + face.number for face in own.faces])
+    def flush(self) -> FlushContacts:
+        """Contacts of the part lying on a wall, one for each hull edge."""
+        own, first = self.find_outline(WALL)
+        return FlushContacts.from_hull_edges(self.hull_edges, [first + face.number for face in own.faces])
 
     @cached_property
     def bounds(self) -> tuple[float, float, float, float]:
-        """(smallest x, smallest y, largest x, largest y) in mm."""
+        """(smallest x, smallest y, largest x, largest y) in mm, in the part's frame."""
         outer = self.segments[: self.outer_count]
-        boxes = np.array([bounding_box(segment) for segment in outer])
+        boxes = np.array([compute_bounding_box(segment) for segment in outer])
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
     @cached_property
     def turned_over(self) -> Workpiece:
-        """The workpiece turned over: x to -x in its own frame, its faces numbered anew."""
+        """The part mirrored, x to -x in its own frame, as a prism with faces numbered anew."""
         loops = (reverse_vertices(loop * np.array([-1.0, 1.0, -1.0])) for loop in self.loops)
         return Workpiece(self.name, tuple(loops), departure=self.departure)
 
-    def placed(self, pose: Pose) -> Workpiece:
-        """The workpiece as it lies in a pose; turning and moving it keep its bulges."""
+    def apply_pose(self, pose: Pose) -> Workpiece:
+        """Return the workpiece with its loops, and those of its outlines,
+        moved into the toolkit's frame by a pose.
+        """
         loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)
-        own = tuple((role, one.placed(pose)) for role, one in self.outlines)
+        own = tuple((role, one.apply_pose(pose)) for role, one in self.outlines)
         return Workpiece(self.name, tuple(loops), (), self.departure, self.solid, own)
 
     @property
     def center(self) -> Point:
-        """Centre of the bounding box, the point that moments are taken about."""
+        """Centre (x, y) in mm of the bounding box, the point that moments are taken about."""
         x0, y0, x1, y1 = self.bounds
         return (x0 + x1) / 2, (y0 + y1) / 2
 
 
-def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
-    """(N, 3) vertices of a loop of corners without bulges, a repeated first corner left out; refuses what is
-    none.
+def to_vertices(points: ArrayLike, loop: str) -> NDArray[np.float64]:
+    """Return the corners (N, 2) of a loop as checked vertices
+    (N, 3) with bulge 0, without a repeated first corner.
+
+    Raises InputError for anything else; ``loop`` names the loop in messages.
     """
     try:
         array = make_real_array(points, f"{loop}: a coordinate")
@@ -451,9 +472,10 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
     return check_vertices(rows, loop, lambda k: f"{loop}, corner {k}")
 
 
-def departure_of(value: float) -> float:
-    """The departure of an outline in mm, 0 where it is less than a drawing can mean; refuses what is no
-    length.
+def check_departure(value: float) -> float:
+    """Return the departure of an outline in mm, 0.0 where it is less than :data:`READING`.
+
+    Raises InputError for a value that is not 0 or more.
     """
     if not (isfinite(convert_real(value, "the departure of the outline")) and value >= 0):
         raise InputError(f"the departure {value} of the outline is not a length: give 0 or more, in mm.")
@@ -461,7 +483,9 @@ def departure_of(value: float) -> float:
 
 
 def describe_arc_changes(straightened: int, rounded: int) -> tuple[str, ...]:
-    """Remarks on arcs that were taken for lines, and on arcs moved onto one circle with their neighbours."""
+    """Return sentences on the number of arcs taken for lines,
+    and of arcs moved onto one circle with their neighbours.
+    """
     remarks = []
     if straightened:
         arcs, taken = (

@@ -33,7 +33,7 @@ from workhold.files.step.library import (
 from workhold.files.step.part_shape import make_pose_move
 from workhold.files.step.writer import make_named_solids
 from workhold.model.bodies import COLOURS, BodySizes, FixtureBody, list_fixture_bodies
-from workhold.model.setup import PartZero, part_zero
+from workhold.model.setup import PartZero, choose_part_zero
 from workhold.model.support_bodies import list_bodies_with_supports, size_supported_bodies
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import import_library
@@ -101,11 +101,12 @@ class Assembly:
         chosen: ChosenSupports | None = None,
         shape: PartShape | None = None,
     ) -> Assembly:
-        """Make the bodies of a fixture; on a set of supports where one is chosen, counted as its holes are.
+        """Return the bodies of a fixture; with chosen supports, those of the
+        fixture moved to fit the supports' holes.
 
         Parameters
         ----------
-        lengths : in mm, named as in :meth:`BodySizes.of`, or as in
+        lengths : in mm, named as in :meth:`BodySizes.from_workpiece`, or as in
             :func:`workhold.model.support_bodies.size_supported_bodies` for a set of supports.
 
         Raises
@@ -116,7 +117,7 @@ class Assembly:
         if chosen is None:
             if fixture.hold is not None and lengths.get("thickness") is None:
                 lengths = {**lengths, "thickness": result.query.part_height}
-            sizes = BodySizes.of(result.workpiece, **lengths)
+            sizes = BodySizes.from_workpiece(result.workpiece, **lengths)
             bodies = list_fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
             return cls(fixture, result, sizes, bodies, shape)
         sizes = size_supported_bodies(chosen.supports, **lengths)
@@ -124,7 +125,7 @@ class Assembly:
 
     @property
     def is_simplified(self) -> bool:
-        """Whether the part's solid is another shape than the prism that stands for it, as far as is known."""
+        """Whether the part is shown as a prism although its solid is known to have another shape."""
         solid = self.result.workpiece.solid
         return (
             solid is not None
@@ -136,11 +137,11 @@ class Assembly:
         )
 
     def make_file_content(self, ending: str, zero: PartZero | None = None) -> bytes:
-        """Return the bytes of a file with an ending of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
+        """Return the bytes of a file whose ending is one of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
 
         Parameters
         ----------
-        zero : part zero in a STEP file; that of :func:`part_zero` without a wish if None.
+        zero : part zero in a STEP file; that of :func:`choose_part_zero` without a wish if None.
 
         Raises
         ------
@@ -153,12 +154,12 @@ class Assembly:
             return make_bodies_glb(self.bodies, f"{self.bodies[0].name} set-up", mesh)
         from workhold.files.step.writer import make_bodies_step
 
-        point = (zero or part_zero(self.result.workpiece)).point
+        point = (zero or choose_part_zero(self.result.workpiece)).point
         solid = None if shape is None else shape.place_solid(pose)
         return make_bodies_step(self.bodies, self.result.toolkit, point, pose, solid)
 
     def write(self, path: str | Path) -> None:
-        """Write a file of the kind that its ending names.
+        """Write a GLB or STEP file, as its ending says.
 
         Raises
         ------
@@ -172,7 +173,7 @@ class Assembly:
 
 
 def read_part_shape(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
-    """Return the shape of a part in the STEP file that it was read from; None without a file.
+    """Return the shape of a part from the STEP file that the part was read from; None if ``path`` is None.
 
     Raises
     ------
@@ -203,7 +204,7 @@ def save_glb(
     if Path(path).suffix.lower() not in GLB_ENDINGS:
         raise InputError(f"{path} is not the name of a GLB file: let the name end in {GLB_ENDINGS[0]}.")
     refuse_output(path, (part,), overwrite)
-    chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
+    chosen = None if supports is None else ChosenSupports.from_fixture(fixture, supports, best)
     result = fixture.listing.result
     shape = read_part_shape(part, result.workpiece)
     assembly = Assembly.from_fixture(fixture, result, {"thickness": thickness}, chosen, shape)
@@ -224,7 +225,7 @@ def from_build123d(
     heights: Mapping[str, Sequence[float]] | None = None,
     toolkit: Toolkit | None = None,
 ) -> Workpiece:
-    """Make a workpiece of a part of build123d, as :func:`workhold.load` does of a file.
+    """Return a workpiece from a part of build123d, as :func:`workhold.load` does from a file.
 
     Parameters
     ----------
@@ -267,7 +268,7 @@ def from_cadquery(
     heights: Mapping[str, Sequence[float]] | None = None,
     toolkit: Toolkit | None = None,
 ) -> Workpiece:
-    """Make a workpiece of a work plane or a shape of CadQuery, as :func:`from_build123d` does.
+    """Return a workpiece from a work plane or a shape of CadQuery, as :func:`from_build123d` does.
 
     Parameters
     ----------
@@ -297,7 +298,7 @@ def from_cadquery(
 
 
 def find_axis_name(up: Any) -> str:
-    """Return the name of the axis along a direction, which may be an axis, a plane, a vector or a name.
+    """Return the name of the axis along a direction given as an axis, a plane, a vector or a name.
 
     >>> find_axis_name((0, 0, -2))
     '-z'
@@ -334,7 +335,7 @@ def to_build123d(
     supports: Supports | None = None,
     best: int = 1,
 ) -> Any:
-    """Make a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
+    """Return a set-up as a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
     cad = import_library("build123d")
     children = []
     for name, shape, colour in make_bodies(fixture, around, thickness, supports, best):
@@ -353,7 +354,7 @@ def to_cadquery(
     supports: Supports | None = None,
     best: int = 1,
 ) -> Any:
-    """Make an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
+    """Return a set-up as an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
     cad = import_library("cadquery")
     assembly = cad.Assembly(name=make_title(fixture))
     for name, shape, colour in make_bodies(fixture, around, thickness, supports, best):
@@ -362,6 +363,7 @@ def to_cadquery(
 
 
 def make_title(fixture: Fixture) -> str:
+    """Return the part's name and the fixture's rank."""
     listed = fixture.listing
     return f"{listed.result.workpiece.name} fixture {listed.rank}"
 
@@ -369,8 +371,13 @@ def make_title(fixture: Fixture) -> str:
 def make_bodies(
     fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
 ) -> list[tuple[str, Any, tuple[float, float, float]]]:
+    """Return (name, shape of Open CASCADE, colour from 0 to 1) of each body of a set-up, the part first.
+
+    With ``around``, the part's own solid, all bodies are in that solid's model frame; otherwise in the
+    toolkit's.
+    """
     result = fixture.listing.result
-    chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
+    chosen = None if supports is None else ChosenSupports.from_fixture(fixture, supports, best)
     assembly = Assembly.from_fixture(fixture, result, {"thickness": thickness}, chosen)
     if around is None:
         return make_named_solids(assembly.bodies)
@@ -382,7 +389,13 @@ def make_bodies(
 
 
 def find_own_shape(part: Any) -> Any:
-    """Return the shape of Open CASCADE of a part with one solid; refuse a part with none, or with several."""
+    """Return the one solid of a part as a shape of Open CASCADE.
+
+    Raises
+    ------
+    InputError
+        For a part without a solid, or with several.
+    """
     solids = [solid for shape in list_wrapped_shapes(part) for solid in list_sub_shapes(shape, "SOLID")]
     if len(solids) != 1:
         raise InputError(f"around is a part with {len(solids)} solids: give the one that was designed for.")
@@ -390,9 +403,13 @@ def find_own_shape(part: Any) -> Any:
 
 
 def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
-    """Return the location that carries the frame of the toolkit into the model of the part's solid.
+    """Return the location of Open CASCADE that carries the toolkit's frame into
+    the model frame of the part's solid.
 
-    Refuses a part that was not read from a solid, and a solid of another size.
+    Raises
+    ------
+    InputError
+        For a part that was not read from a solid, and for a solid of another size.
     """
     from OCP.gp import gp_Trsf, gp_Vec
     from OCP.TopLoc import TopLoc_Location

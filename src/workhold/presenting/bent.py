@@ -14,25 +14,32 @@ from workhold.bending.figures import Bending
 from workhold.bending.holding import PadsBelow
 from workhold.bending.materials import ElasticMaterial, find_material
 from workhold.bending.shape import KeptShape, PartToBend, PrismShape
-from workhold.drawing.bent_part import colours_of, exaggeration_of
+from workhold.drawing.bent_part import choose_exaggeration, compute_node_colours
 from workhold.errors import InputError
 from workhold.files.glb import Mesh, make_bodies_glb, make_surface_mesh
 from workhold.files.step.part_shape import PartShape
 from workhold.model.bodies import BodySizes, list_fixture_bodies
 from workhold.model.pose import Pose
 from workhold.presenting.assembly import read_part_shape
-from workhold.statics.loads import jaw_stiffness
+from workhold.statics.loads import read_jaw_stiffness
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.query import Query
     from workhold.model.support_triples import Supports
 
-__all__ = ["bend_fixture", "bend_sheet", "bent_glb", "bent_mesh", "find_pads_below", "make_shape_to_bend"]
+__all__ = [
+    "bend_fixture",
+    "bend_sheet",
+    "make_bent_glb",
+    "make_bent_mesh",
+    "find_pads_below",
+    "make_shape_to_bend",
+]
 
 
 def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> PartToBend:
-    """The shape of a query's part: as its STEP file has it, or a prism of a height in mm.
+    """Return the shape of a query's part: that of its STEP file, or without one a prism ``height`` mm high.
 
     Raises
     ------
@@ -51,7 +58,11 @@ def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> 
 def find_pads_below(
     supports: Supports, best: int, shape: PartShape | None, clamp_force: float | None
 ) -> PadsBelow:
-    """The pads and the clamp of a set of three supports, with the force that it needs, or another in N."""
+    """Return the pads and the clamp on top of the set ``best`` (from 1) of three supports.
+
+    Its clamp force is ``clamp_force`` in N, or if None the force that the set needs. Raises InputError for a
+    set that there is not.
+    """
     if not 1 <= best <= len(supports.triples):
         raise InputError(f"there is no set {best} of supports: choose from 1 to {len(supports.triples)}.")
     triple, request = supports.triples[best - 1], supports.request
@@ -63,7 +74,10 @@ def find_pads_below(
 
 
 def find_top_over(shape: PartShape, x: float, y: float) -> float:
-    """The height in mm of the highest face over a point."""
+    """Return the height in mm of the highest face over (x, y) in the part's frame.
+
+    Raises InputError where no face is over the point.
+    """
     a, b, c = np.moveaxis(shape.positions[shape.triangles], 1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (c[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
@@ -91,7 +105,7 @@ def bend_fixture(
     best: int = 1,
     clamp_force: float | None = None,
 ) -> Bending:
-    """Say how far a part is bent, see :meth:`workhold.Fixture.bending`."""
+    """Return how far a fixture bends its part, see :meth:`workhold.Fixture.bending`."""
     listed = fixture.listing
     shape = read_part_shape(part, listed.result.workpiece)
     below = {}
@@ -102,16 +116,16 @@ def bend_fixture(
         thickness,
         jaw_force,
         tuple(faces),
-        jaw_stiffness(jaw),
+        read_jaw_stiffness(jaw),
         below,
     )
     query = listed.result.query
-    whole = make_shape_to_bend(query, asked.height_of(query), shape)
+    whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
     return find_bendings(listed.result, [listed.row], whole, asked)[0]
 
 
 def bend_sheet(fixture: Fixture, settings: dict[str, Any], shape: PartShape | None) -> Bending | None:
-    """What a setup sheet says of bending; None where its question names no material.
+    """Return how far a fixture bends its part, for its setup sheet; None where the settings name no material.
 
     Parameters
     ----------
@@ -125,16 +139,18 @@ def bend_sheet(fixture: Fixture, settings: dict[str, Any], shape: PartShape | No
         find_material(settings["material"]),
         settings["thickness"],
         settings["jaw_force"],
-        stiffness=jaw_stiffness(settings["jaw"]),
+        stiffness=read_jaw_stiffness(settings["jaw"]),
     )
     query = listed.result.query
-    whole = make_shape_to_bend(query, asked.height_of(query), shape)
+    whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
     return find_bendings(listed.result, [listed.row], whole, asked)[0]
 
 
-def bent_mesh(bending: Bending, pose: Pose) -> Mesh:
-    """The part as it is bent, coloured by how far and bent many times as far, in the pose of a fixture."""
-    surface, times = bending.surface, exaggeration_of(bending)
+def make_bent_mesh(bending: Bending, pose: Pose) -> Mesh:
+    """Return the mesh of the bent part in the pose of a fixture, coloured by
+    its movement, which is exaggerated.
+    """
+    surface, times = bending.surface, choose_exaggeration(bending)
     places = surface.nodes + times * bending.moved
     turned = np.column_stack([pose.apply(places[:, :2]), places[:, 2]])
     a, b, c, ab, bc, ca = surface.triangles.T
@@ -149,17 +165,17 @@ def bent_mesh(bending: Bending, pose: Pose) -> Mesh:
         corners.reshape(-1, 3),
         np.repeat(facing, 3, axis=0),
         np.arange(3 * len(small)).reshape(-1, 3),
-        colours_of(bending)[small].reshape(-1, 3),
+        compute_node_colours(bending)[small].reshape(-1, 3),
     )
     told = {"most": bending.clamp_distortion.value, "error": bending.clamp_distortion.error, "times": times}
     return evolve(mesh, about={"bent": told})
 
 
-def bent_glb(fixture: Fixture, bending: Bending) -> bytes:
-    """A GLB file of a fixture with its part coloured and bent, many times as far as it is."""
+def make_bent_glb(fixture: Fixture, bending: Bending) -> bytes:
+    """Return the bytes of a GLB file of a fixture with its part coloured and bent, exaggerated."""
     result = fixture.listing.result
     height = float(bending.surface.nodes[:, 2].max())
-    sizes = BodySizes.of(result.workpiece, thickness=height)
+    sizes = BodySizes.from_workpiece(result.workpiece, thickness=height)
     bodies = list_fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
-    name = f"{bodies[0].name}, bent {exaggeration_of(bending):,.0f} times as far"
-    return make_bodies_glb(bodies, name, bent_mesh(bending, fixture.pose))
+    name = f"{bodies[0].name}, bent {choose_exaggeration(bending):,.0f} times as far"
+    return make_bodies_glb(bodies, name, make_bent_mesh(bending, fixture.pose))

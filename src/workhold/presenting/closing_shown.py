@@ -13,13 +13,13 @@ from typing import Any
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.errors import InputError
-from workhold.model.clamps import order_words
+from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.seating import Seating
 from workhold.presenting.live_picture import LivePicture
 from workhold.seating.closing_simulation import simulate_closing
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 __all__ = ["show_closing"]
 
@@ -35,19 +35,26 @@ MOST_KEYFRAMES = 120
 
 
 def show_closing(picture: LivePicture) -> dict[str, Any]:
+    """Return the closing of a picture's fixture as keyframes and words, plain data for the browser.
+
+    Where no motion of the part can be shown, only the moving carrier moves, and the words say why.
+    """
     fixture, toolkit = picture.fixture, picture.result.toolkit
     if not toolkit.closes_at_once:
-        return picture.describe_closing(words=order_words(fixture))
+        return picture.describe_closing(words=describe_tightening_order(fixture))
     try:
-        solver = Solver(picture.result.workpiece, toolkit)
-        seating = fixture.seating or solver.of(fixture)
+        solver = SeatingSolver(picture.result.workpiece, toolkit)
+        seating = fixture.seating or solver.solve(fixture)
         return close_fixture(picture, solver, seating)
     except InputError as error:
         return picture.describe_closing(words=f"The part is held in its place while it is clamped: {error}")
 
 
-def close_fixture(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
-    """Return the closing of a fixture of a known seating; refuse one without room for the part."""
+def close_fixture(picture: LivePicture, solver: SeatingSolver, seating: Seating) -> dict[str, Any]:
+    """Return the closing of a fixture with a known seating, from the first start pose that leads home.
+
+    Where the capture opening is too small to see, or no start leads home, the part does not move.
+    """
     fixture, toolkit = picture.fixture, picture.result.toolkit
     sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.in_mm())
     most = picture.opened if seating.capture_opening is None else OF_CAPTURE * seating.capture_opening
@@ -74,7 +81,7 @@ def close_fixture(picture: LivePicture, solver: Solver, seating: Seating) -> dic
 
 
 def list_starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:
-    """Yield the poses to let the part go in: off its place within the cage, ever nearer, and last its place itself."""
+    """Yield start poses within the cage, ever nearer to the fixture's pose, and last this pose itself."""
     middle, cage = picture.result.workpiece.center, seating.cage
     turns, shifts = (-ANY_TURN, ANY_TURN), (0.0, 0.0)
     if cage is not None:

@@ -19,10 +19,10 @@ from attrs.filters import exclude
 
 from workhold.errors import InputError
 from workhold.files.result.fixture_text import list_column_names, list_fixture_rows, list_seating_values
-from workhold.files.result.hold_text import hold_entry
+from workhold.files.result.hold_text import make_hold_entry
 from workhold.files.result.writer import (
     convert_to_json_value,
-    load_entry,
+    make_load_entry,
     make_proof_entry,
     make_toolkit_fields,
 )
@@ -32,26 +32,26 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import Face
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.limits import convert_real
-from workhold.model.clamps import order_words
+from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.quality import SEATING_FIGURES
-from workhold.model.search_report import Explanation, Proof
+from workhold.model.search_report import Explanation, ProofReport
 from workhold.model.setup import list_length_settings
 from workhold.model.solid import SolidOutline
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
-from workhold.seating.clamping import by_hand
-from workhold.statics.why_first import why_first
+from workhold.seating.clamping import plan_hand_loading
+from workhold.statics.why_first import explain_why_first
 
 if TYPE_CHECKING:
     import pyarrow
     from pandas import DataFrame
 
     from workhold.files.toolkit_file import LoadedToolkit
-    from workhold.listing.identity import Entries
+    from workhold.listing.identity import ShownEntries
     from workhold.model.result import Result
-    from workhold.search.design import Explored
-    from workhold.statics.loads import LoadCase, Worst
+    from workhold.search.design import ToolkitOutcome
+    from workhold.statics.loads import LoadCase, WorstLoad
     from workhold.verification import Verification
 
 __all__ = [
@@ -60,7 +60,7 @@ __all__ = [
     "convert_finite",
     "describe_fixture",
     "describe_helps",
-    "load_case_data",
+    "describe_load_case",
     "describe_part",
     "describe_result",
     "describe_solid",
@@ -73,12 +73,12 @@ __all__ = [
 
 
 def convert_finite(value: float) -> float | None:
-    """Return a number, or None for one that JSON does not have."""
+    """Return a number, or None for inf and NaN, which JSON does not have."""
     return float(value) if isfinite(value) else None
 
 
 def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """Describe a part and its faces; the remarks are about how it was read."""
+    """Return a part and its faces as plain data; ``remarks`` are about how it was read."""
     first, loop_of = 0, {}
     for index, loop in enumerate(workpiece.loops):
         loop_of.update(dict.fromkeys(range(first, first + len(loop)), index))
@@ -98,12 +98,12 @@ def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str
 
 
 def describe_solid(solid: SolidOutline | None) -> dict[str, Any]:
-    """Describe how the solid of an outline stands, and the heights at which each segment is touched."""
+    """Return {"solid": ...} with how the solid stands and the heights of each segment; {} without a solid."""
     return {} if solid is None else {"solid": asdict(solid, filter=exclude(fields(SolidOutline).low))}
 
 
 def describe_face(face: Face) -> dict[str, Any]:
-    """Describe a face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
+    """Return a face as plain data: a line or an arc, lengths in mm, the arc's sweep in degrees."""
     segment = face.segment
     ends = {"from": list(segment.start), "to": list(segment.end)}
     if not isinstance(segment, Arc):
@@ -114,6 +114,7 @@ def describe_face(face: Face) -> dict[str, Any]:
 
 
 def describe_fixture(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
+    """Return a fixture as plain data; ``rank``, from 1, is left out if None."""
     return {
         **({} if rank is None else {"rank": rank}),
         "type": fixture.type,
@@ -139,15 +140,15 @@ def describe_fixture(fixture: Fixture, toolkit: Toolkit, rank: int | None = None
         ],
         **describe_pair(fixture),
         "quality": {key: convert_finite(value) for key, value in fixture.quality.items()},
-        **({} if fixture.hold is None else hold_data(fixture)),
-        **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
+        **({} if fixture.hold is None else describe_hold(fixture)),
+        **({} if fixture.seating is None else {"seating": fixture.seating.to_fields()}),
         **describe_by_hand(fixture, rank),
     }
 
 
-def hold_data(fixture: Fixture) -> dict[str, Any]:
-    """Describe how flat jaws or straps hold a part, as a result file does."""
-    entry = hold_entry(fixture)
+def describe_hold(fixture: Fixture) -> dict[str, Any]:
+    """Return how flat jaws or straps hold a part as plain data, with the keys of a result file."""
+    entry = make_hold_entry(fixture)
     if isinstance(fixture.hold, StrappedHold):
         kept = ("straps", "supports", "push", "places", "looked_at", "program_force", "quality")
         return {name: entry[name] for name in kept if name in entry}
@@ -156,29 +157,32 @@ def hold_data(fixture: Fixture) -> dict[str, Any]:
 
 
 def describe_pair(fixture: Fixture) -> dict[str, Any]:
-    """Describe the pair of clamps of a fixture and how to tighten them; empty for other fixtures."""
+    """Return the count, the ratio and the order of tightening of a pair of clamps; {} for other fixtures."""
     if pair := fixture.pair:
         ratio = [convert_finite(one) for one in pair.ratio]
-        return {"pairs": pair.count, "ratio": ratio, "order": order_words(fixture)}
+        return {"pairs": pair.count, "ratio": ratio, "order": describe_tightening_order(fixture)}
     return {}
 
 
 def name_carrier(carrier: Carrier) -> str:
-    """Name what a contact stands on: a jaw or a plate by its own name, a wall always ``wall``."""
+    """Return the noun of what a contact stands on, such as "jaw" or "plate"; "wall" for every wall."""
     return carrier.noun if carrier.contact.is_placed else carrier.contact.name
 
 
 def describe_by_hand(fixture: Fixture, rank: int | None) -> dict[str, Any]:
-    """Describe how the part is put into two clamps, if the result was asked for the seating of this rank."""
+    """Return how the part is put into two clamps, {} unless the result was
+    asked for the seating of this rank.
+    """
     result = None if fixture.listed is None else fixture.listed.result
     if result is None or result.toolkit.closes_at_once or rank is None or rank > (result.query.seating or 0):
         return {}
-    return {"by_hand": by_hand(fixture, result.workpiece, result.toolkit).as_fields()}
+    return {"by_hand": plan_hand_loading(fixture, result.workpiece, result.toolkit).to_fields()}
 
 
-def load_case_data(case: LoadCase) -> dict[str, Any]:
+def describe_load_case(case: LoadCase) -> dict[str, Any]:
+    """Return a load case as plain data, forces in N."""
     return {
-        "load": load_entry(case.load),
+        "load": make_load_entry(case.load),
         "jaw_force": convert_finite(case.jaw_force),
         "smallest": [convert_finite(value) for value in case.smallest],
         "largest": [convert_finite(value) for value in case.largest],
@@ -191,8 +195,8 @@ def load_case_data(case: LoadCase) -> dict[str, Any]:
     }
 
 
-def describe_worst(worst: Worst) -> dict[str, Any]:
-    """Describe where and in which direction a load is worst; the peg is counted from 0."""
+def describe_worst(worst: WorstLoad) -> dict[str, Any]:
+    """Return where and in which direction a load is worst as plain data; the peg is counted from 0."""
     x, y = worst.point
     return {
         "value": convert_finite(worst.value),
@@ -202,7 +206,8 @@ def describe_worst(worst: Worst) -> dict[str, Any]:
     }
 
 
-def describe_result(result: Result, shown: Entries, count: int) -> dict[str, Any]:
+def describe_result(result: Result, shown: ShownEntries, count: int) -> dict[str, Any]:
+    """Return a result as plain data with its first ``count`` shown entries."""
     indices, like = (numbers[:count].tolist() for numbers in (shown.index, shown.like))
     return {
         "workpiece": result.workpiece.name,
@@ -217,7 +222,7 @@ def describe_result(result: Result, shown: Entries, count: int) -> dict[str, Any
         "proof": None if result.proof is None else describe_proof(result.proof),
         "ranking": list(result.query.rank_by),
         "least_effective_error": result.least_effective_error,
-        "why_first": why_first(result) or None,
+        "why_first": explain_why_first(result) or None,
         "fixtures": [
             {**describe_fixture(result[index], result.toolkit, index + 1), "like_it": more}
             for index, more in zip(indices, like, strict=True)
@@ -225,8 +230,10 @@ def describe_result(result: Result, shown: Entries, count: int) -> dict[str, Any
     }
 
 
-def describe_proof(proof: Proof) -> dict[str, Any]:
-    """Describe the proof of a search as a result file does, but with ``faces`` in place of ``segments``."""
+def describe_proof(proof: ProofReport) -> dict[str, Any]:
+    """Return the proof of a search as plain data, with the keys of a result file
+    but ``faces`` in place of ``segments``.
+    """
     entry = make_proof_entry(proof)
     lost = [
         {("faces" if key == "segments" else key): value for key, value in one.items()}
@@ -236,7 +243,7 @@ def describe_proof(proof: Proof) -> dict[str, Any]:
 
 
 def describe_explanation(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
-    """Describe why there is no fixture, and what would help."""
+    """Return why there is no fixture, and what would help, as plain data."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
@@ -253,7 +260,9 @@ def describe_explanation(explanation: Explanation, toolkit: Toolkit) -> dict[str
 
 
 def describe_helps(explanation: Explanation, key: str) -> list[dict[str, Any]]:
-    """Describe what would help, with the changed fields of the toolkit under a key."""
+    """Return the changes that would help as plain data; ``key`` names the changed
+    fields of the toolkit, None for none.
+    """
     return [
         {
             "change": help.change,
@@ -268,6 +277,7 @@ def describe_helps(explanation: Explanation, key: str) -> list[dict[str, Any]]:
 
 
 def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
+    """Return a toolkit that was loaded as plain data."""
     return {
         "name": loaded.name,
         "kind": loaded.kind,
@@ -279,8 +289,8 @@ def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
     }
 
 
-def describe_explored(found: Iterable[Explored]) -> list[dict[str, Any]]:
-    """Describe how well each toolkit holds a part."""
+def describe_explored(found: Iterable[ToolkitOutcome]) -> list[dict[str, Any]]:
+    """Return how well each toolkit holds a part as plain data."""
     return [
         {
             "name": item.name,
@@ -297,7 +307,7 @@ def describe_explored(found: Iterable[Explored]) -> list[dict[str, Any]]:
 
 
 def describe_verification(outcome: Verification) -> dict[str, Any]:
-    """Describe what was proven of a result; fixtures are named by their rank."""
+    """Return what was proven of a result as plain data; fixtures are named by rank, from 1."""
     return {
         "holds": outcome.holds,
         "fixtures": outcome.fixtures,
@@ -326,18 +336,20 @@ REQUIREMENTS = {
 
 
 def to_pandas(result: Result) -> DataFrame:
-    """Make a DataFrame, see :meth:`workhold.Result.to_pandas`."""
+    """Return all fixtures of a result as a DataFrame, see :meth:`workhold.Result.to_pandas`."""
     frame: DataFrame = import_library("pandas").DataFrame(make_columns(result))
     return frame
 
 
 def to_arrow(result: Result) -> pyarrow.Table:
-    """Make a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
+    """Return all fixtures of a result as a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
     return import_library("pyarrow").table(make_columns(result))
 
 
 def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
-    """Make a polygon of shapely, see :meth:`workhold.Workpiece.to_shapely`."""
+    """Return a workpiece as a polygon or multipolygon of shapely, see
+    :meth:`workhold.Workpiece.to_shapely`.
+    """
     if not 0 < convert_real(tolerance, "the tolerance") < inf:
         raise InputError(
             f"the tolerance {tolerance:g} of an outline is not usable: give a length above 0, in mm."
@@ -357,7 +369,9 @@ def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
 
 
 def split_into_chords(segment: Segment, tolerance: float) -> list[Point]:
-    """Return the starts of the fewest equal chords of a segment that are no farther from it than a tolerance in mm."""
+    """Return the starts of the fewest equal chords that are at most
+    ``tolerance`` mm from a segment, in its order.
+    """
     if not isinstance(segment, Arc):
         return [segment.start]
     widest = 2 * acos(max(1.0 - tolerance / segment.radius, 0.5))
@@ -368,6 +382,13 @@ def split_into_chords(segment: Segment, tolerance: float) -> list[Point]:
 
 
 def import_library(name: str) -> Any:
+    """Return an optional library as a module.
+
+    Raises
+    ------
+    InputError
+        When it is not installed; the message says how to install it.
+    """
     try:
         return import_module(name)
     except ImportError as error:
@@ -377,7 +398,10 @@ def import_library(name: str) -> Any:
 
 
 def make_columns(result: Result) -> dict[str, Any]:
-    """Return columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
+    """Return the columns of a result's table by name, a row for each fixture.
+
+    Numbers are arrays (N,), words lists; lengths are in mm, angles in degrees.
+    """
     toolkit = result.toolkit
     names, count = list_column_names(result), 6 * toolkit.peg_count
     titles = np.array([one.title for one in toolkit.arrangements])
@@ -394,7 +418,7 @@ def make_columns(result: Result) -> dict[str, Any]:
             column, row, *others = numbers[6 * peg : 6 * peg + 6]
             jaws = [carriers[kind][peg] for kind in kinds]
             holes = [
-                jaw.place_name(a, b) for jaw, a, b in zip(jaws, column.tolist(), row.tolist(), strict=True)
+                jaw.name_place(a, b) for jaw, a, b in zip(jaws, column.tolist(), row.tolist(), strict=True)
             ]
             block += [np.array(holes), np.array([jaw.name for jaw in jaws]), column, row, *others]
         block += looks

@@ -28,7 +28,7 @@ __all__ = [
     "make_heading",
     "find_edgeless_distance",
     "group_peg_columns",
-    "place_of",
+    "name_peg_place",
     "format_rounded",
     "make_short_heading",
     "find_figure_unit",
@@ -42,11 +42,11 @@ EDGE, SAME_SHARE = "edge_distance", 1e-9
 
 
 def list_shown_figures(result: Result) -> tuple[list[Figure], list[Figure]]:
-    """Return the figures that a table of a result has columns for, and those of them that fixtures are ranked
-    by.
+    """Return the figures that a result's table has columns for, and the
+    figures that its fixtures are ranked by.
 
-    The location error and the program's clearance are shown in any case where they are known. Of seating
-    there are how wide open the part is caught and what a reading must show.
+    The first list holds those of the second that are known, then the location error and the program's
+    clearance where known. With seating it also has the capture opening and the reading.
     """
     from workhold.model.quality import (
         FIGURES,
@@ -72,19 +72,19 @@ def list_shown_figures(result: Result) -> tuple[list[Figure], list[Figure]]:
 
 
 def make_fixture_title(fixture: Fixture) -> str:
-    """Return what a fixture of a result is called, such as "Fixture 2 of 40 of bracket"."""
+    """Return the title of a listed fixture, such as "Fixture 2 of 40 of bracket"."""
     listed = fixture.listing
     return f"Fixture {listed.rank:,} of {listed.count:,} of {listed.result.workpiece.name}"
 
 
 def make_short_heading(figure: Figure, unit: Unit) -> str:
-    """Return a figure's name, or what it is called where that is too wide, and its unit."""
+    """Return a figure's name, shortened where it is too wide for a column, and its unit."""
     return f"{SHORT.get(figure.key, figure.words)} {find_figure_unit(figure, unit)}".rstrip()
 
 
 def group_peg_columns(toolkit: Toolkit) -> dict[str, list[str]]:
-    """Return the names of the carriers whose pegs stand in one column of a table, by its heading: all clamps
-    in one.
+    """Return the names of carriers by the heading of the table column that holds
+    their pegs; all clamps share one column.
 
     >>> from workhold import Plate, Vise
     >>> group_peg_columns(Vise(pitch=10, columns=2, peg_radius=3))
@@ -103,24 +103,25 @@ def group_peg_columns(toolkit: Toolkit) -> dict[str, list[str]]:
     return groups
 
 
-def place_of(peg: Peg, toolkit: Toolkit) -> str:
-    """Return the name of a peg's hole or line, without the noun of a clamp."""
+def name_peg_place(peg: Peg, toolkit: Toolkit) -> str:
+    """Return the name of a peg's hole or line, for a clamp without its noun."""
     carrier = toolkit.find_carrier(peg.carrier)
     return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
 
 
 def make_heading(figure: Figure, unit: Unit) -> str:
-    """Return a figure's name and unit."""
+    """Return a figure's name followed by its unit, if any."""
     return f"{figure.words} {find_figure_unit(figure, unit)}".rstrip()
 
 
 def find_figure_unit(figure: Figure, unit: Unit) -> str:
+    """Return the sign of the unit in which a figure is shown, "" for none."""
     shown = {"mm": unit.abbreviation, "mm²": f"{unit.abbreviation}²", "MPa": unit.pressure, "N": unit.force}
     return shown.get(figure.unit, figure.unit)
 
 
 def format_rounded(value: float, decimals: int) -> str:
-    """Format a number with ``decimals`` decimals, and zero without a sign.
+    """Return a number with ``decimals`` decimals as text, zero without a sign.
 
     >>> format_rounded(-1e-15, 3), format_rounded(-0.5, 1)
     ('0.000', '-0.5')
@@ -130,14 +131,14 @@ def format_rounded(value: float, decimals: int) -> str:
 
 
 def find_edgeless_distance(workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """Return the edge distance in mm of contacts that have no edge, as figures have it."""
-    from workhold.statics.contact_matrix import wrench_length
+    """Return the length in mm that stands in the edge distance figure for contacts without an edge."""
+    from workhold.statics.contact_matrix import compute_wrench_length
 
-    return wrench_length(workpiece, toolkit)
+    return compute_wrench_length(workpiece, toolkit)
 
 
 def mark_edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
-    """Return the figures by name, with an infinite edge distance for the length that stands for no edge.
+    """Return the figures by key, the edge distance replaced by inf where it stands for no edge.
 
     Parameters
     ----------
@@ -147,12 +148,17 @@ def mark_edgeless(figures: Mapping[str, float], longest: float) -> dict[str, flo
 
 
 def is_edgeless(figures: Mapping[str, float], longest: float) -> bool:
-    """Return whether the edge distance among figures stands for no edge, see :func:`mark_edgeless`."""
+    """Return whether the edge distance among figures is the length that stands
+    for no edge, see :func:`mark_edgeless`.
+    """
     return EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
 
 
 def format_figure_number(figure: Figure, value: float, unit: Unit) -> str:
-    """Format a figure's value as a number of its unit; in words where it is infinite or not known."""
+    """Return a figure's value as a number in a unit, without the unit's sign.
+
+    NaN gives "-"; inf gives "none" for a reading or an edge distance, else "any".
+    """
     if not isfinite(value):
         return "-" if isnan(value) else "none" if figure.key in ("reading", EDGE) else "any"
     if figure.unit == "MPa":
@@ -160,23 +166,23 @@ def format_figure_number(figure: Figure, value: float, unit: Unit) -> str:
     # A caliper reads hundredths of a millimetre.
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
     if figure.unit == "mm":
-        return unit.number(value, decimals)
+        return unit.format_number(value, decimals)
     return format_rounded(value / find_unit_size(figure, unit), figure.decimals)
 
 
 def find_unit_size(figure: Figure, unit: Unit) -> float:
-    """Return how much in mm or N the unit is in which a figure is shown."""
+    """Return the size, in mm, mm² or N, of the unit in which a figure is shown; 1 for other figures."""
     return {"mm": unit.millimetres, "mm²": unit.millimetres**2, "N": unit.newtons}.get(figure.unit, 1.0)
 
 
 def format_figure(figure: Figure, value: float, unit: Unit) -> str:
-    """Return a figure's value with its unit, in words alone where it is infinite or not known."""
+    """Return a figure's value with its unit's sign; only a word where it is inf or NaN."""
     behind = find_figure_unit(figure, unit) if isfinite(value) else ""
     return f"{format_figure_number(figure, value, unit)} {behind}".rstrip()
 
 
 def format_ranked_figure(figure: Figure, value: float, unit: Unit) -> str:
-    """Format a figure's value, rounded as the ranking rounds it in mm, in a unit."""
+    """Return a figure's value in a unit, rounded to the two digits that the ranking compares (in mm or N)."""
     from math import floor, log10
 
     if not isfinite(value):

@@ -21,7 +21,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.contact.curves import CurveTable, curve_table, loosened
+from workhold.contact.curves import CurveTable, loosen_rows, make_curve_table
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
 from workhold.files.result.writer import make_toolkit_fields
@@ -38,14 +38,14 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.base.tables import BRANCH, COLUMN_STEP, FROM, HEAD, LENGTH, ROW_STEP, SHIFT, TAIL, TO
-from workhold.kernels.chord.evaluation import chord, distance_to_end, parameter_on
+from workhold.kernels.chord.evaluation import compute_chord, find_parameter, measure_end_distance
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
-from workhold.search.toolkit_search import lattice_steps
+from workhold.search.toolkit_search import list_lattice_steps
 
 __all__ = ["compute_lesson"]
 
@@ -77,7 +77,7 @@ class ChordRange:
     swapped : whether the second peg of the pair is the tail.
     shift, length : direction in radians and length in mm of the step between the holes.
     branch : which of two chords it is, 1 or -1.
-    low, high : the orientations psi, in radians, around that of the fixture.
+    low, high : least and greatest orientation psi in radians, an interval around that of the fixture.
     """
 
     tail: int
@@ -100,19 +100,21 @@ class CurveFixture:
 
     @property
     def psi(self) -> float:
-        """The orientation in radians, as the part sees the pegs."""
+        """The orientation in radians of the pegs as seen from the part: minus the pose's angle."""
         return -radians(self.fixture.pose.theta_deg)
 
     @property
     def room(self) -> float:
-        """The angle in radians by which the part can turn either way while both pairs touch."""
+        """The angle in radians by which the part can turn either way while
+        both pairs touch; negative for none.
+        """
         return min(
             self.psi - max(one.low for one in self.chords), min(one.high for one in self.chords) - self.psi
         )
 
 
 def compute_lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
-    """Make the lesson of a part.
+    """Return the lesson of a part.
 
     Parameters
     ----------
@@ -132,7 +134,7 @@ def compute_lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[st
     best: tuple[float, Problem, Result, list[CurveFixture]] | None = None
     for query in make_queries(workpiece, avoided):
         try:
-            problem, result = Problem.of(query), answer(query, cancel=cancel)
+            problem, result = Problem.from_query(query), answer(query, cancel=cancel)
         except InputError:
             # The pegs of this vise fit nowhere along the part.
             continue
@@ -150,13 +152,13 @@ def compute_lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[st
 
 
 def list_short_faces(workpiece: Workpiece) -> tuple[int, ...]:
-    """Return the numbers of all faces but the longest ones."""
+    """Return the numbers of all faces except the ``MOST_FACES`` longest."""
     faces = sorted(workpiece.faces, key=lambda face: -face.segment.length)
     return tuple(face.number for face in faces[MOST_FACES:])
 
 
 def make_queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
-    """Make what is asked of one vise after the other, those with one column first."""
+    """Yield the queries to try, one for each vise; vises with one column come first."""
     x0, y0, x1, y1 = workpiece.bounds
     for columns in (1, 2):
         for share in PITCHES:
@@ -166,7 +168,7 @@ def make_queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Que
 
 
 def round_to_two_digits(length: float) -> float:
-    """Return a length to two digits.
+    """Return a length rounded to two significant digits.
 
     >>> round_to_two_digits(17.3), round_to_two_digits(0.4567)
     (17.0, 0.46)
@@ -175,10 +177,12 @@ def round_to_two_digits(length: float) -> float:
 
 
 def find_fixtures_on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
-    """Return the fixtures of a result of which both pairs of pegs stand on chord curves, in its order."""
+    """Return those fixtures of a result whose two pairs of pegs both stand on
+    chord curves, in the result's order.
+    """
     frame = problem.frame
-    steps = lattice_steps(frame.carriers, problem.diameter)
-    table = curve_table(loosened(problem.rows[:, :SEGMENT_LENGTH]), steps)
+    steps = list_lattice_steps(frame.carriers, problem.diameter)
+    table = make_curve_table(loosen_rows(problem.rows[:, :SEGMENT_LENGTH]), steps)
     out = []
     for rank, fixture in enumerate(result, 1):
         first, second = (
@@ -194,7 +198,9 @@ def find_fixtures_on_curves(problem: Problem, result: Result) -> list[CurveFixtu
 def find_chord_range(
     problem: Problem, table: CurveTable, fixture: Fixture, pegs: tuple[Peg, ...], swapped: bool = False
 ) -> ChordRange | None:
-    """Return the chord on which two pegs of a fixture stand, None where they stand on a sliding pair."""
+    """Return the chord on which two pegs of a fixture stand; None where they stand
+    on a sliding pair, or in reverse order.
+    """
     tail, head = pegs
     inverse, center = fixture.pose.inverse, problem.workpiece.center
     places = [
@@ -208,7 +214,9 @@ def find_chord_range(
     for one in alike:
         real = reals[one]
         alpha = real[FROM] - END + (psi + real[SHIFT] - real[FROM] + END) % tau
-        ux, uy = chord(problem.rows[ends[0]], problem.rows[ends[1]], real[LENGTH], alpha, real[BRANCH])[:2]
+        ux, uy = compute_chord(
+            problem.rows[ends[0]], problem.rows[ends[1]], real[LENGTH], alpha, real[BRANCH]
+        )[:2]
         if alpha <= real[TO] + END and hypot(ux - places[0][0], uy - places[0][1]) < SAME:
             low, high = (float(psi + end - alpha) for end in (real[FROM], real[TO]))
             length, branch, shift = (float(real[column]) for column in (LENGTH, BRANCH, SHIFT))
@@ -217,16 +225,23 @@ def find_chord_range(
 
 
 def find_feature(problem: Problem, face: int, place: tuple[float, float]) -> int:
-    """Return the number of the feature of a face that a peg's centre lies on, about the centre of the part's box."""
+    """Return the number of the feature of a face on which a peg's centre
+    lies, farthest from the feature's ends.
+
+    ``place`` is relative to the centre of the part's bounding box, in mm.
+    """
     (own,) = np.nonzero(problem.faces == face)
     return int(
-        max(own, key=lambda k: distance_to_end(problem.rows[k], parameter_on(problem.rows[k], *place)))
+        max(own, key=lambda k: measure_end_distance(problem.rows[k], find_parameter(problem.rows[k], *place)))
     )
 
 
 def describe_lesson(
     problem: Problem, result: Result, found: list[CurveFixture], avoided: int
 ) -> dict[str, Any]:
+    """Return a lesson as plain data with at most ``MOST_FIXTURES`` fixtures;
+    ``avoided`` is the number of faces left out.
+    """
     part = problem.workpiece
     features: NDArray[np.float64] = problem.rows[:, FEATURE] + np.array([0, *part.center, 0, 0, 0, 0, 0])
     return {
@@ -245,6 +260,7 @@ def describe_lesson(
 
 
 def describe_curve_fixture(one: CurveFixture) -> dict[str, Any]:
+    """Return a fixture and its chords as plain data: angles in radians, lengths in mm."""
     fixture = one.fixture
     return {
         "rank": one.rank,

@@ -17,7 +17,7 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from workhold.drawing.bench import Bench, make_bench
+from workhold.drawing.bench import BenchDrawing, make_bench
 from workhold.drawing.panel import describe_fixture
 from workhold.drawing.scene import Box, Scene, View, measure_text
 from workhold.drawing.support_signs import SUPPORT, draw_pad, draw_tip
@@ -44,8 +44,8 @@ from workhold.presenting.moving_picture import (
     find_clamping_directions,
     measure_draw_back,
 )
-from workhold.statics.loads import describe_jaw, load_cases
-from workhold.supports.asking import fixture_supports
+from workhold.statics.loads import compute_load_cases, describe_jaw
+from workhold.supports.asking import find_fixture_supports
 from workhold.supports.words import explain_no_set
 from workhold.units import MILLIMETRE
 
@@ -84,7 +84,7 @@ class TriedForce:
 
     @classmethod
     def from_numbers(cls, numbers: Sequence[float]) -> TriedForce:
-        """Make a push of four numbers, in the order of its fields.
+        """Return a force from four numbers, in the order of its fields.
 
         Raises
         ------
@@ -101,10 +101,12 @@ class TriedForce:
 
     @property
     def numbers(self) -> list[float]:
+        """x, y, size and direction."""
         return [self.x, self.y, self.size, self.direction]
 
     @property
     def load(self) -> Load:
+        """The force as a load."""
         ways = (self.direction, self.direction)
         return Load(points=[(self.x, self.y)], force=self.size, directions=ways, name="pushed")
 
@@ -123,7 +125,7 @@ class LivePicture:
 
     result: Result
     fixture: Fixture
-    bench: Bench
+    bench: BenchDrawing
     view: View
     usual: float
     under: Supports | None = None
@@ -132,38 +134,38 @@ class LivePicture:
     def from_result(
         cls, result: Result, index: int, usual: float, asked: Mapping[str, Any] | None = None
     ) -> LivePicture:
-        """Return the picture of the fixture of an index.
+        """Return the picture of the fixture at an index, from 0.
 
         Parameters
         ----------
         asked : of supports, as keywords of :meth:`workhold.Fixture.supports`; None for none.
         """
         fixture = result[index]
-        under = None if asked is None else fixture_supports(fixture, **{"best": 1, **asked})
+        under = None if asked is None else find_fixture_supports(fixture, **{"best": 1, **asked})
         if under is not None and under.triples:
             # With supports all may stand further on, so that each hole is there.
-            stands = ChosenSupports.of(under).recounted.fixture
+            stands = ChosenSupports.from_supports(under).recounted.fixture
             fixture = fixture if stands.pegs == fixture.pegs else evolve(stands, seating=None)
         bench = make_bench(fixture, result.workpiece, result.toolkit)
-        view = View.fit_box(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
+        view = View.fit_box(bench.extent, Box(0.0, 0.0, *PAGE).grow(-RIM))
         return cls(result, fixture, bench, view, usual, under)
 
     @property
     def title(self) -> str:
-        """What the fixture is called, how it holds, and what to set."""
+        """The fixture's name, how it holds, and the lengths to set, in words."""
         toolkit = self.result.toolkit
         set_to = ", ".join(
             f"{one.sign} = {MILLIMETRE.format_length(one.length)}"
             for one in list_length_settings(self.fixture, toolkit)
         )
-        under = "" if self.under is None else f" {set_words(self.under)}"
+        under = "" if self.under is None else f" {describe_support_set(self.under)}"
         return (
             f"{make_fixture_title(self.fixture)}. {describe_fixture(self.fixture, toolkit)}; {set_to}.{under}"
         )
 
     @property
     def figures(self) -> list[list[str]]:
-        """Names of the figures that count, with their values and units."""
+        """[name, value with unit] of the figures that a table of the result shows."""
         unit, part = MILLIMETRE, self.result.workpiece
         known = mark_edgeless(self.fixture.figures, find_edgeless_distance(part, self.result.toolkit))
         return [
@@ -174,17 +176,18 @@ class LivePicture:
 
     @property
     def center(self) -> Point:
+        """The page point of the part's centre."""
         x, y = self.view(self.fixture.pose.apply(*self.result.workpiece.center))
         return float(x), float(y)
 
     def draw_svg(self) -> str:
-        """Return the picture, with its groups as in ``presenting.moving_picture``."""
+        """Return the picture as SVG text, with its groups as in ``presenting.moving_picture``."""
         bench, view = self.bench, self.view
         scene = Scene.make_page(PAGE, make_fixture_title(self.fixture))
         draw_ground(scene, bench, view)
         ways = find_clamping_directions(bench)
         if self.under is not None and self.under.triples:
-            self.draw_set(scene, ChosenSupports.of(self.under), ways)
+            self.draw_set(scene, ChosenSupports.from_supports(self.under), ways)
         for number in bench.placed:
             group = add_moving_group(scene, view, ways.get(self.fixture.pegs[number].carrier))
             draw_peg(group, bench, view, number)
@@ -192,9 +195,10 @@ class LivePicture:
         return scene.to_svg()
 
     def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
-        """Draw a set of three with the names of its holes; each moves with the jaw that it stands on.
+        """Draw a set of three supports with the names of its holes; each moves
+        with the jaw on which it stands.
 
-        ``ways`` has by its name in which way each carrier clamps; None for those that stand still.
+        ``ways`` maps a carrier's name to the direction in which it clamps, None for those that stand still.
         """
         planned, view = PlannedSupports.from_chosen(chosen), self.view
         corners, radius = (
@@ -211,7 +215,7 @@ class LivePicture:
     def write_name(self, scene: Scene, number: int) -> None:
         """Write the hole of a peg beside it, away from the part and within the page.
 
-        That of a clamp stands beside its body, which is behind the tip.
+        The name of a clamp stands beside its body, which is behind the tip.
         """
         peg, (_, (nx, ny)) = self.fixture.pegs[number], self.bench.contacts[number]
         (x, y), radius = self.view((peg.x, peg.y)), self.bench.get_page_radius(self.view, number)
@@ -223,13 +227,14 @@ class LivePicture:
         scene.add_text(at, peg.hole, NAME, "middle", bold=True, halo=3.0)
 
     def compute_push_arrow(self, push: TriedForce) -> list[float]:
-        """Return the arrow of a push on the page: x and y of the point it acts at, and of its tip."""
+        """Return the arrow of a force on the page: x and y of the point where it acts, then of its tip."""
         (x, y), length = self.view(self.fixture.pose.apply(push.x, push.y)), push.size * USUAL / self.usual
         angle = radians(push.direction + self.fixture.pose.theta_deg)
         return [float(x), float(y), float(x + length * cos(angle)), float(y - length * sin(angle))]
 
     def read_push(self, arrow: Sequence[float]) -> TriedForce:
-        """Return the push of an arrow on the page, in whole newtons; of size 0 for one that is too short.
+        """Return the force of an arrow (x, y, tip x, tip y) on the page, in whole
+        newtons; 0 N for one that is too short.
 
         Raises
         ------
@@ -245,8 +250,8 @@ class LivePicture:
         return TriedForce(float(at[0]), float(at[1]), size, turn % 360.0)
 
     def answer(self, push: TriedForce, jaw_force: float | None, jaw: str | float) -> dict[str, Any]:
-        """Return what a push does: the contact forces as arrows and bars, and whether the fixture holds, in
-        words.
+        """Return what a force does as plain data: contact forces as arrows and shares,
+        whether the fixture holds, and words.
 
         Parameters
         ----------
@@ -266,7 +271,7 @@ class LivePicture:
                 "holds": None,
                 "words": "Press on the part and drag to push it with a force.",
             }
-        (case,) = load_cases(
+        (case,) = compute_load_cases(
             self.fixture, self.result.workpiece, self.result.toolkit, [push.load], jaw_force, None, jaw
         )
         needed, loose = case.needed.value, self.fixture.pegs[case.needed.peg].hole
@@ -305,14 +310,17 @@ class LivePicture:
         }
 
     def compute_force_arrow(self, number: int, length: float) -> list[float]:
-        """Return the arrow of a contact force on the part; it points away from the part for a length below 0."""
+        """Return the arrow of a contact force: x and y of the contact, then of the tip, in page units.
+
+        It points into the part, or away from it where ``length`` is negative.
+        """
         contact, (nx, ny) = self.bench.contacts[number]
         x, y = self.view(contact)
         return [float(x), float(y), float(x - length * nx), float(y + length * ny)]
 
     @property
     def opened(self) -> float:
-        """How far in mm what moves is opened before it closes before the user's eyes."""
+        """How far in mm the moving carrier is opened before a closing is shown."""
         extent = self.bench.extent
         far = max(OPEN_PITCHES * self.bench.shown.pitch, OPEN_SHARE * extent.width)
         for clamp in self.bench.shown.clamps:
@@ -322,23 +330,28 @@ class LivePicture:
         return max(far, 0.0)
 
     def describe_closing(self, keyframes: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
-        """Return what is shown of a closing; without keyframes what moves comes, and the part waits in its place."""
+        """Return a closing as plain data; without keyframes only the moving carrier
+        moves, and the part stays in its place.
+        """
         plain = [[0.0, 0.0, 0.0, self.opened], [0.0, 0.0, 0.0, 0.0]]
         return {"center": list(self.center), "keyframes": list(keyframes) or plain, "words": words}
 
     def make_keyframe(self, pose: Pose, opened: float) -> list[float]:
-        """Return the keyframe in which the part lies in a pose and the moving carrier is open by ``opened`` mm."""
+        """Return the keyframe of a pose: turn in degrees, shift x and y in page units, and opening in mm.
+
+        Turn and shift are relative to the fixture's own pose.
+        """
         x, y = self.view(pose.apply(*self.result.workpiece.center))
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         numbers = turned, x - self.center[0], y - self.center[1], opened
         return [round(float(value), 3) for value in numbers]
 
 
-def set_words(found: Supports) -> str:
-    """Return the best set of three and the clamp on top in a sentence, or why there is none."""
+def describe_support_set(found: Supports) -> str:
+    """Return a sentence on the best set of three supports and the clamp on top, or why there is none."""
     if not found.triples:
         return explain_no_set(found, MILLIMETRE)
-    chosen, number = ChosenSupports.of(found), MILLIMETRE.number
+    chosen, number = ChosenSupports.from_supports(found), MILLIMETRE.format_number
     x, y = chosen.clamp.at
     holes = ", ".join(pad.hole for pad in chosen.pads)
     return f"Supports in {holes}; the clamp on top presses at ({number(x)}, {number(y)})."

@@ -50,7 +50,7 @@ class Markup(str):
 
 
 def escape_html(words: str) -> Markup:
-    """Return the text as HTML that shows it; what is HTML already stays.
+    """Return a text escaped as HTML; a :class:`Markup` is returned unchanged.
 
     >>> escape_html("<b> & co"), escape_html(Markup("<b>"))
     ('&lt;b&gt; &amp; co', '<b>')
@@ -59,17 +59,19 @@ def escape_html(words: str) -> Markup:
 
 
 def make_paragraph(*pieces: str) -> Markup:
+    """Return an HTML paragraph of texts or markup, joined by spaces."""
     return Markup(f"<p>{' '.join(map(escape_html, pieces))}</p>")
 
 
 def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
-    """Return a table; a column whose heading begins with ``>`` is flush right, all others are flush left.
+    """Return an HTML table; a column whose heading begins with ``>`` is aligned right, all others left.
 
-    Which way is said twice: some sanitizers take away styles, and some pages have styles that win.
+    The alignment is given twice, because some sanitizers remove styles and some pages override attributes.
     """
     ways = ["right" if heading.startswith(">") else "left" for heading in headings]
 
     def row(cells: Sequence[str], tag: str) -> str:
+        """Return a table row of cells with the tag "th" or "td"."""
         made = (
             f'<{tag} align="{way}" style="text-align:{way}" nowrap>{escape_html(cell)}</{tag}>'
             for cell, way in zip(cells, ways, strict=True)
@@ -82,10 +84,11 @@ def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup
 
 
 def make_image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
-    """Return a picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
+    """Return a picture as an HTML image ``width`` pixels wide; ``words`` are its alternative text.
 
-    A picture of more than :data:`MOST_SVG` bytes, or :data:`MOST_PAGE` of a page, becomes one of pixels.
-    ``shrinks`` says whether it gets narrower in a narrow page; in a table it should not, as its column would.
+    A picture of more than :data:`MOST_SVG` bytes (:data:`MOST_PAGE` if at least :data:`LARGE` wide) becomes a
+    PNG. ``shrinks`` says whether it may get narrower than ``width`` on a narrow page; in a table it should
+    not.
     """
     drawn, kind = compact_svg(svg).encode("utf-8"), "svg+xml"
     if len(drawn) > (MOST_PAGE if width >= LARGE else MOST_SVG):
@@ -98,7 +101,9 @@ def make_image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup
 
 
 def compact_svg(svg: str) -> str:
-    """Return a picture in fewer bytes: no space between elements, few decimals, what is alike written once."""
+    """Return SVG text with fewer bytes: no space between elements, few decimals,
+    attributes that all children share moved up.
+    """
     ET.register_namespace("", SVG_NAMESPACE)
     root = ET.parse(StringIO(svg)).getroot()
     for element in root.iter():
@@ -114,12 +119,13 @@ def compact_svg(svg: str) -> str:
 
 
 def round_match(match: re.Match[str]) -> str:
+    """Return a matched number with ``DECIMALS`` decimals, without a trailing ".0"."""
     text = f"{float(match[0]):.{DECIMALS}f}".removesuffix(".0")
     return "0" if text == "-0" else text
 
 
 def hoist_attributes(group: ET.Element) -> None:
-    """Give a group what all of its children say of themselves, where they inherit it."""
+    """Move inheritable attributes that all children of a group have in common to the group, in place."""
     if len(group) < 2:
         return
     for name in INHERITED:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from workhold.drawing.bench import Bench, draw_part, draw_pegs
+from workhold.drawing.bench import BenchDrawing, draw_part, draw_pegs
 from workhold.drawing.carriers import (
     draw_clamp,
     draw_flat_jaws,
@@ -19,7 +19,7 @@ from workhold.drawing.carriers import (
     draw_wall,
     limit_holes_drawn,
 )
-from workhold.drawing.scene import Scene, View, number
+from workhold.drawing.scene import Scene, View, format_number
 from workhold.drawing.straps_drawn import draw_straps
 from workhold.geometry.segment import Point
 from workhold.model.clamps import ShownClamp
@@ -29,23 +29,26 @@ __all__ = ["draw_ground", "draw_peg", "measure_draw_back", "add_moving_group", "
 
 
 def add_moving_group(scene: Scene, view: View, clamping: Point | None, **attributes: str) -> Scene:
-    """Add a group for what stands still, or for what clamps in a direction of the plan."""
+    """Add a group of the class ``moves`` for what clamps along ``clamping`` (a
+    plan vector), or ``stands`` if None.
+    """
     if clamping is None:
         return scene.group("stands", None, **attributes)
     (x, y), scale = clamping, view.scale
     return scene.group("moves", None, data_way=f"{x * scale:.9g} {-y * scale:.9g}", **attributes)
 
 
-def find_clamping_directions(bench: Bench) -> dict[str, Point | None]:
+def find_clamping_directions(bench: BenchDrawing) -> dict[str, Point | None]:
     """Return the direction in which each carrier clamps, by its name; None for those that stand still."""
     ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
     return ways | {one.carrier.name: one.clamping for one in bench.shown.clamps}
 
 
 def measure_draw_back(clamp: ShownClamp) -> float | None:
-    """Return how far in mm a clamp can be drawn back from where it clamps; None where only its line is known.
+    """Return how far in mm a clamp can be drawn back from where it clamps; None
+    where its hole or stroke is unknown.
 
-    Below 0 for a clamp that does not reach its tip from its hole.
+    It is negative for a clamp that cannot reach its tip from its hole.
     """
     travel = clamp.carrier.travel
     if clamp.hole is None or travel is None or travel.most is None:
@@ -54,7 +57,7 @@ def measure_draw_back(clamp: ShownClamp) -> float | None:
     return (clamp.tip.x - x) * dx + (clamp.tip.y - y) * dy + travel.most
 
 
-def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
+def draw_ground(scene: Scene, bench: BenchDrawing, view: View) -> None:
     """Draw plates, walls, clamps and the part, whose group has the class ``part``."""
     for carrier in bench.shown.carriers:
         group = add_moving_group(scene, view, carrier.clamping)
@@ -64,7 +67,7 @@ def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
         draw_wall(scene.group("wall"), wall.bar, view, has_ends=wall.standouts is not None)
     for clamp in bench.shown.clamps:
         back = measure_draw_back(clamp)
-        most = {} if back is None else {"data_most": number(max(back, 0.0))}
+        most = {} if back is None else {"data_most": format_number(max(back, 0.0))}
         group = add_moving_group(scene, view, clamp.clamping, **most)
         draw_clamp(group, clamp, bench.shown.carriers[0], view, 1.0)
     if bench.shown.jaws is not None:
@@ -78,7 +81,8 @@ def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
         )
 
 
-def draw_peg(scene: Scene, bench: Bench, view: View, number: int) -> None:
+def draw_peg(scene: Scene, bench: BenchDrawing, view: View, number: int) -> None:
+    """Draw the one peg with index ``number``."""
     draw_pegs(
         scene, evolve(bench, fixture=evolve(bench.fixture, pegs=(bench.fixture.pegs[number],))), view, 1.0
     )

@@ -22,7 +22,7 @@ from workhold.drawing.scene import Box, Scene, View
 from workhold.drawing.seating_words import capitalize_sentence
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.errors import InputError
-from workhold.listing.identity import Entries, make_entries
+from workhold.listing.identity import ShownEntries, make_entries
 from workhold.model.quality import RANKED, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -41,11 +41,11 @@ from workhold.presenting.figure_words import (
     make_fixture_title,
     make_short_heading,
     mark_edgeless,
-    place_of,
+    name_peg_place,
 )
 from workhold.presenting.markup import LARGE, Markup, escape_html, make_image, make_paragraph, make_table
 from workhold.presenting.papers import draw_and_save_fixture, draw_and_save_workpiece
-from workhold.supports.words import explain_no_set, set_headings, set_row
+from workhold.supports.words import explain_no_set, format_set_row, list_set_headings
 from workhold.units import MILLIMETRE
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MOST_ROWS",
     "StillPicture",
-    "WhyNone",
+    "NoFixtureNote",
     "render_fixture_html",
     "render_no_fixtures_html",
     "render_result_html",
@@ -75,7 +75,9 @@ MOST_ROWS, SMALL = 6, 200
 
 
 def render_result_html(result: Result) -> str:
-    """Show a result, see :class:`workhold.Result`: its first entries with their pictures and figures."""
+    """Return a result as HTML: its first entries with pictures and figures;
+    without a fixture, why there is none.
+    """
     if not len(result):
         return render_no_fixtures_html(result)
     shown = make_entries(result)
@@ -86,12 +88,13 @@ def render_result_html(result: Result) -> str:
         (
             make_paragraph(title),
             make_entries_table(result, shown),
-            make_paragraph(*count_sentences(result, shown)),
+            make_paragraph(*list_count_sentences(result, shown)),
         )
     )
 
 
 def render_no_fixtures_html(result: Result) -> str:
+    """Return a result without fixtures as HTML: its notes, and how to ask why."""
     toolkit, found = result.toolkit, sum(result.found.values())
     inside = toolkit.wording.inside.partition(" ")[0]
     title = Markup(
@@ -106,7 +109,8 @@ def render_no_fixtures_html(result: Result) -> str:
     return "\n".join(map(make_paragraph, (title, *map(str, result.notes), *([] if is_open else [more]))))
 
 
-def make_entries_table(result: Result, shown: Entries) -> Markup:
+def make_entries_table(result: Result, shown: ShownEntries) -> Markup:
+    """Return the table of the first ``MOST_ROWS`` shown entries with thumbnails and figures."""
     toolkit, unit = result.toolkit, MILLIMETRE
     figures, ranked = list_shown_figures(result)
     longest = find_edgeless_distance(result.workpiece, toolkit)
@@ -125,7 +129,7 @@ def make_entries_table(result: Result, shown: Entries) -> Markup:
     for index, like in zip(shown.index[:MOST_ROWS].tolist(), shown.like[:MOST_ROWS].tolist(), strict=True):
         fixture = result[index]
         holes = [
-            " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
+            " ".join(name_peg_place(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
             for names in groups.values()
         ]
         known = mark_edgeless(fixture.figures, longest)
@@ -136,7 +140,7 @@ def make_entries_table(result: Result, shown: Entries) -> Markup:
                 f"+{like:,}" if like else "",
                 *holes,
                 " ".join(
-                    unit.number(setting.length, unit.decimals)
+                    unit.format_number(setting.length, unit.decimals)
                     for setting in list_length_settings(fixture, toolkit)
                 ),
                 format_rounded(fixture.pose.written_deg, 3),
@@ -152,7 +156,8 @@ def make_entries_table(result: Result, shown: Entries) -> Markup:
     return make_table(headings, rows)
 
 
-def count_sentences(result: Result, shown: Entries) -> list[str]:
+def list_count_sentences(result: Result, shown: ShownEntries) -> list[str]:
+    """Return sentences on how many entries are shown and fixtures listed, and the result's notes."""
     rows, there, listed = min(MOST_ROWS, len(shown.index)), len(shown.index), len(result)
     out = [f"{rows:,} of {there:,} entries shown; near duplicates stand once, counted under like it."]
     if rows == there:
@@ -164,6 +169,7 @@ def count_sentences(result: Result, shown: Entries) -> list[str]:
 
 
 def make_thumbnail(fixture: Fixture) -> Markup:
+    """Return the small picture of a listed fixture as an HTML image."""
     result = fixture.listing.result
     drawn = draw_thumbnail(fixture, result.workpiece, result.toolkit)
     return make_image(
@@ -172,7 +178,7 @@ def make_thumbnail(fixture: Fixture) -> Markup:
 
 
 def render_fixture_html(fixture: Fixture) -> str | None:
-    """Show a fixture: its picture to set it up from and its figures; None for one of no result."""
+    """Return a fixture as HTML: its picture and its figures; None for a fixture of no result."""
     if fixture.listed is None:
         return None
     words = f"{make_fixture_title(fixture)}: {describe_fixture(fixture, fixture.listing.result.toolkit)}"
@@ -185,18 +191,19 @@ def render_fixture_html(fixture: Fixture) -> str | None:
 
 
 def render_workpiece_html(workpiece: Workpiece) -> str:
-    """Show a workpiece: the part with its faces numbered."""
+    """Return a workpiece as HTML: its picture with numbered faces."""
     return make_paragraph(make_image(draw_and_save_workpiece(workpiece), repr(workpiece).strip("<>"), LARGE))
 
 
 def make_figures_table(fixture: Fixture) -> Markup:
+    """Return the table of a listed fixture's figures with their meaning."""
     result, unit = fixture.listing.result, MILLIMETRE
     noun = result.toolkit.moving.noun
     known = mark_edgeless(fixture.figures, find_edgeless_distance(result.workpiece, result.toolkit))
     rows = []
     for figure in RANKED:
         if figure.key in known:
-            words, meaning = figure.named_for(noun)
+            words, meaning = figure.name_for(noun)
             better = "more" if figure.more_is_better else "less"
             value = format_figure_number(figure, known[figure.key], unit)
             rows.append((words, value, find_figure_unit(figure, unit), better, meaning))
@@ -211,14 +218,16 @@ PAGE, RIM = (360.0, 270.0), 8.0
 
 
 def render_supports_html(supports: Supports) -> str:
-    """Show the supports of a fixture: the best sets of three with the clamp on top, or why there is none."""
+    """Return the supports of a fixture as HTML: the best sets of three with the
+    clamp on top, or why there is none.
+    """
     title = make_paragraph(Markup(f"<b>{escape_html(capitalize_sentence(supports.words))}</b>"))
     if not supports.triples:
         return "\n".join((title, make_paragraph(explain_no_set(supports, MILLIMETRE))))
     loaded = bool(supports.loads)
-    headings = (">rank", "picture", *set_headings(MILLIMETRE, loaded))
+    headings = (">rank", "picture", *list_set_headings(MILLIMETRE, loaded))
     rows = [
-        (str(rank), draw_supports_picture(supports, rank), *set_row(triple, MILLIMETRE, loaded))
+        (str(rank), draw_supports_picture(supports, rank), *format_set_row(triple, MILLIMETRE, loaded))
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
@@ -233,11 +242,12 @@ def render_supports_html(supports: Supports) -> str:
 
 
 def draw_supports_picture(supports: Supports, rank: int) -> Markup:
-    chosen = ChosenSupports.of(supports, rank)
+    """Return the picture of the set of supports with this rank, from 1, as an HTML image."""
+    chosen = ChosenSupports.from_supports(supports, rank)
     query = supports.query
     bench = make_bench(chosen.recounted.fixture, query.workpiece, query.toolkit)
     scene = Scene.make_page(PAGE, query.workpiece.name)
-    view = View.fit_box(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
+    view = View.fit_box(bench.extent, Box(0.0, 0.0, *PAGE).grow(-RIM))
     draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
     draw_supports(scene, PlannedSupports.from_chosen(chosen), view)
     names = ", ".join(pad.hole for pad in chosen.pads)
@@ -245,7 +255,7 @@ def draw_supports_picture(supports: Supports, rank: int) -> Markup:
 
 
 def render_seating_html(seating: Seating) -> str:
-    """Show a seating: its figures, and where else closing can come to rest."""
+    """Return a seating as HTML: its figures, its seats and its warnings."""
     unit, known = MILLIMETRE, seating.figures
     figures = [
         (one.words, format_figure_number(one, known[one.key], unit), find_figure_unit(one, unit), one.meaning)
@@ -266,10 +276,10 @@ def render_seating_html(seating: Seating) -> str:
         rows.append(
             (
                 str(number),
-                unit.number(seat.difference),
+                unit.format_number(seat.difference),
                 format_rounded(turned, 1),
                 "over" if seat.mirrored else "up",
-                "-" if depth is None or not isfinite(depth) else unit.number(depth),
+                "-" if depth is None or not isfinite(depth) else unit.format_number(depth),
                 "right" if seat.is_own else "same place" if seat.same_place else "wrong",
             )
         )
@@ -286,7 +296,7 @@ def render_seating_html(seating: Seating) -> str:
 
 
 @frozen(repr=False)
-class WhyNone:
+class NoFixtureNote:
     """Why there is no fixture that a query asks for.
 
     Parameters
@@ -300,16 +310,17 @@ class WhyNone:
 
     @property
     def words(self) -> str:
-        """The sentence that says which rule took the last contacts away, or that there are none."""
+        """The sentence that names the rule that removed the last contacts, or says that there were none."""
         last = self.explanation.last_rule
         if not self.explanation.contacts or last is None:
             return str(self.explanation.no_contacts or "")
         return f"The last contacts were removed by: {last}. {self.explanation.asked_words}".rstrip()
 
     def __repr__(self) -> str:
-        return f"<WhyNone: {self.words}>"
+        return f"<NoFixtureNote: {self.words}>"
 
     def _repr_html_(self) -> str:
+        """Return the rules, the nearest miss and what would help as HTML."""
         pieces = [make_paragraph(Markup(f"<b>{escape_html(self.words)}</b>"))]
         explanation, toolkit = self.explanation, self.query.toolkit
         if explanation.removals:
@@ -331,8 +342,14 @@ class WhyNone:
         return "\n".join(pieces)
 
 
-def explain_no_fixtures(result: Result) -> WhyNone:
-    """Explain a result without fixtures, see :meth:`workhold.Result.why_none`."""
+def explain_no_fixtures(result: Result) -> NoFixtureNote:
+    """Return why a result has no fixtures, see :meth:`workhold.Result.why_none`.
+
+    Raises
+    ------
+    InputError
+        For a result with fixtures, and where it is not proven that there are none.
+    """
     from workhold.search.explaining import explain
 
     if len(result):
@@ -341,7 +358,7 @@ def explain_no_fixtures(result: Result) -> WhyNone:
         raise InputError(
             f"it is not proven that there is no fixture. {' '.join(map(str, result.notes))}".strip()
         )
-    return WhyNone(result.query, explain(result.query))
+    return NoFixtureNote(result.query, explain(result.query))
 
 
 @frozen(repr=False)
@@ -360,6 +377,7 @@ class StillPicture:
         return f"<StillPicture: fixture {self.rank} of {len(self.result)} of {self.result.workpiece.name}>"
 
     def _repr_html_(self) -> str:
+        """Return the fixture as HTML with a hint on the library for the widget."""
         words = f"This picture moves with another library: pip install '{REQUIREMENTS['anywidget']}'."
         return f"{render_fixture_html(self.result[self.rank - 1])}\n{make_paragraph(words)}"
 
@@ -373,7 +391,9 @@ def make_result_widget(
     jaw: str | float,
     supports: Mapping[str, Any] | None,
 ) -> FixtureWidget | StillPicture:
-    """Make the widget of a result, see :meth:`workhold.Result.widget`."""
+    """Return the widget of a result, see :meth:`workhold.Result.widget`; a
+    :class:`StillPicture` without ``anywidget``.
+    """
     if find_spec("anywidget") is None:
         if not 1 <= rank <= len(result):
             raise InputError(f"there is no fixture {rank}: {len(result)} are listed.")

@@ -22,7 +22,7 @@ from workhold.files.replacing import refuse_output
 from workhold.listing.identity import make_entries
 from workhold.model.jaw_hold import JawHold
 from workhold.model.moved_setup import move_fixture_by_holes
-from workhold.model.setup import part_zero
+from workhold.model.setup import choose_part_zero
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.assembly import STEP_ENDINGS, Assembly, read_part_shape
 from workhold.presenting.markup import LARGE, make_image
@@ -56,6 +56,7 @@ class Picture(str):
     __slots__ = ()
 
     def _repr_html_(self) -> str:
+        """Return the picture as an HTML image."""
         return make_image(self, "A picture of workhold", LARGE)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> Picture:
@@ -77,6 +78,7 @@ class Picture(str):
 
 
 def save_picture(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
+    """Return SVG text as a picture, written to ``path`` unless that is None."""
     picture = Picture(svg)
     return picture if path is None else picture.save(path, overwrite=overwrite)
 
@@ -89,7 +91,9 @@ def draw_and_save_workpiece(
     unit: str = "mm",
     overwrite: bool = False,
 ) -> Picture:
-    """Draw the workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
+    """Return a picture of the workpiece with numbered faces, see
+    :meth:`workhold.Workpiece.draw`; write it if asked.
+    """
     return save_picture(
         draw_features(workpiece, peg_radius=peg_radius, unit=find_unit(unit)), path, overwrite
     )
@@ -103,7 +107,9 @@ def draw_and_save_fixture(
     unit: str = "mm",
     overwrite: bool = False,
 ) -> Picture:
-    """Draw the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
+    """Return a picture of the fixture to set up from, see :meth:`workhold.Fixture.draw`; write it if
+    asked.
+    """
     listed = fixture.listing
     words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
     result, planned = listed.result, make_planned_path(listed.result, listed.row)
@@ -116,7 +122,9 @@ def draw_and_save_fixture(
 def draw_and_save_result(
     result: Result, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False
 ) -> Picture:
-    """Draw thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
+    """Return a picture with thumbnails of the best fixtures, see
+    :meth:`workhold.Result.draw`; write it if asked.
+    """
     if not len(result):
         raise InputError(" ".join(("there is no fixture to draw.", *map(str, result.reasons))))
     return save_picture(draw_best_thumbnails(result, make_entries(result), find_unit(unit)), path, overwrite)
@@ -143,8 +151,10 @@ def save_sheet(
     overwrite: bool = False,
     **asked: Any,
 ) -> None:
-    """Write the setup sheet or the set-up of a fixture, see :meth:`workhold.Fixture.save_sheet`."""
-    from workhold.statics.loads import jaw_stiffness
+    """Write the setup sheet, or the set-up for a CAM system, of a fixture, see
+    :meth:`workhold.Fixture.save_sheet`.
+    """
+    from workhold.statics.loads import read_jaw_stiffness
 
     listed, ending = fixture.listing, Path(path).suffix.lower()
     if fixture != listed.result[listed.row]:
@@ -158,7 +168,7 @@ def save_sheet(
     if supports is not None:
         if ending in MODEL_ENDINGS and ending not in STEP_ENDINGS:
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
-        settings["supports"] = ChosenSupports.under(fixture, supports, best)
+        settings["supports"] = ChosenSupports.from_fixture(fixture, supports, best)
     if part is not None:
         if ending not in STEP_ENDINGS and settings["material"] is None:
             raise InputError(
@@ -168,14 +178,14 @@ def save_sheet(
     if ending in MODEL_ENDINGS:
         write_model(path, listed.result, listed.row + 1, settings)
         return
-    settings["jaw"] = jaw_stiffness(settings["jaw"])
+    settings["jaw"] = read_jaw_stiffness(settings["jaw"])
     settings["day"] = settings["day"] or date.today()
     settings |= {"number": listed.rank, "count": listed.count, "others": listed.others, "loads": loads}
     write_paper(path, listed.result, listed.row + 1, result_file, settings)
 
 
 def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
-    """Refuse a file whose hash would stand on the sheet of a fixture that is not in it."""
+    """Raise InputError for a result file that does not list this fixture at its rank."""
     from workhold.files.result.one_fixture import read_one
 
     listed = fixture.listing
@@ -190,7 +200,9 @@ def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
 
 
 def is_set_up_alike(one: Fixture, other: Fixture) -> bool:
-    """Return whether two fixtures are one, as far as a file rounds its numbers."""
+    """Return whether two fixtures have the same type, holes and faces, and the
+    same pose and travel to ``AGREEMENT``.
+    """
     pegs = [[(peg.hole, peg.touched) for peg in fixture.pegs] for fixture in (one, other)]
     numbers = [
         (fixture.pose.theta_deg, fixture.pose.x, fixture.pose.y, fixture.travel) for fixture in (one, other)
@@ -232,12 +244,13 @@ def write_paper(
         from workhold.presenting.bent import bend_sheet
 
         settings["bending"] = bend_sheet(result[rank - 1], settings, shape)
-    pages = draw_setup_sheet(result, rank, result_hash=hash_of(result_file), **settings)
+    pages = draw_setup_sheet(result, rank, result_hash=compute_file_hash(result_file), **settings)
     write_bytes(path, make_pages_file(pages, ending, settings["day"]))
 
 
 def make_pages_file(pages: Sequence[str], ending: str, day: date) -> bytes:
-    """Make a file of pages in SVG: a PDF of a day, or one SVG or PNG with the pages below each other.
+    """Return the bytes of a file of SVG pages: a PDF dated ``day``, or one SVG or
+    PNG with the pages below each other.
 
     Parameters
     ----------
@@ -255,8 +268,8 @@ def make_pages_file(pages: Sequence[str], ending: str, day: date) -> bytes:
     )
 
 
-def hash_of(result_file: str | Path | None) -> str:
-    """Return the SHA-256 of a file in hexadecimal; empty where there is none."""
+def compute_file_hash(result_file: str | Path | None) -> str:
+    """Return the SHA-256 of a file in hexadecimal; "" for None."""
     if result_file is None:
         return ""
     try:
@@ -285,14 +298,16 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
 
 
 def make_model_file(fixture: Fixture, result: Result, ending: str, settings: dict[str, Any]) -> bytes:
-    """Make the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
+    """Return the bytes of a set-up's file for a CAM system, or of its list of pins; see
+    :func:`write_model`.
+    """
     toolkit, unit = result.toolkit, settings["unit"]
-    zero = part_zero(result.workpiece, settings["zero"], unit)
+    zero = choose_part_zero(result.workpiece, settings["zero"], unit)
     at, clearance, chosen = settings["at"], settings["clearance"], settings.get("supports")
     if chosen is None:
         fixture = move_fixture_by_holes(fixture, toolkit, find_placing(fixture, result, at))
     elif at is not None:
-        chosen = chosen.standing_at(at)
+        chosen = chosen.move_to_hole(at)
     if isinstance(fixture.hold, JawHold) and ending in (".csv", ".dxf"):
         raise InputError(
             f"a {ending} of a set-up is of pegs, and a {toolkit.noun} has none: let the name end in .step, or take the "

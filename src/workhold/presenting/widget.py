@@ -17,22 +17,22 @@ from workhold.errors import InputError
 from workhold.model.result import Result
 from workhold.presenting.closing_shown import show_closing
 from workhold.presenting.live_picture import LivePicture, TriedForce
-from workhold.statics.loads import jaw_stiffness
+from workhold.statics.loads import read_jaw_stiffness
 
 __all__ = ["FixtureWidget"]
 
 
 def read_browser_file(name: str) -> str:
-    """Return a file that goes to the browser."""
+    """Return the text of a file in ``static`` that goes to the browser."""
     return resources.files("workhold.presenting").joinpath("static", name).read_text(encoding="utf-8")
 
 
 class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
     """The fixtures of a result, one at a time.
 
-    Traits that may be set are ``rank`` from 1, ``force`` and ``jaw_force`` in N, 0 for as much as is needed.
-    A force is x, y, size and direction, in mm, N and degrees of the part's coordinates. Traits to read are
-    ``answer`` and ``closing``.
+    Traits that may be set are ``rank`` from 1, ``force``, and ``jaw_force`` in N (0 for as much as is
+    needed). A force is x, y, size and direction, in mm, N and degrees of the part's frame; empty for none.
+    Traits to read are ``answer`` and ``closing``.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         if not 0 < usual < float("inf"):
             raise InputError(f"a usual force of {usual:g} N cannot be used: give one above 0.")
         self.result, self.usual, self.jaw, self.supports = result, usual, jaw, supports
-        jaw_stiffness(jaw)
+        read_jaw_stiffness(jaw)
         super().__init__(rank=rank, count=len(result), jaw_force=jaw_force or 0.0)
         self.show()
         self.observe(self.show, "rank")
@@ -89,12 +89,14 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         self.observe(self.close_jaws, "asked_closing")
 
     @traitlets.validate("rank")  # type: ignore[untyped-decorator]
-    def within(self, proposal: Any) -> int:
-        """Keep the rank among those that there are."""
+    def limit_rank(self, proposal: Any) -> int:
+        """Return the proposed rank clamped to the ranks that exist."""
         return min(max(int(proposal["value"]), 1), len(self.result))
 
     def show(self, _: Any = None) -> None:
-        """Draw the fixture of the rank, with the force that is tried out."""
+        """Set ``picture`` and ``closing`` for the fixture of the current rank, and
+        answer the force that is tried out.
+        """
         self.live = LivePicture.from_result(self.result, self.rank - 1, self.usual, self.supports)
         with self.hold_sync():
             self.picture = {
@@ -107,7 +109,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
             self.push()
 
     def take(self, change: Any) -> None:
-        """Take the arrow that was dragged in the browser for the force."""
+        """Set ``force`` from the arrow that was dragged in the browser, and answer it."""
         *arrow, number = change["new"]
         try:
             pushed = self.live.read_push(arrow)
@@ -119,6 +121,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         self.push(number=number)
 
     def push(self, _: Any = None, number: int = 0) -> None:
+        """Set ``answer`` to what the current force does; ``number`` is that of the browser's question."""
         try:
             pushed = TriedForce.from_numbers(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
             found = self.live.answer(pushed, self.jaw_force or None, self.jaw)
@@ -132,15 +135,18 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return self.live.answer(TriedForce(0.0, 0.0, 0.0, 0.0), None, self.jaw)
 
     def close_jaws(self, _: Any = None) -> None:
+        """Set ``closing`` to the closing of the fixture shown."""
         self.closing = {**show_closing(self.live), "number": self.asked_closing}
 
     def _repr_mimebundle_(self, **wanted: Any) -> Any:
+        """Return the widget's data by MIME type, with the fixture's HTML for viewers without widgets."""
         bundle = super()._repr_mimebundle_(**wanted)
         if bundle is not None:
             bundle[0]["text/html"] = self._repr_html_()
         return bundle
 
     def _repr_html_(self) -> str:
+        """Return the HTML of the fixture shown."""
         return self.result[self.rank - 1]._repr_html_() or ""
 
     def __repr__(self) -> str:

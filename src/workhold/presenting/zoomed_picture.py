@@ -17,7 +17,15 @@ from attrs import evolve
 
 from workhold.conventions import AGREEMENT
 from workhold.drawing.annotation import LabelPlacer
-from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, TOUCHED, Bench, compute_force_arrow, find_face
+from workhold.drawing.bench import (
+    ARROW,
+    PART_FILL,
+    PEG_FILL,
+    TOUCHED,
+    BenchDrawing,
+    compute_force_arrow,
+    find_face,
+)
 from workhold.drawing.plan import (
     LONGEST_ARROW,
     avoid_drawing,
@@ -27,14 +35,14 @@ from workhold.drawing.plan import (
     make_gripped_face_tag,
     make_peg_label,
 )
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, measure_text, number
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, format_number, measure_text
 from workhold.fixels.carrier import make_column_letters
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
+from workhold.geometry.segment import Arc, Line, Point, Segment, compute_bounding_box
 from workhold.model.clamps import ShownClamp
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
-from workhold.model.shown import Dimension, Shown
+from workhold.model.shown import ShownLength, ShownSetUp
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.moving_picture import (
     add_moving_group,
@@ -59,17 +67,24 @@ DOT = 5.0
 
 
 def add_fixed_size_group(scene: Scene, at: Point, axes: str = "xy", **attributes: str) -> Scene:
-    """Add a group that keeps its size about a page point when the picture is zoomed."""
-    return scene.group("kept", None, data_at=f"{number(at[0])} {number(at[1])}", data_axes=axes, **attributes)
+    """Add a group that keeps its size about a page point when the picture is zoomed along ``axes``."""
+    return scene.group(
+        "kept",
+        None,
+        data_at=f"{format_number(at[0])} {format_number(at[1])}",
+        data_axes=axes,
+        **attributes,
+    )
 
 
 def draw_zoomed(
-    bench: Bench, title: str, size: tuple[float, float], placed: Sequence[float] = (0.0, 0.0)
+    bench: BenchDrawing, title: str, size: tuple[float, float], placed: Sequence[float] = (0.0, 0.0)
 ) -> str:
-    """Draw a fixture as it stands, for a frame of a size in page units.
+    """Return a fixture drawn for a frame of ``size`` (width, height) in page units.
 
-    ``data-model-to-page`` of the picture is the map from where the fixture is listed, from which it stands on by
-    ``placed`` mm. ``data-extent`` is in mm of that frame, and ``data-rim`` in page units.
+    ``placed`` is the shift in mm from where the fixture is listed to where it is drawn. The picture's
+    ``data-model-to-page`` is the map from mm at the listed place, ``data-extent`` is in mm of that frame, and
+    ``data-rim`` in page units.
 
     Returns
     -------
@@ -86,8 +101,8 @@ def draw_zoomed(
     (dx, dy), scale = placed, view.scale
     scene.element.set("data-model-to-page", View(scale, view.left + scale * dx, view.top - scale * dy).matrix)
     ends = (extent.x0 - dx, extent.y0 - dy, extent.x1 - dx, extent.y1 - dy)
-    scene.element.set("data-extent", " ".join(map(number, ends)))
-    scene.element.set("data-rim", " ".join(map(number, rim)))
+    scene.element.set("data-extent", " ".join(map(format_number, ends)))
+    scene.element.set("data-rim", " ".join(map(format_number, rim)))
     draw_ground(scene, bench, view)
     scene.group("over-part")
     draw_forces(scene, bench, view)
@@ -105,9 +120,9 @@ def draw_zoomed(
     return ET.tostring(scene.element, encoding="unicode")
 
 
-def hide_unreached_clamps(seen: Shown) -> Shown:
-    """Return what shows, of a clamp that does not reach its tip from its hole its line alone and no length to
-    set.
+def hide_unreached_clamps(seen: ShownSetUp) -> ShownSetUp:
+    """Return what shows, with only the line, and no length to set, of clamps that
+    cannot reach their tip from their hole.
 
     Four contacts that are no fixture have such clamps.
     """
@@ -119,14 +134,17 @@ def hide_unreached_clamps(seen: Shown) -> Shown:
 
 
 def is_reached(clamp: ShownClamp) -> bool:
+    """Return whether a clamp's tip is within its stroke from its hole; True
+    where its hole or stroke is unknown.
+    """
     back, travel = measure_draw_back(clamp), clamp.carrier.travel
     if back is None or travel is None or travel.most is None:
         return True
     return -AGREEMENT <= back <= travel.most - travel.least + AGREEMENT
 
 
-def draw_forces(scene: Scene, bench: Bench, view: View) -> None:
-    """Draw the force of each contact, which keeps its size."""
+def draw_forces(scene: Scene, bench: BenchDrawing, view: View) -> None:
+    """Draw the force of each contact as an arrow that keeps its size."""
     forces = scene.group("forces")
     # Under straps nothing is known of the locators' forces.
     for index in range(len(bench.fixture.pegs) if bench.fixture.hold is None else 0):
@@ -136,10 +154,12 @@ def draw_forces(scene: Scene, bench: Bench, view: View) -> None:
         group.add_arrow(tail, tip, ARROW, 2.4, 12)
 
 
-def name_holes(scene: Scene, bench: Bench, view: View) -> list[Box]:
-    """Name columns and rows beside their plates; return the boxes of those in which something stands.
+def name_holes(scene: Scene, bench: BenchDrawing, view: View) -> list[Box]:
+    """Write the names of columns and rows beside their plates; return the
+    boxes of the names visible without zoom.
 
-    ``data-step`` of the others is of how many one has room, as long as the picture is not zoomed.
+    For names without pegs ``data-step`` is the interval at which one has room, as long as the picture is not
+    zoomed.
     """
     boxes = []
     for shown in bench.shown.carriers:
@@ -166,7 +186,7 @@ def name_holes(scene: Scene, bench: Bench, view: View) -> list[Box]:
         used = {*map(make_column_letters, shown.used_columns), *(str(row + 1) for row in shown.used_rows)}
         for at, off, count, name, end, step in names:
             bold = name in used
-            told = {} if bold else {"data_number": str(count), "data_step": number(step)}
+            told = {} if bold else {"data_number": str(count), "data_step": format_number(step)}
             place = (at[0] + off[0], at[1] + off[1])
             text = add_fixed_size_group(group, at, **told).add_text(
                 place, name, AXIS_NAME, end, bold, BLACK if bold else GREY
@@ -175,12 +195,17 @@ def name_holes(scene: Scene, bench: Bench, view: View) -> list[Box]:
             if bold or count % max(1, ceil(step)) == 0:
                 wide = measure_text(name, AXIS_NAME, bold)
                 middle = place[0] + {"middle": 0.0, "start": wide / 2, "end": -wide / 2}[end]
-                boxes.append(Box.about((middle, place[1]), wide, AXIS_NAME))
+                boxes.append(Box.from_center((middle, place[1]), wide, AXIS_NAME))
     return boxes
 
 
-def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, measured: Dimension) -> Box:
-    """Return the dimensions a length to set above the drawing, or at its right; return the box of its words."""
+def draw_travel(
+    scene: Scene, bench: BenchDrawing, view: View, page: Box, place: int, measured: ShownLength
+) -> Box:
+    """Draw a length to set as a dimension above the drawing, or at its right; return the box of its words.
+
+    ``place`` is the index of the length among those that are shown.
+    """
     upright, frame, others = measured.is_upright, view.map_box(bench.extent), bench.shown.measured
     nearer = sum(one.is_upright == upright for one in others[:place])
     line = frame.x1 + BESIDE + FARTHER * nearer if upright else frame.y0 - ABOVE - FARTHER * nearer
@@ -213,14 +238,23 @@ def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, m
     text.set("class", "dimension-text")
     text.set("data-sign", measured.setting.sign)
     text.set("data-length", repr(float(measured.setting.length)))
-    return Box.about((x, y), *((SETTING, wide) if upright else (wide, SETTING)))
+    return Box.from_center((x, y), *((SETTING, wide) if upright else (wide, SETTING)))
 
 
 def draw_labels(
-    scene: Scene, bench: Bench, view: View, page: Box, taken: Sequence[Box], ways: dict[str, Point | None]
+    scene: Scene,
+    bench: BenchDrawing,
+    view: View,
+    page: Box,
+    taken: Sequence[Box],
+    ways: dict[str, Point | None],
 ) -> None:
-    """Name pegs by their holes and touched faces by their numbers, where that hides least."""
-    placer = LabelPlacer(page.grown(-1.0))
+    """Write the hole names of pegs and the numbers of touched faces where they hide least.
+
+    ``taken`` are boxes to keep off; ``ways`` maps a carrier's name to its direction of clamping, None if it
+    stands still.
+    """
+    placer = LabelPlacer(page.grow(-1.0))
     avoid_drawing(placer, bench, view)
     for box in taken:
         placer.avoid_box(box)
@@ -255,13 +289,17 @@ SMALL_PEG = 2.4
 
 
 def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
-    """Draw the part with the faces that are touched and the pegs, to choose a fixture by; SVG text."""
+    """Return a small picture of the part with its touched faces and pegs, to
+    choose a fixture by, as SVG text.
+    """
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     radii = [toolkit.find_carrier(peg.carrier).peg_radius for peg in fixture.pegs]
-    boxes = [Box(*bounding_box(segment)) for loop in loops for segment in loop]
-    boxes += [Box.about((peg.x, peg.y), 2 * r, 2 * r) for peg, r in zip(fixture.pegs, radii, strict=True)]
-    view = View.fit_box(reduce(Box.union, boxes), Box(0.0, 0.0, *SMALL).grown(-SMALL_RIM))
+    boxes = [Box(*compute_bounding_box(segment)) for loop in loops for segment in loop]
+    boxes += [
+        Box.from_center((peg.x, peg.y), 2 * r, 2 * r) for peg, r in zip(fixture.pegs, radii, strict=True)
+    ]
+    view = View.fit_box(reduce(Box.unite, boxes), Box(0.0, 0.0, *SMALL).grow(-SMALL_RIM))
     scene = Scene.make_page(SMALL, "")
     outline = "".join(f"{make_polyline_path(loop, view)}Z" for loop in loops)
     scene.add_path(outline, fill=PART_FILL, fill_rule="evenodd")
@@ -276,15 +314,15 @@ def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
 
 
 def make_polyline_path(segments: Sequence[Segment], view: View) -> str:
-    """Return SVG path data through the ends of lines and points of arcs; those too close to be told apart are
-    left out.
+    """Return SVG path data of segments as a polyline; points less than ``CLOSEST``
+    page units from the last are left out.
     """
     points: list[Point] = []
     for segment in segments:
         count = 1 if isinstance(segment, Line) else ceil(segment.length * view.scale / STEP)
         way = segment.sign if isinstance(segment, Arc) else 1.0
         for k in range(count + 1):
-            point = view(segment.at(way * segment.half_extent * (2 * k / count - 1)))
+            point = view(segment.compute_point(way * segment.half_extent * (2 * k / count - 1)))
             if not points or dist(point, points[-1]) >= CLOSEST:
                 points.append(point)
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points)

@@ -41,14 +41,14 @@ __all__ = [
     "CandidateBox",
     "compute_contact_value",
     "compute_contact_values",
-    "end_slacks",
-    "extent",
-    "from_origin",
+    "compute_end_slacks",
+    "measure_extent",
+    "measure_from_origin",
     "is_empty",
-    "narrowed",
-    "places",
-    "slacks",
-    "wrench_minors",
+    "narrow_box",
+    "place_contacts",
+    "compute_slacks",
+    "compute_wrench_minors",
 ]
 
 # Newton steps of psi: each squares its error, so that these reach the precision in force.
@@ -57,12 +57,12 @@ STEPS = 4
 
 @frozen
 class CandidateBox:
-    """A candidate: features touched, pegs' places, and where its solution may be.
+    """A candidate: the features touched, the pegs' places, and bounds of its solution.
 
     Parameters
     ----------
-    features : four rows of ``geometry.segment.segment_rows``, each with the slack of both ends.
-    offsets : four pegs' places in mm from the first peg, without the separation.
+    features : four rows of ``geometry.segment.make_segment_rows``, each with the slack of both ends.
+    offsets : places (x, y) of the four pegs in mm from the first peg, without the separation.
     standing : how many of the pegs, the first ones, are on the carrier that stands still.
     middle : psi in radians, tail x, tail y and separation in mm.
     reach : how far each may be off.
@@ -75,15 +75,18 @@ class CandidateBox:
     reach: tuple[float, float, float, float]
 
 
-def from_origin(row: Sequence[float], point: tuple[Any, Any]) -> tuple[Any, Any]:
-    """A point in mm from the middle of a line, or from the centre of an arc."""
+def measure_from_origin(row: Sequence[float], point: tuple[Any, Any]) -> tuple[Any, Any]:
+    """Return a point minus a feature's origin, which is the middle of a line or the centre of an arc,
+    in mm.
+    """
     return point[0] - row[X] - row[REST_X], point[1] - row[Y] - row[REST_Y]
 
 
 def compute_contact_value(row: Sequence[float], ray: tuple[Any, Any]) -> Any:
-    """Contact equation in mm: distance from a line, or (distance² - R²) / 2R from an arc's centre.
+    """Return the contact equation in mm: distance from a line, or
+    (distance² - R²) / 2R with the distance from an arc's centre.
 
-    The peg's place is as ``from_origin`` gives it.
+    ``ray`` is the peg's centre as :func:`from_origin` returns it.
     """
     x, y = ray
     if row[IS_ARC] == 0.0:
@@ -92,16 +95,24 @@ def compute_contact_value(row: Sequence[float], ray: tuple[Any, Any]) -> Any:
 
 
 def measure_axis_length(row: Sequence[float]) -> arb:
-    """The length of a line's axis, which rounding makes other than 1."""
+    """Return the length of a line's axis, which is 1 up to rounding, as a ball."""
     return (arb(row[AXIS_X]) ** 2 + arb(row[AXIS_Y]) ** 2).sqrt()
 
 
 @frozen(eq=False)
 class BoxContacts:
-    """Contacts on a box of unknowns, as balls.
+    """Four contacts on a box of unknowns, as balls; lengths in mm.
 
-    They are centres, also from the features' origins, unit normals (outward), arms from the first peg to
-    each, equations and their Jacobian.
+    Parameters
+    ----------
+    rows : of the features touched.
+    centers : of the pegs, in the part's frame.
+    rays : the same points from the features' origins, see :func:`measure_from_origin`.
+    normals : outward unit normals.
+    arms : from the first peg to each.
+    values : contact equations.
+    slopes : their Jacobian over (psi, tail x, tail y, separation), a row for each peg.
+    axis : cosine and sine of psi.
     """
 
     rows: Sequence[Sequence[float]]
@@ -115,7 +126,9 @@ class BoxContacts:
 
 
 def list_turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
-    """Yields the axis of the pegs (cosine and sine), and then each peg's arm from the first one."""
+    """Yield the axis of the pegs (cosine and sine of psi), and then
+    each of the four pegs' arms (x, y) from the first peg.
+    """
     psi, _, _, separation = unknowns
     cosine, sine = psi.cos(), psi.sin()
     yield cosine, sine
@@ -128,22 +141,23 @@ def list_turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tup
 
 
 def compute_contact_values(box: CandidateBox, unknowns: Sequence[Any]) -> list[Any]:
-    """The four contact equations at balls of the unknowns, or at power series of them."""
+    """Return the four contact equations in mm at balls of the unknowns, or at power series of them."""
     _, x, y, _ = unknowns
     _, *arms = list_turned_pegs(box, unknowns)
     return [
-        compute_contact_value(row, from_origin(row, (x + arm[0], y + arm[1])))
+        compute_contact_value(row, measure_from_origin(row, (x + arm[0], y + arm[1])))
         for row, arm in zip(box.features, arms, strict=True)
     ]
 
 
-def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
+def place_contacts(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
+    """Return the contacts of a candidate at balls of the unknowns (psi, tail x, tail y, separation)."""
     _, x, y, _ = unknowns
     (cosine, sine), *arms = list_turned_pegs(box, unknowns)
     centers, rays, normals, values, slopes = [], [], [], [], []
     for k, (row, turned) in enumerate(zip(box.features, arms, strict=True)):
         center = (x + turned[0], y + turned[1])
-        ray = from_origin(row, center)
+        ray = measure_from_origin(row, center)
         if row[IS_ARC] == 0.0:
             size = measure_axis_length(row)
             gradient = (row[AXIS_Y] / size, -row[AXIS_X] / size)
@@ -161,15 +175,17 @@ def places(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
     return BoxContacts(box.features, centers, rays, normals, arms, values, slopes, (cosine, sine))
 
 
-def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
-    """Numbers that are positive for a fixture: ends, gap, span, closure, clamping (for the better sign).
+def compute_slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
+    """Return the numbers that must all be positive for a fixture, as balls.
 
-    Of one of two clamps they are ends, the determinant of the standing pegs' wrenches, and its push.
+    They belong to ends, gap, span, closure and clamping, for that sign of the forces for which they are
+    larger. For one of two clamps (``limits.pairing``) they are those of ends and gap, the determinant of the
+    standing pegs' wrenches, and the clamp's push. ``minors`` are those of :func:`wrench_minors`.
     """
     out = [
         slack
         for row, ray in zip(box.features, here.rays, strict=True)
-        for slack in end_slacks(row, ray, limits.contact_margin)
+        for slack in compute_end_slacks(row, ray, limits.contact_margin)
     ]
     along = [here.axis[0] * x + here.axis[1] * y for x, y in here.centers]
     if isfinite(limits.gap):
@@ -197,10 +213,11 @@ def slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: 
     return out
 
 
-def end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> list[arb]:
-    """Distances in mm of a contact from breaking the rule of ends at both ends of its feature, in balls.
+def compute_end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> list[arb]:
+    """Return how far in mm a contact is from breaking the rule of ends
+    at the high and the low end of its feature, as balls.
 
-    The contact's place is seen from the feature's origin, see ``from_origin``.
+    Return an empty list for a whole circle. ``ray`` is the peg's centre as :func:`from_origin` returns it.
     """
     dx, dy = ray
     along = dx * row[AXIS_X] + dy * row[AXIS_Y]
@@ -213,14 +230,17 @@ def end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> lis
     return [to_high - margin + row[HIGH_SLACK], to_low - margin + row[LOW_SLACK]]
 
 
-def wrench_minors(here: BoxContacts, length: float) -> list[arb]:
-    """Signed 3 x 3 minors of the wrenches (n, q x n / L); in balls, as no kernel is."""
+def compute_wrench_minors(here: BoxContacts, length: float) -> list[arb]:
+    """Return the four signed 3 x 3 minors of the wrenches
+    (n, q x n / L) as balls; minor k is that without contact k.
+    """
     n = here.normals
     # The minors do not depend on the point that moments are taken about; from the first peg the others are
     # known best.
     t = [(q[0] * m[1] - q[1] * m[0]) / length for q, m in zip(here.arms, n, strict=True)]
 
     def cross(i: int, j: int) -> arb:
+        """Return the cross product of the normals of contacts i and j as a ball."""
         one, two = here.rows[i], here.rows[j]
         if one[IS_ARC] == 0.0 or two[IS_ARC] == 0.0:
             return n[i][0] * n[j][1] - n[i][1] * n[j][0]
@@ -240,18 +260,26 @@ def wrench_minors(here: BoxContacts, length: float) -> list[arb]:
 
 
 def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
-    """Whether some contact equation has no zero, or some rule is broken, everywhere in a place."""
+    """Return whether a box certainly has no fixture: some contact
+    equation has no zero in it, or some rule is broken.
+
+    ``here`` are the contacts on the box.
+    """
     if any(value > 0 or value < 0 for value in here.values):
         return True
-    minors = wrench_minors(here, limits.wrench_length)
+    minors = compute_wrench_minors(here, limits.wrench_length)
     if not limits.pairing and any(minor > 0 for minor in minors) and any(minor < 0 for minor in minors):
         # Of opposite signs, so that nothing closes.
         return True
-    return any(slack < 0 for slack in slacks(box, here, minors, limits))
+    return any(slack < 0 for slack in compute_slacks(box, here, minors, limits))
 
 
-def narrowed(box: CandidateBox, limits: Limits) -> CandidateBox | None:
-    """The part of a box that meets the gap rule and all pairs of parallel lines; None where nothing does."""
+def narrow_box(box: CandidateBox, limits: Limits) -> CandidateBox | None:
+    """Return the part of a box that meets the gap rule and all pairs
+    of contacts with parallel lines; None for no part.
+
+    The box itself is returned where neither psi nor the separation becomes narrower.
+    """
     psi, separation = arb(box.middle[0], box.reach[0]), arb(box.middle[3], box.reach[3])
     if isfinite(limits.gap):
         left = max(x for x, _ in box.offsets[: box.standing])
@@ -270,7 +298,7 @@ def narrowed(box: CandidateBox, limits: Limits) -> CandidateBox | None:
             if not closer.rad() < psi.rad():
                 break
             psi = closer
-    turn, along = extent(psi), extent(separation)
+    turn, along = measure_extent(psi), measure_extent(separation)
     if turn[1] >= box.reach[0] and along[1] >= box.reach[3]:
         return box
     middle, reach = (
@@ -279,15 +307,17 @@ def narrowed(box: CandidateBox, limits: Limits) -> CandidateBox | None:
     return evolve(box, middle=middle, reach=reach)
 
 
-def extent(ball: arb) -> tuple[float, float]:
-    """The middle of a ball as a double, and how far around it the ball reaches at most."""
+def measure_extent(ball: arb) -> tuple[float, float]:
+    """Return the middle of a ball as a double, and an upper bound of
+    the distance from it to any point of the ball.
+    """
     middle = float(ball.mid())
     reach = float((abs(ball - middle)).upper())
     return middle, nextafter(reach, inf)
 
 
 def find_parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
-    """Pairs of contacts whose features are lines of exactly one direction."""
+    """Yield pairs of contact numbers whose features are lines of exactly the same or opposite direction."""
     lines = [k for k, row in enumerate(box.features) if row[IS_ARC] == 0.0]
     for one, other in combinations(lines, 2):
         a, b = box.features[one], box.features[other]
@@ -296,11 +326,12 @@ def find_parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
 
 
 def find_common_orientation(box: CandidateBox, one: int, other: int, psi: arb, separation: arb) -> arb | None:
-    """The part of psi at which two contacts with parallel lines may both touch; None where none is.
+    """Return the part of psi at which contacts ``one`` and ``other``
+    with parallel lines may both touch; None for no part.
 
     Their difference is n R(psi) a - c. The arm a leads from one peg to the other, and c is the distance of
-    their lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u -
-    c / a_x with u = psi - phi. So the separation in a_x does not count where a_y and c are 0. A step of the
+    their lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u - c /
+    a_x with u = psi - phi. So the separation in a_x does not count where a_y and c are 0. A step of the
     interval Newton method in u makes psi smaller.
     """
     first, second = box.features[one], box.features[other]

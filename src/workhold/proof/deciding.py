@@ -25,16 +25,23 @@ from workhold.contact.problem import Problem, Progress
 from workhold.kernels.base.tables import Lattice, Setting
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
-from workhold.kernels.proof.interval_newton import interval_newton, jacobians
+from workhold.kernels.proof.interval_newton import compute_jacobians, contract_boxes
 from workhold.kernels.proof.merging import merge_boxes
-from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certified, discs_around
-from workhold.model.search_report import GIVEN_UP, UNBOUNDED, Undecided
+from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certify_records, make_discs
+from workhold.model.search_report import GIVEN_UP, UNBOUNDED, UndecidedCandidate
 from workhold.proof.degenerate import hold_nothing
 
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import BoxOutcome
 
-__all__ = ["Account", "Course", "decided", "is_standing", "merged", "read_peg_integers"]
+__all__ = [
+    "SearchReport",
+    "DecidingProgress",
+    "decide_records",
+    "is_standing",
+    "merge_overlapping_records",
+    "read_peg_integers",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -51,14 +58,14 @@ GRACE = 0.5
 
 
 @define(eq=False)
-class Course:
-    """How far the deciding of records has come, and whether it is to stop.
+class DecidingProgress:
+    """The progress of deciding records, and whether it is to stop; shared by threads.
 
     Parameters
     ----------
-    total : records to decide.
-    progress : called with the fraction done and how many records still may be fixtures.
-    cancel : when set, what takes long is left out, and all that is not decided soon after.
+    total : number of records to decide.
+    progress : called with the fraction done and the number of records that still may be fixtures.
+    cancel : when set, stages that take long are left out, and after ``GRACE`` seconds all others.
     """
 
     total: int
@@ -71,6 +78,9 @@ class Course:
 
     @property
     def is_stopped(self) -> bool:
+        """Whether somebody has asked to stop; the first such reading sets
+        the deadline ``GRACE`` seconds ahead.
+        """
         stopped = self.deadline < inf or (self.cancel is not None and self.cancel.is_set())
         if stopped:
             self.deadline = min(self.deadline, perf_counter() + GRACE)
@@ -78,15 +88,17 @@ class Course:
 
     @property
     def is_late(self) -> bool:
-        """Whether it is some time since somebody asked to stop."""
+        """Whether somebody asked to stop and the deadline has passed."""
         return self.is_stopped and perf_counter() >= self.deadline
 
     def give_up(self) -> None:
-        """Stop at once: nobody waits for the outcome."""
+        """Stop at once: nobody waits for the result."""
         self.deadline = 0.0
 
     def advance(self, done: int, kept: int) -> None:
-        """Records are decided, and some of them kept; may be called from any thread."""
+        """Count ``done`` more records as decided and ``kept`` more as
+        kept, and report; may be called from any thread.
+        """
         with self.lock:
             self.done += done
             self.kept += kept
@@ -95,27 +107,34 @@ class Course:
 
     @property
     def fraction(self) -> float:
-        """The part of the records that is decided."""
+        """The fraction of the records that is decided, from 0 to 1."""
         return min(self.done / max(self.total, 1), 1.0)
 
 
 @define(frozen=True)
-class Account:
-    """What became of records: how many there were, and how many are proven fixtures.
+class SearchReport:
+    """The account of deciding records.
 
-    Escalated are records that the first certificate left open, and left are those not decided when the work
-    was stopped. Given up are pairs of chords that the engine did not follow to their crossings.
+    Parameters
+    ----------
+    records : number of records, without those left.
+    verified : of proven fixtures.
+    escalated : of records that the first certificate left open, and those given up.
+    given_up : of pairs of chords that the engine did not follow to their crossings.
+    undecided : candidates that stayed undecided.
+    left : number of records not decided when the work was stopped.
     """
 
     records: int
     verified: int
     escalated: int
     given_up: int
-    undecided: tuple[Undecided, ...]
+    undecided: tuple[UndecidedCandidate, ...]
     left: int = 0
 
     @classmethod
-    def together(cls, accounts: list[Account]) -> Account:
+    def sum_up(cls, accounts: list[SearchReport]) -> SearchReport:
+        """Return one report with the sums of all numbers, and all undecided candidates in order."""
         lost = tuple(item for account in accounts for item in account.undecided)
         records, verified, escalated, given_up, left = (
             sum(getattr(account, name) for account in accounts)
@@ -125,18 +144,25 @@ class Account:
 
 
 def is_standing(standing: NDArray[Any]) -> NDArray[np.bool_]:
-    """Which of the four pegs are on the carrier that stands still, (N, 4), from how many are (N,)."""
+    """Return which of the four pegs are on the carrier that stands
+    still, (N, 4), from the numbers (N,) of those pegs.
+    """
     return np.arange(4) < standing[:, None]
 
 
 def read_peg_integers(records: Array) -> tuple[IntArray, IntArray, IntArray]:
-    """Features, columns and rows of records, each (N, 4)."""
+    """Return the features, columns and rows of the pegs of records (M, 19), each (M, 4) of whole numbers.
+
+    See ``kernels.contact.record`` for the layout of records.
+    """
     whole = records[:, record.FEATURES : record.PSI].astype(np.int64)
     return whole[:, :4], whole[:, 4:8], whole[:, 8:12]
 
 
-def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
-    """Places of the four pegs of one record in mm from the first, without the separation."""
+def compute_peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
+    """Return the places (x, y) of the four pegs of one record in mm
+    from the first peg's hole, without the separation.
+    """
     _, columns, rows = (numbers[0] for numbers in read_peg_integers(row[None]))
     moves = ~is_standing(row[[record.STANDING]])[0]
     height = rows * lattice.pitch_y + moves * lattice.row_offset
@@ -144,7 +170,11 @@ def peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]]:
 
 
 def bound_box(records: Array, length: float) -> Array:
-    """Distances (N, 4) in mm of the exact (L psi, tail x, tail y, separation) from those of records."""
+    """Return bounds (N, 4) in mm of the distances of the exact (L
+    psi, tail x, tail y, separation) from those of records.
+
+    ``length`` is L in mm, by which moments are divided.
+    """
     turn, radius = (
         length * records[:, record.REACH] + LEAST_REACH,
         records[:, record.LARGEST_RADIUS] + LEAST_REACH,
@@ -152,46 +182,56 @@ def bound_box(records: Array, length: float) -> Array:
     return np.stack([turn, radius, radius, 2.0 * (radius + turn)], axis=1)
 
 
-def decided(records: Array, problem: Problem, course: Course | None = None) -> tuple[Array, Account]:
-    """Decides records.
+def decide_records(
+    records: Array, problem: Problem, course: DecidingProgress | None = None
+) -> tuple[Array, SearchReport]:
+    """Decide which records are fixtures.
 
     Parameters
     ----------
-    records : (N, 19) from an engine, laid out as ``kernels.contact.record`` says.
-    course : notes how far the work has come, and is asked whether to stop.
+    records : (N, 19) from an engine, laid out as described in ``kernels.contact.record``.
+    course : receives the progress, and tells whether to stop.
 
     Returns
     -------
-    (those proven to be fixtures, with their solutions to the last digits; what became of all)
+    (records (M, 19) proven to be fixtures, with their solutions to the last digits; report on all records)
     """
-    course = course or Course(len(records))
+    course = course or DecidingProgress(len(records))
     if course.is_late:
-        return records[:0], Account(0, 0, 0, 0, (), len(records))
+        return records[:0], SearchReport(0, 0, 0, 0, (), len(records))
     given_up = records[:, record.STANDING] < 0.0
-    lost = [undecided(row, problem, GIVEN_UP) for row in records[given_up]] if given_up.any() else []
+    lost = (
+        [make_undecided_candidate(row, problem, GIVEN_UP) for row in records[given_up]]
+        if given_up.any()
+        else []
+    )
     chosen = records[~given_up] if lost else records
-    proven, rest = sifted(chosen, problem, problem.setting)
+    proven, rest = sift_records(chosen, problem, problem.setting)
     rest = rest[~hold_nothing(rest, problem)]
     course.advance(len(records) - len(rest), len(proven))
-    found, reasons, left = escalated(rest, problem, course)
+    found, reasons, left = escalate_records(rest, problem, course)
     if len(found):
         proven = np.concatenate([proven, found])
-    account = Account(
+    account = SearchReport(
         len(records) - left, len(proven), len(rest) - left + len(lost), len(lost), (*lost, *reasons), left
     )
     return proven, account
 
 
-def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
-    """Records that a certificate proves, with their solutions, and those it leaves open, as they are."""
+def sift_records(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
+    """Return the records that a certificate proves to be fixtures, with
+    polished solutions, and the records it leaves open.
+
+    Records with a certificate that they are no fixtures are in neither.
+    """
     solutions = np.empty((len(records), 4))
     verdicts, work = np.full(len(records), PROVEN, np.int8), (np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)))
-    for outline, kept in clearances(problem, setting):
+    for outline, kept in list_clearances(problem, setting):
         discs, judged = (
-            discs_around(outline, max(kept.standing_radius, kept.moving_radius)),
+            make_discs(outline, max(kept.standing_radius, kept.moving_radius)),
             np.empty(len(records), np.int8),
         )
-        certified(records, problem.rows, outline, discs, kept, solutions, judged, *work)
+        certify_records(records, problem.rows, outline, discs, kept, solutions, judged, *work)
         verdicts = np.minimum(verdicts, judged)
     is_proven = np.flatnonzero(verdicts == PROVEN)
     proven = records.take(is_proven, axis=0)
@@ -199,25 +239,32 @@ def sifted(records: Array, problem: Problem, setting: Setting) -> tuple[Array, A
     return proven, records[verdicts == OPEN]
 
 
-def clearances(problem: Problem, setting: Setting) -> list[tuple[Array, Setting]]:
-    """Outlines (S, 10), and what pegs keep from each: those that do not meet it, nothing."""
+def list_clearances(problem: Problem, setting: Setting) -> list[tuple[Array, Setting]]:
+    """Return pairs of an outline (S, 10) and a setting whose peg
+    radius is -inf for pegs that do not meet this outline.
+
+    One pair where both carriers meet the same outline, else two.
+    """
     one, other = problem.outlines
     if one is other:
         return [(one, setting)]
     return [(one, setting._replace(moving_radius=-inf)), (other, setting._replace(standing_radius=-inf))]
 
 
-def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, list[Undecided], int]:
-    """Decides open records by the later stages: fixtures, undecided ones, and how many were left.
+def escalate_records(
+    records: Array, problem: Problem, course: DecidingProgress
+) -> tuple[Array, list[UndecidedCandidate], int]:
+    """Decide open records by stages 2 to 4.
 
-    Records are left when the work is stopped.
+    Return (proven fixtures (M, 19), undecided candidates, number of records left because the work was
+    stopped). See ``kernels.contact.record`` for the layout of records.
     """
     if len(records) == 0:
         return records, [], 0
     setting = problem.setting._replace(backward_error=0.0)
-    proven, rest = sifted(records, problem, setting)
+    proven, rest = sift_records(records, problem, setting)
     course.advance(len(records) - len(rest), len(proven))
-    together = merged(rest, problem)
+    together = merge_overlapping_records(rest, problem)
     course.advance(len(rest) - len(together), 0)
     found, waiting, left = [proven], [together[:0]], 0
     begin, size = 0, OPEN_BLOCK
@@ -234,14 +281,16 @@ def escalated(records: Array, problem: Problem, course: Course) -> tuple[Array, 
         # Most boxes take microseconds, some a tenth of a second.
         size = min(2 * size, LARGEST_BLOCK) if perf_counter() - since < QUICK else OPEN_BLOCK
     in_balls, reasons, left_out = decide_records_in_balls(
-        merged(np.concatenate(waiting), problem), problem, course
+        merge_overlapping_records(np.concatenate(waiting), problem), problem, course
     )
     return np.concatenate([*found, in_balls]), reasons, left + left_out
 
 
 def decide_by_interval_newton(records: Array, problem: Problem, setting: Setting) -> tuple[Array, Array]:
-    """Open records contracted: the fixtures found, and the boxes that stay open."""
-    slopes = jacobians(records, problem.rows, setting)
+    """Contract open records in double precision (stage 3); return the
+    proven fixtures, and the boxes that stay open.
+    """
+    slopes = compute_jacobians(records, problem.rows, setting)
     bounded = np.isfinite(records).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     known = records[bounded]
     reach = bound_box(known, problem.wrench_length)
@@ -249,13 +298,17 @@ def decide_by_interval_newton(records: Array, problem: Problem, setting: Setting
     reach[reach[:, 0] >= FLAT * reach[:, 1]] = 1.0
     left, _, right = np.linalg.svd(slopes[bounded] * reach[:, None, :])
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
-    verdicts, roots = interval_newton(known, problem.rows, setting, frames)
-    proven, still_open = sifted(roots, problem, setting)
+    verdicts, roots = contract_boxes(known, problem.rows, setting, frames)
+    proven, still_open = sift_records(roots, problem, setting)
     return proven, np.concatenate([records[~bounded], known[verdicts == OPEN], still_open])
 
 
-def merged(records: Array, problem: Problem) -> Array:
-    """Records of the same pegs on the same features whose boxes overlap, as one with a box around all."""
+def merge_overlapping_records(records: Array, problem: Problem) -> Array:
+    """Return records with those of the same pegs on the same features
+    whose boxes overlap merged into one box around all.
+
+    Records are sorted where there are two or more.
+    """
     if len(records) < 2:
         return records
     order = np.lexsort(records.T[::-1])
@@ -268,12 +321,14 @@ def merged(records: Array, problem: Problem) -> Array:
     may[1:] = same & np.isfinite(reach[1:]).all(axis=1)
     heads = heads[: merge_boxes(low, high, may, heads)]
     for k in heads[heads >= 0].tolist():
-        records[k] = around(records[k], low[k], high[k], problem.wrench_length)
+        records[k] = enclose_corners(records[k], low[k], high[k], problem.wrench_length)
     return np.asarray(records[np.where(heads < 0, -1 - heads, heads)])
 
 
-def around(row: Array, low: Array, high: Array, length: float) -> Array:
-    """A record whose box holds what is between two corners, (4,) each in mm."""
+def enclose_corners(row: Array, low: Array, high: Array, length: float) -> Array:
+    """Return a copy of a record with the smallest box that holds both
+    corners (4,), in mm (L psi, tail x, tail y, separation).
+    """
     center, half = (low + high) / 2.0, (high - low) / 2.0
     out = row.copy()
     out[record.PSI : record.REACH] = center[0] / length, *center[1:]
@@ -282,22 +337,23 @@ def around(row: Array, low: Array, high: Array, length: float) -> Array:
 
 
 def decide_records_in_balls(
-    records: Array, problem: Problem, course: Course
-) -> tuple[Array, list[Undecided], int]:
-    """Decides records one by one in ball arithmetic: fixtures, undecided ones, and how many were left.
+    records: Array, problem: Problem, course: DecidingProgress
+) -> tuple[Array, list[UndecidedCandidate], int]:
+    """Decide records one by one in ball arithmetic (stage 4).
 
-    Records are left when the work is stopped.
+    Return (proven fixtures (M, 19), undecided candidates, number of records left because the work was
+    stopped). See ``kernels.contact.record`` for the layout of records.
     """
     found: list[Array] = []
-    reasons: list[Undecided] = []
+    reasons: list[UndecidedCandidate] = []
     left = 0
     for k, row in enumerate(records):
-        outcome = record_in_balls(row, problem, course)
+        outcome = decide_record_in_balls(row, problem, course)
         if outcome is None:
             left = len(records) - k
             break
         if outcome.reason:
-            reasons.append(undecided(row, problem, outcome.reason))
+            reasons.append(make_undecided_candidate(row, problem, outcome.reason))
         for solution in outcome.fixtures:
             fixed = row.copy()
             fixed[record.PSI : record.REACH] = solution
@@ -306,10 +362,10 @@ def decide_records_in_balls(
     return np.array(found).reshape(-1, record.RECORD_LENGTH), reasons, left
 
 
-def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome | None:
-    """One record decided in ball arithmetic; None when the work was stopped before."""
+def decide_record_in_balls(row: Array, problem: Problem, course: DecidingProgress) -> BoxOutcome | None:
+    """Decide one record in ball arithmetic; return None when the work was stopped before."""
     from workhold.proof.ball_contacts import CandidateBox
-    from workhold.proof.interval_newton import BoxOutcome, solutions_in
+    from workhold.proof.interval_newton import BoxOutcome, find_solutions
 
     length = problem.wrench_length
     turn, right, up, along = (float(v) for v in bound_box(row[None], length)[0])
@@ -318,22 +374,26 @@ def record_in_balls(row: Array, problem: Problem, course: Course) -> BoxOutcome 
     psi, x, y, separation = (float(v) for v in row[record.PSI : record.REACH])
     box = CandidateBox(
         features=problem.rows[row[record.FEATURES : record.COLUMNS].astype(np.int64)].tolist(),
-        offsets=peg_places(row, problem.frame.lattice),
+        offsets=compute_peg_places(row, problem.frame.lattice),
         standing=int(row[record.STANDING]),
         middle=(psi, x, y, separation),
         reach=(turn / length, right, up, along),
     )
     with BALLS:
-        return solutions_in(box, problem.limits, lambda: course.is_stopped)
+        return find_solutions(box, problem.limits, lambda: course.is_stopped)
 
 
-def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
+def make_undecided_candidate(row: Array, problem: Problem, reason: str) -> UndecidedCandidate:
+    """Return a record (19,) as an undecided candidate, in the toolkit's frame, with a reason.
+
+    See ``kernels.contact.record`` for the layout of records.
+    """
     feature, column, line = read_peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
     standing = np.abs(row[[record.STANDING]]).astype(np.int64)
     kind = problem.toolkit.arrangements[problem.toolkit.find_arrangement_numbers(standing)[0]].title
     theta = float((np.degrees(-row[record.PSI]) + 90.0 * problem.frame.quarters) % 360.0)
     reach = float(np.degrees(row[record.REACH]))
-    across, up = problem.frame.step_back(column[0], line[0])
+    across, up = problem.frame.map_step_to_toolkit(column[0], line[0])
     holes = tuple(across.tolist()), tuple(up.tolist())
-    return Undecided(kind, tuple(faces), *holes, theta, reason, reach if isfinite(reach) else None)
+    return UndecidedCandidate(kind, tuple(faces), *holes, theta, reason, reach if isfinite(reach) else None)

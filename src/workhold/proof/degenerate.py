@@ -59,12 +59,14 @@ Points = NDArray[np.complex128]
 
 
 class TouchedFeatures(NamedTuple):
-    """What one peg touches in each of N records; points and directions of the plane are complex numbers.
+    """The features that one peg touches in each of N records; points
+    and directions of the plane are complex numbers.
 
     Parameters
     ----------
-    is_arc : (N,) whether that is an arc.
-    middle, axis, radius : (N,) an arc's centre and radius in mm; a point of a line, its direction, and 0.
+    is_arc : (N,) whether the feature is an arc.
+    middle, axis, radius : (N,) an arc's centre, the direction of its middle and its radius in mm; a point of
+        a line, its direction, and 0.
     place : (N,) of the peg's hole on its carrier, in mm.
     """
 
@@ -75,6 +77,7 @@ class TouchedFeatures(NamedTuple):
     place: Points
 
     def take(self, numbers: NDArray[np.int64]) -> TouchedFeatures:
+        """Return the features of the records with these indices."""
         is_arc, middle, axis, radius, place = self
         return TouchedFeatures(
             is_arc[numbers], middle[numbers], axis[numbers], radius[numbers], place[numbers]
@@ -82,33 +85,38 @@ class TouchedFeatures(NamedTuple):
 
 
 def hold_nothing(records: Array, problem: Problem) -> Bools:
-    """Which records (N, 19) are of contacts that hold nothing, whatever solution is in their boxes."""
+    """Return, for each record (N, 19), whether its contacts hold nothing, whatever solution is in its box.
+
+    See ``kernels.contact.record`` for the layout of records.
+    """
     rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
-    pegs = touched(records, rows, problem.frame.lattice)
+    pegs = list_touched_features(records, rows, problem.frame.lattice)
     standing = records[:, record.STANDING]
     # Of one of two clamps it is the standing pegs that must fix the pose.
     asked = range(3 if problem.pairing else 4)
     out = np.zeros(len(records), np.bool_)
     for one, other in combinations(asked, 2):
         together = (one >= standing) == (other >= standing)
-        out |= together & antipodal(pegs[one], pegs[other])
+        out |= together & are_antipodal(pegs[one], pegs[other])
     for triple in combinations(asked, 3):
         a, b, c = (pegs[n] for n in triple)
-        out |= parallel(a, b) & parallel(b, c) & parallel(a, c)
-        out |= concentric(a, b) & concentric(b, c) & concentric(a, c)
+        out |= are_parallel(a, b) & are_parallel(b, c) & are_parallel(a, c)
+        out |= are_concentric(a, b) & are_concentric(b, c) & are_concentric(a, c)
     # No carrier but the one that stands still has three pegs.
     left = np.flatnonzero(~out & (standing == 3.0))
     if len(left):
         some, three = records[left], [peg.take(left) for peg in pegs[:3]]
         for k in range(3):
             a, b, c = three[k - 2], three[k - 1], three[k]
-            out[left] |= turning(some, a, b, c, problem.wrench_length) | sliding(some, a, b, c)
-            out[left] |= lined_up(some, a, b, c, problem.wrench_length)
+            out[left] |= are_turning(some, a, b, c, problem.wrench_length) | are_sliding(some, a, b, c)
+            out[left] |= are_lined_up(some, a, b, c, problem.wrench_length)
     return out
 
 
-def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatures]:
-    """What each of the four pegs of records touches, given the rows (N, 4, 12) of their features."""
+def list_touched_features(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatures]:
+    """Return the features touched by each of the four pegs of
+    records, given the rows (N, 4, 12) of these features.
+    """
     is_arc = rows[..., IS_ARC] != 0.0
     middle, axis = rows[..., X] + 1j * rows[..., Y], rows[..., AXIS_X] + 1j * rows[..., AXIS_Y]
     radius = np.where(is_arc, rows[..., RADIUS], 0.0)
@@ -119,54 +127,71 @@ def touched(records: Array, rows: Array, lattice: Lattice) -> list[TouchedFeatur
     ]
 
 
-def dot(a: Points, b: Points) -> Array:
+def compute_dot_products(a: Points, b: Points) -> Array:
+    """Return the scalar products of plane vectors given as complex numbers."""
     return np.asarray((np.conj(a) * b).real)
 
 
 def cross(a: Points, b: Points) -> Array:
+    """Return the cross products of plane vectors given as complex numbers."""
     return np.asarray((np.conj(a) * b).imag)
 
 
-def agree(one: Array, other: Array, bends: Array) -> Bools:
-    """Which lengths agree, given what bends where they do not, all in mm."""
+def are_equal_lengths(one: Array, other: Array, bends: Array) -> Bools:
+    """Return, for each pair of lengths, whether they agree to within
+    the tolerance that belongs to the length ``bends``.
+
+    All are in mm; the tolerance is ``DEPENDENT``² / 2 times ``bends``.
+    """
     return np.asarray(np.abs(one - other) <= DEPENDENT**2 / 2.0 * bends)
 
 
-def parallel(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
-    """Where both are lines, and parallel."""
+def are_parallel(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
+    """Return, for each record, whether both features are lines, and parallel."""
     return np.asarray(~a.is_arc & ~b.is_arc & (np.abs(cross(a.axis, b.axis)) <= PARALLEL))
 
 
-def concentric(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
-    """Where both are arcs about one centre."""
+def are_concentric(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
+    """Return, for each record, whether both features are arcs about one centre."""
     return np.asarray(a.is_arc & b.is_arc & (np.abs(a.middle - b.middle) <= SAME_CENTER))
 
 
-def antipodal(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
-    """Where two pegs of one carrier are as far apart or as near as what they touch allows."""
+def are_antipodal(a: TouchedFeatures, b: TouchedFeatures) -> Bools:
+    """Return, for each record, whether two pegs of one carrier are as
+    far apart, or as near, as their features allow.
+    """
     between, apart = np.abs(b.place - a.place), np.abs(b.middle - a.middle)
     whole = apart + a.radius + b.radius
     one, two = (np.where(each.is_arc, each.radius, np.inf) for each in (a, b))
     bends = np.minimum(between, np.minimum(one, two))
     least = 2.0 * np.maximum(apart, np.maximum(a.radius, b.radius)) - whole
-    arcs = a.is_arc & b.is_arc & (agree(between, whole, bends) | agree(between, least, bends))
+    arcs = (
+        a.is_arc
+        & b.is_arc
+        & (are_equal_lengths(between, whole, bends) | are_equal_lengths(between, least, bends))
+    )
     axis = np.where(a.is_arc, b.axis, a.axis)
     gap = np.abs(cross(axis, b.middle - a.middle)) - a.radius - b.radius
-    lines = (parallel(a, b) | (a.is_arc != b.is_arc)) & agree(between, gap, bends)
+    lines = (are_parallel(a, b) | (a.is_arc != b.is_arc)) & are_equal_lengths(between, gap, bends)
     return np.asarray(arcs | lines)
 
 
-def both(known: Array) -> Iterator[Array]:
-    """The two values of a square root, of what is less than 0 by rounding that of 0."""
+def yield_both_roots(known: Array) -> Iterator[Array]:
+    """Yield the two square roots of numbers, the positive ones first; negative numbers count as 0."""
     root = np.sqrt(np.maximum(known, 0.0))
     yield root
     yield -root
 
 
-def turning(
+def are_turning(
     records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
 ) -> Bools:
-    """Where the pegs of a and b turn about one centre, and that of c reaches its feature at one place."""
+    """Return, for each record, whether it is of the family "turning":
+    a and b about one centre, c at one place only.
+
+    ``length`` is L in mm, by which moments are divided. Every solution in the record's box must be of the
+    family.
+    """
     chord = b.place - a.place
     apart = np.where(chord == 0.0, 1.0, np.abs(chord))
     along = (apart + (a.radius - b.radius) * (a.radius + b.radius) / apart) / 2.0
@@ -181,40 +206,50 @@ def turning(
     to_center = a.middle - c.middle
     far = np.where(c.is_arc, np.abs(to_center), np.abs(cross(c.axis, to_center)))
     some, every = np.zeros(len(records), np.bool_), np.ones(len(records), np.bool_)
-    for beside in both((a.radius - along) * (a.radius + along)):
+    for beside in yield_both_roots((a.radius - along) * (a.radius + along)):
         center = a.place + (along + 1j * beside) * chord / apart
         distance = np.abs(center - c.place)
         lever = np.where(c.is_arc, distance * far, distance)
         bends = length**2 * np.where(c.is_arc, c.radius, 1.0) / np.where(lever == 0.0, 1.0, lever)
-        ends = agree(c.radius, np.abs(distance - far), bends) | agree(c.radius, distance + far, bends)
+        ends = are_equal_lengths(c.radius, np.abs(distance - far), bends) | are_equal_lengths(
+            c.radius, distance + far, bends
+        )
         here = np.abs(center - seen) <= reach
         some |= here
-        every &= ~here | np.where(c.is_arc, ends, agree(distance, far, bends))
-    return np.asarray(concentric(a, b) & some & every)
+        every &= ~here | np.where(c.is_arc, ends, are_equal_lengths(distance, far, bends))
+    return np.asarray(are_concentric(a, b) & some & every)
 
 
-def sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures) -> Bools:
-    """Where the pegs of a and b slide along parallel lines, and that of c on a way that touches an arc."""
+def are_sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures) -> Bools:
+    """Return, for each record, whether it is of the family "sliding": a and
+    b on parallel lines, c passing an arc tangentially.
+
+    Every solution in the record's box must be of the family.
+    """
     chord, third = b.place - a.place, c.place - a.place
     size = np.where(chord == 0.0, 1.0, np.abs(chord))
     gap, height = cross(b.middle - a.middle, a.axis), cross(c.middle - a.middle, a.axis)
-    ahead, aside = dot(chord, third) / size**2, cross(chord, third) / size**2
+    ahead, aside = compute_dot_products(chord, third) / size**2, cross(chord, third) / size**2
     turn = records[:, record.REACH] + LEAST_REACH
     some, every = np.zeros(len(records), np.bool_), np.ones(len(records), np.bool_)
-    for along in both((size - gap) * (size + gap)):
+    for along in yield_both_roots((size - gap) * (size + gap)):
         # The chord lies ``along`` the axis and by the gap to its right.
         psi = np.angle((along - 1j * gap) * a.axis / np.where(chord == 0.0, 1.0, chord))
         here = np.abs(np.exp(1j * (records[:, record.PSI] - psi)) - 1.0) <= turn
         some |= here
-        every &= ~here | agree(np.abs(ahead * gap - aside * along - height), c.radius, c.radius)
-    return np.asarray(parallel(a, b) & c.is_arc & some & every)
+        every &= ~here | are_equal_lengths(np.abs(ahead * gap - aside * along - height), c.radius, c.radius)
+    return np.asarray(are_parallel(a, b) & c.is_arc & some & every)
 
 
-def lined_up(
+def are_lined_up(
     records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
 ) -> Bools:
-    """Where the pegs of a and b touch equal arcs on the line through their centres, and that of c what it
-    touches."""
+    """Return, for each record, whether it is of the family "lined up":
+    a and b on equal arcs on the line through their centres.
+
+    The third peg must touch its feature c there, which then is a double root and the only root in the box.
+    ``length`` is L in mm, by which moments are divided.
+    """
     between, chord, radius = b.middle - a.middle, b.place - a.place, a.radius
     apart = np.where(between == 0.0, 1.0, np.abs(between))
     turned, along = between / np.where(chord == 0.0, 1.0, chord), between / apart
@@ -231,10 +266,12 @@ def lined_up(
         wide = reach + np.abs(first + np.exp(1j * psi) * a.place - touch)
         with np.errstate(divide="ignore", invalid="ignore"):
             normal = np.where(c.is_arc, third / np.abs(third), 1j * c.axis)
-            rest = np.abs(dot(normal, third) - c.radius)
+            rest = np.abs(compute_dot_products(normal, third) - c.radius)
             # How fast the third peg leaves its feature, around the circle and as the part turns.
-            slide = np.abs(dot(normal, 1j * along))
-            rate = np.abs(dot(normal, 1j * (arm - between / 2.0 + side * radius / 2.0 * along)))
+            slide = np.abs(compute_dot_products(normal, 1j * along))
+            rate = np.abs(
+                compute_dot_products(normal, 1j * (arm - between / 2.0 + side * radius / 2.0 * along))
+            )
             curved = np.where(c.is_arc, 1.0 / c.radius, 0.0)
             lever = np.abs(arm) + apart + radius
             bent = lever + apart**2 / radius + lever**2 * curved

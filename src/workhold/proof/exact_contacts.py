@@ -25,15 +25,15 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, REST_X
 from workhold.kernels.base.tables import Limits
 from workhold.model.clamps import LOCATORS
 from workhold.model.workpiece import Workpiece
-from workhold.proof.ball_contacts import BoxContacts, CandidateBox, places
-from workhold.proof.interval_newton import PRECISIONS, refined
+from workhold.proof.ball_contacts import BoxContacts, CandidateBox, place_contacts
+from workhold.proof.interval_newton import PRECISIONS, refine_solution
 from workhold.proof.singular_frame import SingularFrame
 
 __all__ = [
     "SharpReactions",
     "find_drawn_circle",
     "make_exact_rows",
-    "rounded",
+    "round_reactions",
     "bound_reactions",
     "find_drawn_segment",
 ]
@@ -45,7 +45,11 @@ SAME_ROW = 1e-9
 
 
 def make_exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
-    """Rows (P, 12) of features for pegs of some radii in mm, as balls at the precision in force."""
+    """Return rows (P, 12) of features for pegs of these radii in mm,
+    with balls at the precision in force for numbers.
+
+    ``features`` are P indices into ``problem.rows``. See ``kernels.base.feature`` for the layout of rows.
+    """
     workpiece, out = problem.workpiece, []
     for feature, radius in zip(features, radii, strict=True):
         number = int(problem.faces[feature])
@@ -56,7 +60,15 @@ def make_exact_rows(features: Sequence[int], radii: Sequence[float], problem: Pr
 
 
 def find_drawn_segment(workpiece: Workpiece, number: int) -> Side:
-    """The vertices at both ends of a segment of a workpiece's outlines, by its number through all of them."""
+    """Return the vertices (x, y, bulge) at both ends of a segment of a workpiece's outlines.
+
+    ``number`` counts segments through all outlines and loops.
+
+    Raises
+    ------
+    IndexError
+        When there is no such segment.
+    """
     for loop in (loop for outline in workpiece.every_outline for loop in outline.loops):
         if number < len(loop):
             (x, y, bulge), (x1, y1, other) = loop[[number, (number + 1) % len(loop)]].tolist()
@@ -66,7 +78,9 @@ def find_drawn_segment(workpiece: Workpiece, number: int) -> Side:
 
 
 def find_drawn_circle(side: Side) -> tuple[arb, arb, arb]:
-    """The centre and the radius in mm of the arc that a side is, from its vertices and its bulge."""
+    """Return the centre x, y and the radius in mm of the arc between two vertices, from its bulge, as
+    balls.
+    """
     start, end = side
     bulge = arb(start[2])
     dx, dy = arb(end[0]) - start[0], arb(end[1]) - start[1]
@@ -78,7 +92,12 @@ def find_drawn_circle(side: Side) -> tuple[arb, arb, arb]:
 def make_exact_row(
     row: list[Any], first: Side, last: Side, radius: float, center: tuple[float, float]
 ) -> list[Any]:
-    """The row of a face of several sides: a line from first start to last end, or the first arc's circle."""
+    """Return the row of a peg's feature on a face of one or several segments, as balls.
+
+    The face is the line from the first segment's start to the last one's end, or the first one's circle;
+    ``first`` and ``last`` are their vertices, ``radius`` is the peg's in mm. Return ``row`` itself where it
+    is off the drawn face by more than ``SAME_ROW``, or of another kind.
+    """
     (start, _), (_, end) = first, last
     is_arc = row[IS_ARC] != 0.0
     if is_arc != (abs(start[2]) >= STRAIGHT):
@@ -112,9 +131,13 @@ LAST_DIGIT = 1.001 * ROUNDING
 
 @frozen
 class SharpReactions:
-    """Forces of three locators per unit of a clamp's, how far they may be off, and the clamp's push.
+    """Forces at a clamped part, known to the last digits of a double.
 
-    The push is the share of the clamp's own force that such a unit is.
+    Parameters
+    ----------
+    taken : forces of three locators per unit of the clamp's force on its face.
+    doubt : how far these may be off.
+    push : the clamp's force on its face along its travel, per unit of that force.
     """
 
     taken: tuple[float, float, float]
@@ -123,36 +146,42 @@ class SharpReactions:
 
 
 def bound_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
-    """Reactions at the one solution of a box of three locators and a clamp; None where it is not proven.
+    """Return the reactions at the one solution of a box of three
+    locators and a clamp; None where that is not proven.
 
     Precision rises until they are known to the last digit of a double, as nearly all are at the lowest.
     """
     sharp = None
     for bits in PRECISIONS:
         with ctx.workprec(bits):
-            sharp = reactions_in(box, limits)
+            sharp = find_reactions(box, limits)
         if sharp is not None and sharp.doubt <= LAST_DIGIT * max(map(abs, sharp.taken)):
             break
     return sharp
 
 
-def reactions_in(box: CandidateBox, limits: Limits) -> SharpReactions | None:
-    frame = SingularFrame.of(box, limits)
-    place: list[arb] | None = frame.start()
+def find_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
+    """Return the reactions at the one solution of a box at the
+    precision in force; None where that is not proven.
+    """
+    frame = SingularFrame.from_box(box, limits)
+    place: list[arb] | None = frame.make_start_box()
     for _ in range(MOST_STEPS):
         assert place is not None
-        place, unique = frame.step(place, frame.places(place))
+        place, unique = frame.narrow(place, frame.compute_contacts(place))
         if place is None:
             return None
         if unique:
-            here = places(box, frame.unknowns(refined(frame, place)))
+            here = place_contacts(box, frame.compute_unknowns(refine_solution(frame, place)))
             (x, y), (along, across) = here.normals[LOCATORS], here.axis
-            return rounded(reactions(here), int(limits.clamping) * (x * along + y * across))
+            return round_reactions(compute_reactions(here), int(limits.clamping) * (x * along + y * across))
     return None
 
 
-def reactions(here: BoxContacts) -> list[arb]:
-    """Solution a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w (Cramer's rule), w the clamp's wrench about peg 1."""
+def compute_reactions(here: BoxContacts) -> list[arb]:
+    """Return the forces a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w, by
+    Cramer's rule; w is the clamp's wrench about peg 1.
+    """
     wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
     whole = arb_mat(wrenches[:LOCATORS]).det()
     out = []
@@ -163,8 +192,10 @@ def reactions(here: BoxContacts) -> list[arb]:
     return out
 
 
-def rounded(values: Sequence[arb], push: arb) -> SharpReactions:
-    """Balls of reactions and of the push as doubles."""
+def round_reactions(values: Sequence[arb], push: arb) -> SharpReactions:
+    """Return balls of three reactions and of the push as doubles,
+    with the error bound of the reactions; inf for NaN.
+    """
     a, b, c = (float(value.mid()) for value in values)
     doubt = max(float(value.rad()) + ROUNDING * abs(float(value.mid())) for value in values)
     return SharpReactions((a, b, c), doubt if doubt == doubt else inf, float(push.mid()))

@@ -33,13 +33,13 @@ from workhold.proof.exact_contacts import (
     find_drawn_circle,
     find_drawn_segment,
     make_exact_rows,
-    rounded,
+    round_reactions,
 )
 
 __all__ = [
-    "Candidate",
+    "WallCandidate",
     "LatticePair",
-    "pressing",
+    "is_pressing",
     "compute_fence_reactions",
     "locate_contacts_exactly",
     "locate_contact_exactly",
@@ -55,16 +55,17 @@ PRECISIONS = (128, 256, 512)
 
 
 @frozen
-class Candidate:
+class WallCandidate:
     """A locator and a clamp that may press a part against a wall.
 
     Parameters
     ----------
     edge : number of the hull edge that lies on the wall.
-    row, line : the locator's row; the clamp's, or its column from the locator's if it is upright.
+    row : the locator's row.
+    line : the clamp's row; if ``is_upright``, its column minus the locator's.
     is_upright : whether the clamp is on a column.
-    features : those that locator and clamp touch.
-    branches : of both.
+    features : numbers of those that locator and clamp touch.
+    branches : -1 or 1 for locator and clamp: which of two places on an arc.
     """
 
     edge: int
@@ -82,9 +83,9 @@ class LatticePair:
     Parameters
     ----------
     edge : number of the hull edge that lies on the wall.
-    features : those that both pegs touch.
+    features : numbers of those that both pegs touch.
     step : columns and rows from the first peg's hole to the second's.
-    branch : which of two crossings it is.
+    branch : -1 or 1: which of two crossings it is.
     """
 
     edge: int
@@ -95,46 +96,49 @@ class LatticePair:
 
 @frozen
 class SharpContacts:
-    """Two pegs to the last digit.
+    """The contacts of two pegs to the last digit.
 
     Parameters
     ----------
-    points : their centres.
-    null : forces of the wall's two ends and of both, not scaled.
+    points : their centres along the hull edge from its start and above it, in mm.
+    null : forces of the wall's start and end and of both pegs, not scaled.
     """
 
     points: list[list[float]]
     null: list[float]
 
     @classmethod
-    def of(cls, contacts: Contacts, problem: Problem) -> SharpContacts:
-        """The middles of the balls of contacts."""
+    def from_balls(cls, contacts: Contacts, problem: Problem) -> SharpContacts:
+        """Return the middles of the balls of contacts."""
         return cls(
-            [middles(point) for point, _, _ in contacts[1:]], middles(compute_null_forces(contacts, problem))
+            [list_middles(point) for point, _, _ in contacts[1:]],
+            list_middles(compute_null_forces(contacts, problem)),
         )
 
 
-def middles(values: Sequence[arb]) -> list[float]:
+def list_middles(values: Sequence[arb]) -> list[float]:
+    """Return the middles of balls as doubles."""
     return [float(value.mid()) for value in values]
 
 
-def pressing(
-    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
+def is_pressing(
+    candidate: WallCandidate, problem: Problem, plate: Carrier, push: tuple[float, float]
 ) -> bool | None:
-    """Whether a candidate presses the part with contacts inside their features; None where undecided.
+    """Return whether a candidate presses the part with contacts
+    inside their features; None where that stays undecided.
 
     Parameters
     ----------
     plate : in whose holes the locator stands.
-    push : unit vector along which the clamp moves as it clamps.
+    push : unit vector along which the clamp moves as it clamps, in the wall's frame.
     """
     with BALLS:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
-                contacts = contacts_of(candidate, problem, plate)
+                contacts = find_contacts(candidate, problem, plate)
                 if contacts is None:
                     return False
-                pushes = push_of(contacts, push)
+                pushes = compute_push_share(contacts, push)
                 if problem.pairing:
                     wall, (_, normal, _), _ = contacts
                     rules = [abs(normal[0]) * wall / problem.wrench_length - LEAST_SEAT, pushes - LEAST_PUSH]
@@ -149,7 +153,11 @@ def pressing(
 
 
 def decide_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpContacts | None]:
-    """Returns whether a pair presses the part, None where that stays open, and the pair if it does."""
+    """Return (verdict, contacts) of a lattice pair.
+
+    The verdict says whether it presses the part, None where that stays undecided; contacts are given where it
+    is True.
+    """
     with BALLS:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
@@ -159,12 +167,15 @@ def decide_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, Sharp
                 pressed = sum(compute_null_forces(contacts, problem)[:2], arb(0))
                 verdict = decide_rules(list_closing_rules(contacts, pressed, problem), contacts, problem)
                 if verdict is not None:
-                    return verdict, SharpContacts.of(contacts, problem) if verdict else None
+                    return verdict, SharpContacts.from_balls(contacts, problem) if verdict else None
     return None, None
 
 
 def list_closing_rules(contacts: Contacts, clamping: arb, problem: Problem) -> list[arb]:
-    """Numbers that are positive for contacts that close, given their clamping force for these shares."""
+    """Return the numbers that must all be positive for contacts to close and clamp.
+
+    ``clamping`` is the clamping force that belongs to the forces of :func:`compute_null_forces`.
+    """
     null, (_, (_, a, _), (_, b, _)) = compute_null_forces(contacts, problem), contacts
     size = sum((abs(entry) for entry in null), arb(0))
     rules = [entry - LEAST_CLOSURE * size for entry in null]
@@ -172,7 +183,11 @@ def list_closing_rules(contacts: Contacts, clamping: arb, problem: Problem) -> l
 
 
 def decide_rules(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> bool | None:
-    """Whether some rules and those of all ends are kept; None where that is not certain."""
+    """Return whether all rules and those of all ends are certainly
+    kept, or one certainly broken; None where neither.
+
+    ``rules`` are balls that must be positive.
+    """
     ends = (end - arb(problem.contact_margin) for _, _, slacks in contacts[1:] for end in slacks)
     every = [*rules, *ends]
     if any(rule <= 0 for rule in every):
@@ -181,7 +196,9 @@ def decide_rules(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> 
 
 
 def compute_null_forces(contacts: Contacts, problem: Problem) -> list[arb]:
-    """Forces of the wall's two ends and both pegs, not scaled; see ``search.wall_contacts.closure``."""
+    """Return the forces of the wall's start and end and of both pegs, not scaled; see
+    ``search.wall_contacts.closure``.
+    """
     wall, ((u, v), a, _), ((p, q), b, _) = contacts
     length, across, ahead = arb(problem.wrench_length), abs(a[0]), abs(b[0])
     last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
@@ -189,49 +206,56 @@ def compute_null_forces(contacts: Contacts, problem: Problem) -> list[arb]:
     return [both - last, last, ahead * wall / length, across * wall / length]
 
 
-def push_of(contacts: Contacts, push: tuple[float, float]) -> arb:
-    """The share of the clamp's own force that a unit on its face is."""
+def compute_push_share(contacts: Contacts, push: tuple[float, float]) -> arb:
+    """Return the clamp's force on its face along ``push``, per unit of that force."""
     _, _, (_, normal, _) = contacts
     return -(normal[0] * push[0] + normal[1] * push[1])
 
 
-def locate_contacts_exactly(candidate: Candidate, problem: Problem, plate: Carrier) -> SharpContacts | None:
-    """A candidate that presses the part, to the last digit; None where it touches nothing."""
+def locate_contacts_exactly(
+    candidate: WallCandidate, problem: Problem, plate: Carrier
+) -> SharpContacts | None:
+    """Return the contacts of a candidate to the last digit; None where a peg misses its feature."""
     with BALLS, ctx.workprec(PRECISIONS[-1]):
-        contacts = contacts_of(candidate, problem, plate)
-        return None if contacts is None else SharpContacts.of(contacts, problem)
+        contacts = find_contacts(candidate, problem, plate)
+        return None if contacts is None else SharpContacts.from_balls(contacts, problem)
 
 
 def locate_contact_exactly(
     edge: int, row: int, feature: int, branch: float, problem: Problem, plate: Carrier
 ) -> tuple[list[float], list[float], float] | None:
-    """The contact of a peg in a row of a plate with a feature, the part on a hull edge, to the last digit.
+    """Return the contact of a peg in row ``row`` of a plate with a
+    feature, the part lying on a hull edge, to the last digit.
 
-    It is the centre, the normal there, and the lesser distance to an end; None where they do not meet.
+    Return (centre, outward normal, the lesser distance in mm to an end with its slack), in the wall's frame;
+    None where row and feature do not meet. The distance is inf on a whole circle.
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
-        start, tangent, _ = line_of(edge, problem.workpiece)
+        start, tangent, _ = locate_hull_edge(edge, problem.workpiece)
         (drawn,) = make_exact_rows([feature], [problem.frame.standing.peg_radius], problem)
-        contact = BallFeature.of(drawn, start, tangent).contact_on(find_row_level(plate, row), False, branch)
+        contact = BallFeature.from_row(drawn, start, tangent).find_contact_on_line(
+            find_row_level(plate, row), False, branch
+        )
         if contact is None:
             return None
         point, normal, slacks = contact
-        return middles(point), middles(normal), min(middles(slacks), default=inf)
+        return list_middles(point), list_middles(normal), min(list_middles(slacks), default=inf)
 
 
 def compute_fence_reactions(
-    candidate: Candidate, problem: Problem, plate: Carrier, push: tuple[float, float]
+    candidate: WallCandidate, problem: Problem, plate: Carrier, push: tuple[float, float]
 ) -> SharpReactions | None:
-    """Forces of the wall's two ends and the locator per unit of the clamp's, and the clamp's push.
+    """Return the forces of the wall's start and end and of the
+    locator per unit of the clamp's, and the clamp's push.
 
-    They are right to the last digit; None where they cannot be made out.
+    They are right to the last digit; None where they cannot be determined.
 
     Parameters
     ----------
     plate, push : see :func:`pressing`.
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
-        contacts = contacts_of(candidate, problem, plate)
+        contacts = find_contacts(candidate, problem, plate)
         if contacts is None:
             return None
         wall, ((u, v), a, _), ((p, q), b, _) = contacts
@@ -239,49 +263,56 @@ def compute_fence_reactions(
             return None
         force = -b[0] / a[0]
         last = (force * (u * a[1] - v * a[0]) + p * b[1] - q * b[0]) / wall
-        return rounded([force * a[1] + b[1] - last, last, force], push_of(contacts, push))
+        return round_reactions([force * a[1] + b[1] - last, last, force], compute_push_share(contacts, push))
 
 
-def contacts_of(candidate: Candidate, problem: Problem, plate: Carrier) -> Contacts | None:
-    """The contacts of locator and clamp; None where one misses."""
-    start, tangent, wall = line_of(candidate.edge, problem.workpiece)
+def find_contacts(candidate: WallCandidate, problem: Problem, plate: Carrier) -> Contacts | None:
+    """Return the contacts of locator and clamp at the precision in force; None where one misses its
+    feature.
+    """
+    start, tangent, wall = locate_hull_edge(candidate.edge, problem.workpiece)
     radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
     one, other = (
-        BallFeature.of(row, start, tangent) for row in make_exact_rows(candidate.features, radii, problem)
+        BallFeature.from_row(row, start, tangent)
+        for row in make_exact_rows(candidate.features, radii, problem)
     )
-    locator = one.contact_on(find_row_level(plate, candidate.row), False, candidate.branches[0])
+    locator = one.find_contact_on_line(find_row_level(plate, candidate.row), False, candidate.branches[0])
     if locator is None:
         return None
     if candidate.is_upright:
         level = locator[0][0] + arb(plate.pitch[0]) * candidate.line
     else:
         level = find_row_level(plate, candidate.line)
-    clamp = other.contact_on(level, candidate.is_upright, candidate.branches[1])
+    clamp = other.find_contact_on_line(level, candidate.is_upright, candidate.branches[1])
     return None if clamp is None else (wall, locator, clamp)
 
 
 def find_row_level(plate: Carrier, row: int) -> arb:
-    """How high a row of a plate is above the wall, in mm."""
+    """Return the height in mm of a row of a plate above the wall."""
     return arb(plate.offset[1]) + arb(plate.pitch[1]) * row
 
 
 def find_pair_contacts(pair: LatticePair, problem: Problem) -> Contacts | None:
-    """The contacts of both pegs of a pair; None where their curves are not shown to cross."""
-    start, tangent, wall = line_of(pair.edge, problem.workpiece)
+    """Return the contacts of both pegs of a pair at the precision in
+    force; None where their curves are not shown to cross.
+    """
+    start, tangent, wall = locate_hull_edge(pair.edge, problem.workpiece)
     radii = [problem.frame.moving.peg_radius] * 2
     one, other = (
-        BallFeature.of(row, start, tangent) for row in make_exact_rows(pair.features, radii, problem)
+        BallFeature.from_row(row, start, tangent) for row in make_exact_rows(pair.features, radii, problem)
     )
     across, up = (arb(a) * int(k) for a, k in zip(problem.toolkit.moving.pitch, pair.step, strict=True))
     between = other.middle[0] - across - one.middle[0], other.middle[1] - up - one.middle[1]
-    ray = crossing_of(one, other, between, pair.branch)
+    ray = find_crossing(one, other, between, pair.branch)
     if ray is None:
         return None
-    return wall, one.contact(ray), other.contact((ray[0] - between[0], ray[1] - between[1]))
+    return wall, one.make_contact(ray), other.make_contact((ray[0] - between[0], ray[1] - between[1]))
 
 
-def line_of(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
-    """Start of a hull edge about the workpiece's center, unit vector along it, and its length, as drawn."""
+def locate_hull_edge(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
+    """Return the start of a hull edge about the workpiece's centre, the
+    unit vector along it, and its length in mm, as drawn.
+    """
     edge, center = workpiece.hull_edges[number], workpiece.center
     (x, y, radius), (x1, y1, other) = (find_drawn_end(end, workpiece) for end in (edge.start, edge.end))
     dx, dy = x1 - x, y1 - y
@@ -294,11 +325,13 @@ def line_of(number: int, workpiece: Workpiece) -> tuple[Point, Point, arb]:
 
 
 def find_drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
-    """Centre and radius in mm of an end of a hull edge: its arc as drawn, or a corner, of radius 0."""
+    """Return centre x, y and radius in mm of an end of a hull edge:
+    its arc as drawn, or a corner with radius 0.
+    """
     rounded_once = arb(end.center[0]), arb(end.center[1]), arb(end.radius)
     if end.radius == 0.0:
         return rounded_once
-    own, _ = workpiece.outline_of(WALL)
+    own, _ = workpiece.find_outline(WALL)
     side = find_drawn_segment(own, own.outer_faces[end.faces[0]].segments[0])
     # An arc may be a run of chords in the drawing.
     return find_drawn_circle(side) if abs(side[0][2]) >= STRAIGHT else rounded_once
@@ -306,13 +339,15 @@ def find_drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
 
 @frozen
 class BallFeature:
-    """A feature in the wall's frame, in balls.
+    """A feature in the wall's frame (along the hull edge from its start, and above it), in balls.
 
     Parameters
     ----------
     middle, axis : a point of a line and its direction; an arc's centre and the direction of its middle.
-    radius : of an arc in mm, None of a line.
-    half, sign, low, high : half its extent, its sign, and the slacks of the end behind and of the one ahead.
+    radius : of an arc in mm, None for a line.
+    half : largest parameter, in mm on a line and in radians on an arc.
+    sign : 1 where the outward normal points away from an arc's centre, else -1.
+    low, high : slacks in mm of the low and the high end.
     """
 
     middle: Point
@@ -324,8 +359,10 @@ class BallFeature:
     high: float
 
     @classmethod
-    def of(cls, row: Sequence[float], start: Point, tangent: Point) -> BallFeature:
-        """A feature's row as it lies on a hull edge from a start along a tangent."""
+    def from_row(cls, row: Sequence[float], start: Point, tangent: Point) -> BallFeature:
+        """Return the feature of a row (12,), with the part on the hull edge
+        that begins at ``start`` with direction ``tangent``.
+        """
         is_arc, x, y, ax, ay, half, radius, sign, rest_x, rest_y, low, high = row
         tx, ty = tangent
         dx, dy = arb(x) + rest_x - start[0], arb(y) + rest_y - start[1]
@@ -335,8 +372,10 @@ class BallFeature:
         middle = dx * tx + dy * ty, dy * tx - dx * ty
         return cls(middle, axis, arb(radius) if is_arc else None, half, sign, low, high)
 
-    def contact(self, ray: Point) -> Contact:
-        """The contact of a peg whose centre is on it, given from its middle."""
+    def make_contact(self, ray: Point) -> Contact:
+        """Return the contact of a peg whose centre is on the feature;
+        ``ray`` leads there from the feature's middle, in mm.
+        """
         point, (ax, ay) = (self.middle[0] + ray[0], self.middle[1] + ray[1]), self.axis
         along = ax * ray[0] + ay * ray[1]
         if self.radius is None:
@@ -348,21 +387,26 @@ class BallFeature:
         ends = (self.half - angle) * self.radius + self.high, (self.half + angle) * self.radius + self.low
         return point, normal, [*ends]
 
-    def contact_on(self, level: arb, upright: bool, branch: float) -> Contact | None:
-        """The contact of a peg on a row, or on a column if ``upright``, at a level; None for a miss."""
+    def find_contact_on_line(self, level: arb, upright: bool, branch: float) -> Contact | None:
+        """Return the contact of a peg on a row at height ``level`` in mm,
+        or, if ``upright``, on a column there; None for a miss.
+
+        ``branch`` (-1 or 1) selects one of two places on an arc.
+        """
         across = 0 if upright else 1
         up = level - self.middle[across]
         if self.radius is None:
             along = up / self.axis[across]
-            return self.contact((along * self.axis[0], along * self.axis[1]))
-        rest = half_chord(self.radius * self.radius - up * up)
+            return self.make_contact((along * self.axis[0], along * self.axis[1]))
+        rest = compute_half_chord(self.radius * self.radius - up * up)
         if rest is None:
             return None
-        return self.contact((up, branch * rest) if upright else (branch * rest, up))
+        return self.make_contact((up, branch * rest) if upright else (branch * rest, up))
 
 
-def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: int) -> Point | None:
-    """Returns where two curves cross, from the middle of the first; None where that is not proven.
+def find_crossing(one: BallFeature, other: BallFeature, between: Point, branch: int) -> Point | None:
+    """Return the crossing of two peg-centre curves, from the middle
+    of the first; None where it is not proven.
 
     ``between`` leads from the middle of the first to that of the second, in mm.
     """
@@ -370,13 +414,13 @@ def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: in
     if one.radius is not None and other.radius is not None:
         apart = (x * x + y * y).sqrt()
         away = ((one.radius - other.radius) * (one.radius + other.radius) / apart + apart) / 2
-        half = half_chord((one.radius - away) * (one.radius + away))
+        half = compute_half_chord((one.radius - away) * (one.radius + away))
         x, y = x / apart, y / apart
         return None if half is None else (away * x - branch * half * y, away * y + branch * half * x)
     if other.radius is not None:
-        return on_line(between, one.axis, other.radius, branch)
+        return intersect_line_with_circle(between, one.axis, other.radius, branch)
     if one.radius is not None:
-        place = on_line((-x, -y), other.axis, one.radius, branch)
+        place = intersect_line_with_circle((-x, -y), other.axis, one.radius, branch)
         return None if place is None else (place[0] + x, place[1] + y)
     (ax, ay), (bx, by) = one.axis, other.axis
     sine = ax * by - ay * bx
@@ -386,23 +430,26 @@ def crossing_of(one: BallFeature, other: BallFeature, between: Point, branch: in
     return along * ax, along * ay
 
 
-def on_line(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
-    """Returns where a line crosses a circle, from the line's middle; None where it surely misses it.
+def intersect_line_with_circle(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
+    """Return a crossing of a line with a circle, from the line's middle; None where it certainly misses it.
 
-    ``between`` leads from the middle of the line to that of the circle, ``axis`` is of length 1 along the
-    line.
+    ``between`` leads from the middle of the line to that of the circle in mm, ``axis`` is the unit vector
+    along the line, ``branch`` (-1 or 1) selects the crossing.
     """
     (ax, ay), (x, y) = axis, between
     away = ax * y - ay * x
-    half = half_chord((radius - away) * (radius + away))
+    half = compute_half_chord((radius - away) * (radius + away))
     if half is None:
         return None
     along = ax * x + ay * y + branch * half
     return along * ax, along * ay
 
 
-def half_chord(square: arb) -> arb | None:
-    """Returns the root of a square that may be zero; None where it is surely negative."""
+def compute_half_chord(square: arb) -> arb | None:
+    """Return the square root of a number as a ball; None where the number is certainly negative.
+
+    Where it may be 0, the ball is around 0 and holds both roots.
+    """
     if square < 0:
         return None
     return square.sqrt() if square > 0 else arb(0, abs(square).abs_upper().sqrt().upper())

@@ -1,7 +1,7 @@
-"""What double precision leaves open, decided in ball arithmetic (python-flint).
+"""Decisions in ball arithmetic (python-flint) on candidates that double precision leaves open.
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
-there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrowed``), and by the
+there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrow_box``), and by the
 contacts of three standing pegs alone (``located``). These often fix the pose where the moving peg only grazes
 what it touches. Then the box is turned into the frame of ``proof.singular_frame``. There, boxes in which some
 contact equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton
@@ -27,23 +27,23 @@ from workhold.model.search_report import AT_AN_EDGE, NEARLY_DOUBLE
 from workhold.proof.ball_contacts import (
     CandidateBox,
     compute_contact_values,
-    extent,
+    compute_slacks,
+    compute_wrench_minors,
     is_empty,
-    narrowed,
-    places,
-    slacks,
-    wrench_minors,
+    measure_extent,
+    narrow_box,
+    place_contacts,
 )
 from workhold.proof.singular_frame import (
     SingularFrame,
     cut_in_thirds,
     decouple_equations,
     is_smaller,
-    newton_step,
+    take_newton_step,
 )
 from workhold.proof.solution_curve import find_roots_on_curve
 
-__all__ = ["BoxOutcome", "solutions_in"]
+__all__ = ["BoxOutcome", "find_solutions"]
 
 PRECISIONS = (128, 256, 512)
 # So many boxes take about as long as to find the curve; most solutions take fewer.
@@ -58,25 +58,33 @@ FEW_CUTS = 120
 
 @frozen
 class BoxOutcome:
-    """What became of a box: the middles of solutions proven to be fixtures, and why it is undecided."""
+    """The outcome of deciding a box.
+
+    Parameters
+    ----------
+    fixtures : middles (psi, tail x, tail y, separation) of solutions proven to be fixtures.
+    reason : why the box is undecided, empty where it is decided.
+    """
 
     fixtures: tuple[tuple[float, float, float, float], ...]
     reason: str
 
 
-def solutions_in(
+def find_solutions(
     box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = lambda: False
 ) -> BoxOutcome | None:
-    """Finds every fixture of a box, or says why it is undecided; None when the work was stopped before."""
+    """Find every fixture in a box, or say why the box stays
+    undecided; return None when the work was stopped before.
+    """
     if is_stopped():
         return None
     with ctx.workprec(PRECISIONS[0]):
-        smaller_box = narrowed(box, limits)
+        smaller_box = narrow_box(box, limits)
         if smaller_box is not None and box.standing == 3:
-            smaller_box = located(smaller_box, limits)
+            smaller_box = narrow_to_contacts(smaller_box, limits)
         if smaller_box is None:
             return BoxOutcome((), "")
-        frame = SingularFrame.of(smaller_box, limits)
+        frame = SingularFrame.from_box(smaller_box, limits)
         roots = isolate_roots_in_boxes(frame, limits, is_stopped, FEW_BOXES)
         if roots is None:
             roots = find_roots_on_curve(frame, limits)
@@ -84,15 +92,16 @@ def solutions_in(
             roots = isolate_roots_in_boxes(frame, limits, is_stopped, MOST_BOXES)
     if roots is None:
         return None if is_stopped() else BoxOutcome((), NEARLY_DOUBLE)
-    return judged(frame, roots, limits)
+    return judge_solutions(frame, roots, limits)
 
 
-def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
-    """The part of a box in which three standing pegs may touch, and the moving one then; None without one.
+def narrow_to_contacts(box: CandidateBox, limits: Limits) -> CandidateBox | None:
+    """Return the part of a box in which three standing pegs may
+    touch, and the moving peg as well; None for no part.
 
-    Their equations do without the separation. Each is first solved for each unknown, which needs no inverse
-    where the box is wide, and then all are combined by the inverse of their Jacobian at its middle. Where
-    that fixes the pose, the separation is cut in two again and again.
+    The equations of the standing pegs do not contain the separation. Each is first solved for each unknown,
+    which needs no inverse where the box is wide, and then all are combined by the inverse of their Jacobian
+    at its middle. Where that fixes the pose, the separation is cut in two again and again.
     """
     place = [arb(middle, reach) for middle, reach in zip(box.middle, box.reach, strict=True)]
     for _ in range(MOST_STEPS):
@@ -100,14 +109,14 @@ def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
         for turn in range(4):
             middle = [arb(one.mid()) for one in place[:3]]
             values = compute_contact_values(box, [*middle, place[3]])[:3]
-            slopes = [row[:3] for row in places(box, place).slopes[:3]]
+            slopes = [row[:3] for row in place_contacts(box, place).slopes[:3]]
             if turn < 3:
                 values, slopes = values[turn:] + values[:turn], slopes[turn:] + slopes[:turn]
             elif (combined := decouple_equations(values, slopes)) is not None:
                 values, slopes = combined
             else:
                 break
-            closer, _ = newton_step(place[:3], values, slopes)
+            closer, _ = take_newton_step(place[:3], values, slopes)
             if closer is None:
                 return None
             place[:3] = closer
@@ -118,32 +127,36 @@ def located(box: CandidateBox, limits: Limits) -> CandidateBox | None:
         if not waiting:
             break
         part = waiting.pop()
-        if not is_empty(box, places(box, [*place[:3], part]), limits):
+        if not is_empty(box, place_contacts(box, [*place[:3], part]), limits):
             waiting += [arb(part.mid() + side * part.rad() / 2, part.rad() / 2) for side in (-1, 1)]
     if not waiting:
         return None
     place[3] = reduce(arb.union, waiting)
-    middles, reaches = zip(*map(extent, place), strict=True)
+    middles, reaches = zip(*map(measure_extent, place), strict=True)
     return evolve(box, middle=middles, reach=reaches)
 
 
 def isolate_roots_in_boxes(
     frame: SingularFrame, limits: Limits, is_stopped: Callable[[], bool], most: int
 ) -> list[list[arb]] | None:
-    """Finds parts of a box with one solution each; None where that takes ``most`` boxes, or when stopped."""
-    waiting, roots = [frame.start()], list[list[arb]]()
+    """Return parts of a box, in the frame's coordinates, with exactly
+    one solution each, which hold all fixtures.
+
+    Return None where that takes more than ``most`` boxes, or when stopped.
+    """
+    waiting, roots = [frame.make_start_box()], list[list[arb]]()
     for _ in range(most):
         if not waiting:
             return roots
         if is_stopped():
             return None
         place = waiting.pop()
-        here = frame.places(place)
+        here = frame.compute_contacts(place)
         if is_empty(frame.box, here, limits):
             continue
-        smaller, unique = frame.step(place, here)
+        smaller, unique = frame.narrow(place, here)
         if smaller is not None and not unique and not is_smaller(smaller, place):
-            smaller, unique = frame.step(smaller, frame.places(smaller), regular=True)
+            smaller, unique = frame.narrow(smaller, frame.compute_contacts(smaller), regular=True)
         if smaller is not None and unique:
             roots.append(smaller)
         elif smaller is not None:
@@ -151,18 +164,22 @@ def isolate_roots_in_boxes(
     return None
 
 
-def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxOutcome:
-    """Judges the solutions of a box by the rules, at rising precision."""
+def judge_solutions(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxOutcome:
+    """Return the outcome of a box from parts with one solution each:
+    each is judged by the rules, at rising precision.
+    """
     fixtures: list[tuple[float, float, float, float]] = []
     reason = ""
     for root in roots:
         verdict = 0
         for bits in PRECISIONS:
             with ctx.workprec(bits):
-                root = refined(frame, root)
-                unknowns = frame.unknowns(root)
-                here = places(frame.box, unknowns)
-                values = slacks(frame.box, here, wrench_minors(here, limits.wrench_length), limits)
+                root = refine_solution(frame, root)
+                unknowns = frame.compute_unknowns(root)
+                here = place_contacts(frame.box, unknowns)
+                values = compute_slacks(
+                    frame.box, here, compute_wrench_minors(here, limits.wrench_length), limits
+                )
                 verdict = -1 if any(v < 0 for v in values) else int(all(v > 0 for v in values))
             if verdict != 0:
                 break
@@ -174,14 +191,17 @@ def judged(frame: SingularFrame, roots: list[list[arb]], limits: Limits) -> BoxO
     return BoxOutcome(tuple(fixtures), reason)
 
 
-def refined(frame: SingularFrame, root: list[arb]) -> list[arb]:
-    """A proven solution to the precision in force, by steps that each find a binary digit or more."""
+def refine_solution(frame: SingularFrame, root: list[arb]) -> list[arb]:
+    """Return a proven solution to the precision in force, by steps that each gain a binary digit or more.
+
+    The part returned holds the solution, and is ``root`` itself where no step helps.
+    """
     for _ in range(12):
         if max(float(p.rad()) for p in root) < SHARP * 0.5**ctx.prec:
             break
-        closer, _ = frame.step(root, frame.places(root))
+        closer, _ = frame.narrow(root, frame.compute_contacts(root))
         if closer is not None and not is_smaller(closer, root, 0.5):
-            closer, _ = frame.step(root, frame.places(root), regular=True)
+            closer, _ = frame.narrow(root, frame.compute_contacts(root), regular=True)
         if closer is None or not is_smaller(closer, root, 0.5):
             break
         root = closer

@@ -1,16 +1,19 @@
-r"""Which records of three locators are seats: a certificate of each in double precision.
+r"""Certificates in double precision of which records of three locators are seats.
 
-The unknowns are z = (L psi, x, y) in mm: the turn of the pegs in the part's frame, and the centre of the first peg.
-F are the three contact equations, distances from lines and circles, A an inverse of their Jacobian, and
+The unknowns are z = (L psi, x, y) in mm: the turn of the pegs in the part's frame, and the centre of the
+first peg. F are the three contact equations, distances from lines and circles, A an inverse of their
+Jacobian, and
 
     eta >= \|A F(z)\|,   K >= \|second derivatives of F\|
 
-in the norm of the largest absolute row sum. When 2 \|A\| K eta < 1 there is exactly one solution within
-1 / (\|A\| K) of z, and it lies within 2 eta (Newton-Kantorovich). The search says how far the exact contacts may be
-from those of a record: where that is no more, the solution is the one that the record stands for. A record of which
-this is not known, or that meets a rule within the bound of its error, is named as undecided.
+in the norm of the largest absolute row sum. When 2 \|A\| K eta < 1 there is exactly one solution within 1 /
+(\|A\| K) of z, and it lies within 2 eta (Newton-Kantorovich). The search states how far the exact contacts
+may be from those of a record: where that is no more than 1 / (\|A\| K), the solution is the one that the
+record stands for. A record for which this is not known, or that meets a rule within the bound of its error,
+is listed as undecided.
 
-A seat alone fixes the pose, as a simple root: the determinant of its wrenches (n, q x n / L) is above ``LEAST_SEAT``.
+A seat alone fixes the pose, as a simple root: the determinant of its wrenches (n, q x n / L) is above
+``LEAST_SEAT``.
 """
 
 from __future__ import annotations
@@ -34,8 +37,8 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact import record
-from workhold.model.search_report import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, Undecided
-from workhold.proof.deciding import Account, read_peg_integers
+from workhold.model.search_report import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UndecidedCandidate
+from workhold.proof.deciding import SearchReport, read_peg_integers
 
 __all__ = ["LOCATORS", "SeatContacts", "decide_seats"]
 
@@ -57,7 +60,9 @@ TOGETHER = 1 << 16
 
 @frozen(eq=False)
 class SeatContacts:
-    """Three locators that touch a part; lengths in mm, places in its frame about the centre of its bounding box.
+    """The contacts of S seats with three locators each.
+
+    Lengths are in mm, places in the part's frame about the centre of its bounding box.
 
     Parameters
     ----------
@@ -77,6 +82,7 @@ class SeatContacts:
         return len(self.psi)
 
     def take(self, chosen: IntArray | BoolArray) -> SeatContacts:
+        """Return the chosen seats, by indices or a mask."""
         return SeatContacts(
             self.feature[chosen],
             self.column[chosen],
@@ -86,23 +92,31 @@ class SeatContacts:
         )
 
     @classmethod
-    def joined(cls, parts: list[SeatContacts]) -> SeatContacts:
+    def concatenate(cls, parts: list[SeatContacts]) -> SeatContacts:
+        """Return the seats of all parts, in order."""
         names = ("feature", "column", "row", "psi", "point")
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
-def decide_seats(records: Array, problem: Problem, title: str) -> tuple[SeatContacts, Account]:
-    """The seats among records (N, 19), and what became of all of them; the title is of their arrangement."""
-    parts, accounts = [seats_in(records[:0], problem, title)[0]], list[Account]()
+def decide_seats(records: Array, problem: Problem, title: str) -> tuple[SeatContacts, SearchReport]:
+    """Return the seats among records (N, 19), and the report on all
+    records; ``title`` is that of their arrangement.
+
+    See ``kernels.contact.record`` for the layout of records.
+    """
+    parts, accounts = [find_seats(records[:0], problem, title)[0]], list[SearchReport]()
     for start in range(0, len(records), TOGETHER):
-        part, account = seats_in(records[start : start + TOGETHER], problem, title)
+        part, account = find_seats(records[start : start + TOGETHER], problem, title)
         parts.append(part)
         accounts.append(account)
-    return SeatContacts.joined(parts), Account.together(accounts)
+    return SeatContacts.concatenate(parts), SearchReport.sum_up(accounts)
 
 
-def seats_in(records: Array, problem: Problem, title: str) -> tuple[SeatContacts, Account]:
-    """The seats among some records, and what became of these."""
+def find_seats(records: Array, problem: Problem, title: str) -> tuple[SeatContacts, SearchReport]:
+    """Return the seats among records (N, 19) as :func:`decide_seats` does, all records at once.
+
+    See ``kernels.contact.record`` for the layout of records.
+    """
     given_up = records[:, record.STANDING] < 0.0
     lost, chosen = records[given_up], records[~given_up]
     feature, column, row = (numbers[:, :LOCATORS] for numbers in read_peg_integers(chosen))
@@ -119,20 +133,21 @@ def seats_in(records: Array, problem: Problem, title: str) -> tuple[SeatContacts
         for k in np.flatnonzero(is_open)
     ]
     count = int(is_seat.sum())
-    account = Account(len(records), count, len(lost) + int(is_open.sum()), len(lost), tuple(reasons))
+    account = SearchReport(len(records), count, len(lost) + int(is_open.sum()), len(lost), tuple(reasons))
     return contacts.take(is_seat), account
 
 
 @frozen(eq=False)
 class Solutions:
-    """Where the contacts of records are.
+    """The solutions of the contact equations of N records.
 
     Parameters
     ----------
-    psi, point : as of :class:`SeatContacts`.
-    slack : (N, 7) what the rules of the ends leave in mm, and that of the determinant; above 0 where they are kept.
-    off : (N, 7) how far these may be off.
-    is_certain : (N,) whether there is one solution, that of the record.
+    psi, point : as in :class:`SeatContacts`.
+    slack : (N, 7) how far in mm each of six ends is from breaking the rule of ends, and the determinant above
+        its least value; all positive for a seat.
+    off : (N, 7) error bounds of these.
+    is_certain : (N,) whether there is exactly one solution, that of the record.
     is_double : (N,) whether every solution of the record is a double root, or nearly, and so no seat.
     """
 
@@ -145,18 +160,22 @@ class Solutions:
 
 
 def solve_contacts(records: Array, rows: Array, steps: Array, problem: Problem) -> Solutions:
-    """Solve the contact equations of records (N, 19) on features (N, 3, 12), with steps (N, 3, 2) from the first peg."""
+    """Return the solutions of the contact equations of records (N, 19) on features (N, 3, 12).
+
+    ``steps`` (N, 3, 2) are the pegs' places in mm from the first one. See ``kernels.contact.record`` for the
+    layout of records.
+    """
     length = problem.wrench_length
     start = records[:, [record.PSI, record.TAIL_X, record.TAIL_Y]] * np.array([length, 1.0, 1.0])
-    unknown = polished(start, rows, steps, length, STEPS)
+    unknown = polish_unknowns(start, rows, steps, length, STEPS)
     point, turned = place_pegs(unknown, steps, length)
-    value, slope = equations(rows, point, turned, length)
+    value, slope = evaluate_equations(rows, point, turned, length)
     inverse = invert(slope)
     size = np.abs(point).max(axis=(1, 2)) + np.abs(rows[:, :, [X, Y, RADIUS]]).max(axis=(1, 2))
     residual = np.abs(value).max(axis=1) + ROUNDINGS * size + problem.backward_error
     norm = np.abs(inverse).sum(axis=2).max(axis=1)
     eta = norm * residual
-    curved = second_derivatives(rows, point, steps, length)
+    curved = bound_second_derivatives(rows, point, steps, length)
     with np.errstate(invalid="ignore", over="ignore"):
         unique = 1.0 / (norm * curved)
         box = np.maximum(length * records[:, record.REACH], records[:, record.LARGEST_RADIUS]) + LEAST_REACH
@@ -177,18 +196,22 @@ def solve_contacts(records: Array, rows: Array, steps: Array, problem: Problem) 
         )
     ends = measure_end_distances(rows, point) - problem.contact_margin
     ends = ends + np.stack([rows[:, :, LOW_SLACK], rows[:, :, HIGH_SLACK]], axis=2)
-    determinant = np.abs(np.linalg.det(wrench_matrix(rows, point, length)))
+    determinant = np.abs(np.linalg.det(compute_wrench_matrices(rows, point, length)))
     slack = np.column_stack([ends.reshape(len(records), 2 * LOCATORS), determinant - LEAST_SEAT])
     slack = np.where(np.isnan(slack), -np.inf, slack)
     return Solutions(unknown[:, 0] / length, point, slack, off, is_certain, is_double)
 
 
-def polished(start: Array, rows: Array, steps: Array, length: float, count: int) -> Array:
-    """The unknowns (N, 3) after so many steps of Newton's method; beside a double root each halves the error."""
+def polish_unknowns(start: Array, rows: Array, steps: Array, length: float, count: int) -> Array:
+    """Return the unknowns (N, 3) after ``count`` steps of Newton's method from ``start``.
+
+    Steps of more than 1 mm, or that are not finite, are not taken. Beside a double root each step halves the
+    error.
+    """
     unknown = start.copy()
     for _ in range(count):
         point, turned = place_pegs(unknown, steps, length)
-        value, slope = equations(rows, point, turned, length)
+        value, slope = evaluate_equations(rows, point, turned, length)
         step = np.einsum("nij,nj->ni", invert(slope), value)
         step[~np.isfinite(step) | (np.abs(step) > 1.0)] = 0.0
         unknown -= step
@@ -198,28 +221,40 @@ def polished(start: Array, rows: Array, steps: Array, length: float, count: int)
 def are_double(
     start: Array, box: Array, rows: Array, steps: Array, rate: Array, residual: Array, length: float
 ) -> BoolArray:
-    """Which contacts are a double root, up to what rounding of a drawing makes of one.
+    """Return, for each record, whether its contacts are a double root, up to the rounding of a drawing.
 
-    The two roots beside a double one are no farther from it than the square root of the equations' error times the
-    largest radius, and so is their determinant from that of a double one, 0.
+    The two roots beside a double one are no farther from it than the square root of the equations' error
+    times the largest radius, and so is their determinant from that of a double one, 0.
+
+    Parameters
+    ----------
+    start, box : (N, 3) unknowns, and (N,) how far in mm the exact ones may be from there.
+    rate : (N,) change of the determinant per mm that a peg's centre moves.
+    residual : (N,) error of the equations in mm.
     """
-    found = polished(start, rows, steps, length, DOUBLE_STEPS)
+    found = polish_unknowns(start, rows, steps, length, DOUBLE_STEPS)
     point, _ = place_pegs(found, steps, length)
-    determinant = np.abs(np.linalg.det(wrench_matrix(rows, point, length)))
+    determinant = np.abs(np.linalg.det(compute_wrench_matrices(rows, point, length)))
     apart = 2.0 * np.sqrt(residual * np.maximum(rows[..., RADIUS].max(axis=1), length))
     is_near = np.abs(found - start).max(axis=1) <= 10.0 * box
     return np.asarray(is_near & (determinant + rate * apart < MARGINAL_SEAT))
 
 
 def place_pegs(unknown: Array, steps: Array, length: float) -> tuple[Array, Array]:
-    """The pegs' centres (N, 3, 2), and the steps from the first one as they are turned."""
+    """Return the pegs' centres (N, 3, 2) in the part's frame, and the
+    steps from the first peg turned by psi, in mm.
+
+    ``unknown`` (N, 3) is (L psi, x, y) in mm.
+    """
     c, s = np.cos(unknown[:, :1] / length), np.sin(unknown[:, :1] / length)
     turned = np.stack([c * steps[..., 0] - s * steps[..., 1], s * steps[..., 0] + c * steps[..., 1]], axis=2)
     return unknown[:, None, 1:] + turned, turned
 
 
-def equations(rows: Array, point: Array, turned: Array, length: float) -> tuple[Array, Array]:
-    """The contact equations (N, 3) in mm, and their Jacobian (N, 3, 3) over (L psi, x, y)."""
+def evaluate_equations(rows: Array, point: Array, turned: Array, length: float) -> tuple[Array, Array]:
+    """Return the contact equations (N, 3) in mm, and their Jacobian
+    (N, 3, 3) over (L psi, x, y), a row for each peg.
+    """
     is_arc = rows[..., IS_ARC] != 0.0
     from_row = point - rows[..., [X, Y]]
     far = np.hypot(from_row[..., 0], from_row[..., 1])
@@ -233,7 +268,7 @@ def equations(rows: Array, point: Array, turned: Array, length: float) -> tuple[
 
 
 def invert(matrices: Array) -> Array:
-    """Inverses of (N, 3, 3); NaN where there is none."""
+    """Return the inverses of matrices (N, 3, 3), NaN where a matrix is singular or not finite."""
     out = np.full(matrices.shape, np.nan)
     usable = np.array(np.isfinite(matrices).all(axis=(1, 2)))
     usable[usable] = np.abs(np.linalg.det(matrices[usable])) > 1e-14
@@ -241,8 +276,10 @@ def invert(matrices: Array) -> Array:
     return out
 
 
-def second_derivatives(rows: Array, point: Array, steps: Array, length: float) -> Array:
-    """What bounds the second derivatives (N,) of the equations, per mm, as far as half an arc's radius away."""
+def bound_second_derivatives(rows: Array, point: Array, steps: Array, length: float) -> Array:
+    """Return bounds (N,) of the second derivatives of the equations
+    per mm, valid up to half an arc's radius away.
+    """
     reach = np.hypot(steps[..., 0], steps[..., 1]) / length
     is_arc = rows[..., IS_ARC] != 0.0
     with np.errstate(divide="ignore"):
@@ -250,8 +287,10 @@ def second_derivatives(rows: Array, point: Array, steps: Array, length: float) -
     return np.asarray((reach / length + bent).max(axis=1)) + 1e-12
 
 
-def wrench_matrix(rows: Array, point: Array, length: float) -> Array:
-    """The wrenches (N, 3, 3) of the locators, rows (n, q x n / L)."""
+def compute_wrench_matrices(rows: Array, point: Array, length: float) -> Array:
+    """Return the wrenches (N, 3, 3) of the locators, rows
+    (n, q x n / L) with outward normals n; NaN entries become 0.
+    """
     is_arc = (rows[..., IS_ARC] != 0.0)[..., None]
     straight = np.stack([rows[..., AXIS_Y], -rows[..., AXIS_X]], axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -261,12 +300,14 @@ def wrench_matrix(rows: Array, point: Array, length: float) -> Array:
     return np.asarray(np.nan_to_num(np.concatenate([normal, moment[..., None]], axis=2)))
 
 
-def name_undecided(row: Array, problem: Problem, title: str, reason: str) -> Undecided:
-    """A record that is left undecided; a pair of chords names the tail and the head of each."""
+def name_undecided(row: Array, problem: Problem, title: str, reason: str) -> UndecidedCandidate:
+    """Return a record that stays undecided as a candidate with a
+    reason; a record given up names tail and head of two chords.
+    """
     many = slice(None) if row[record.STANDING] < 0.0 else slice(LOCATORS)
     feature, column, line = (numbers[0, many] for numbers in read_peg_integers(row[None]))
     reach = float(np.degrees(row[record.REACH]))
-    return Undecided(
+    return UndecidedCandidate(
         title,
         tuple(problem.faces[feature].tolist()),
         tuple(column.tolist()),

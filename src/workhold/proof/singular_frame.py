@@ -18,9 +18,9 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from workhold.kernels.base.tables import Limits
-from workhold.proof.ball_contacts import BoxContacts, CandidateBox, compute_contact_values, places
+from workhold.proof.ball_contacts import BoxContacts, CandidateBox, compute_contact_values, place_contacts
 
-__all__ = ["SingularFrame", "decouple_equations", "is_smaller", "newton_step", "cut_in_thirds"]
+__all__ = ["SingularFrame", "decouple_equations", "is_smaller", "take_newton_step", "cut_in_thirds"]
 
 # The exact solution of a box may lie on its rim, so boxes are made larger by this part.
 RIM = 0.1
@@ -32,15 +32,17 @@ MIDDLE, OVERLAP = 0.125, 1.0002
 
 @frozen(eq=False)
 class SingularFrame:
-    """Directions of the Jacobian's singular vectors at the middle of a box.
+    """A frame along the singular vectors of the Jacobian at the middle of a box.
+
+    Coordinates are in mm from the middle.
 
     Parameters
     ----------
     box : the candidate.
     right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined
         last.
-    combining, turning : combinations of the contact equations, one in each row, and ``right``, both as exact
-        balls.
+    combining : combinations of the contact equations, one in each row, as exact balls.
+    turning : ``right`` as exact balls.
     length : L in mm.
     """
 
@@ -51,63 +53,71 @@ class SingularFrame:
     length: float
 
     @classmethod
-    def of(cls, box: CandidateBox, limits: Limits) -> SingularFrame:
-        slopes = places(box, [arb(m) for m in box.middle]).slopes
+    def from_box(cls, box: CandidateBox, limits: Limits) -> SingularFrame:
+        """Return the frame of a candidate's box."""
+        slopes = place_contacts(box, [arb(m) for m in box.middle]).slopes
         jacobian = np.array([[float(s.mid()) for s in row] for row in slopes])
         jacobian[:, 0] /= limits.wrench_length
         u, _, v = np.linalg.svd(jacobian)
         left, right = (arb_mat(4, 4, [float(e) for e in matrix.T.ravel()]) for matrix in (u, v))
         return cls(box, v.T, left, right, limits.wrench_length)
 
-    def start(self) -> list[arb]:
-        """The whole box, in the frame's coordinates in mm, a little larger."""
+    def make_start_box(self) -> list[arb]:
+        """Return the whole box in the frame's coordinates in mm, enlarged by ``RIM``."""
         reach = [self.box.reach[0] * self.length, *self.box.reach[1:]]
         spans = np.abs(self.right.T) @ np.array(reach)
         return [arb(0, float(span) * (1.0 + RIM)) for span in spans]
 
-    def unknowns(self, place: Sequence[arb]) -> list[arb]:
+    def compute_unknowns(self, place: Sequence[arb]) -> list[arb]:
+        """Return (psi, tail x, tail y, separation) at a place in the frame's coordinates."""
         turn, *rest = (self.turning * arb_mat(4, 1, place)).entries()
         steps = turn / self.length, *rest
         return [m + s for m, s in zip(self.box.middle, steps, strict=True)]
 
-    def places(self, place: Sequence[arb]) -> BoxContacts:
-        return places(self.box, self.unknowns(place))
+    def compute_contacts(self, place: Sequence[arb]) -> BoxContacts:
+        """Return the contacts at a place in the frame's coordinates."""
+        return place_contacts(self.box, self.compute_unknowns(place))
 
-    def values(self, place: Sequence[arb]) -> list[arb]:
-        """The combined contact equations at a place in the frame."""
-        values = compute_contact_values(self.box, self.unknowns(place))
+    def evaluate_equations(self, place: Sequence[arb]) -> list[arb]:
+        """Return the combined contact equations in mm at a place in the frame's coordinates."""
+        values = compute_contact_values(self.box, self.compute_unknowns(place))
         return list((self.combining * arb_mat(4, 1, values)).entries())
 
-    def slopes(self, here: BoxContacts) -> list[list[arb]]:
-        """The Jacobian of the combined contact equations by the frame's coordinates."""
+    def evaluate_jacobian(self, here: BoxContacts) -> list[list[arb]]:
+        """Return the Jacobian (4, 4) of the combined contact equations
+        over the frame's coordinates, from the contacts.
+        """
         scaled = [[row[0] / self.length, *row[1:]] for row in here.slopes]
         slopes: list[list[arb]] = (self.combining * arb_mat(scaled) * self.turning).tolist()
         return slopes
 
-    def step(
+    def narrow(
         self, place: list[arb], here: BoxContacts, regular: bool = False
     ) -> tuple[list[arb] | None, bool]:
-        """The part of a place that may hold solutions, None without one, and whether it holds exactly one.
+        """Return the part of a place that may hold solutions, None for no
+        part, and whether it holds exactly one.
 
         This is a step of the interval Newton method; ``here`` are the contacts at the place. A ``regular``
-        step combines the equations by the inverse of their own Jacobian at the place's middle, if it has
-        one. Near a simple solution next to a double one, the Jacobian at the whole box's middle
-        does not separate the directions.
+        step combines the equations by the inverse of their own Jacobian at the place's middle, if it has one.
+        Near a simple solution next to a double one, the Jacobian at the whole box's middle does not separate
+        the directions.
         """
         middle = [arb(p.mid()) for p in place]
-        values, slopes = self.values(middle), self.slopes(here)
+        values, slopes = self.evaluate_equations(middle), self.evaluate_jacobian(here)
         if regular:
             combined = decouple_equations(values, slopes)
             if combined is None:
                 return place, False
             values, slopes = combined
-        return newton_step(place, values, slopes)
+        return take_newton_step(place, values, slopes)
 
 
 def decouple_equations(
     values: Sequence[arb], slopes: Sequence[Sequence[arb]]
 ) -> tuple[list[arb], list[list[arb]]] | None:
-    """N equations and their Jacobian, combined by its inverse at the middle; None where it has none there."""
+    """Return N equations and their Jacobian (N, N), multiplied by its
+    inverse at the middle; None where that is singular.
+    """
     jacobian = arb_mat(slopes)
     try:
         inverse = jacobian.mid().inv().mid()
@@ -116,13 +126,14 @@ def decouple_equations(
     return list((inverse * arb_mat(len(values), 1, values)).entries()), (inverse * jacobian).tolist()
 
 
-def newton_step(
+def take_newton_step(
     place: Sequence[arb], values: Sequence[arb], slopes: Sequence[Sequence[arb]]
 ) -> tuple[list[arb] | None, bool]:
-    """The part of a place with solutions, None without one, and whether it is seen to hold exactly one.
+    """Return the part of a place that may hold solutions, None for no
+    part, and whether it is shown to hold exactly one.
 
-    This is the step of Hansen and Sengupta: values are those of N equations at the place's middle, and
-    slopes (N, N) enclose their Jacobian over the place.
+    This is the step of Hansen and Sengupta: ``values`` are those of N equations at the place's middle, and
+    ``slopes`` (N, N) enclose their Jacobian over the place.
     """
     middle = [arb(p.mid()) for p in place]
     out, inside = list(place), True
@@ -144,12 +155,13 @@ def newton_step(
 
 
 def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> bool:
-    """Whether a step has made a place so much smaller that another is worth it."""
+    """Return whether some side of ``part`` is less than ``share`` of that of ``place``."""
     return any(one.rad() < share * whole.rad() for one, whole in zip(part, place, strict=True))
 
 
 def cut_in_thirds(place: list[arb]) -> list[list[arb]]:
-    """A place cut in three where it is longest, a narrow part in the middle, all a little larger.
+    """Return a place cut in three along its longest side, a narrow part
+    in the middle (listed last), all slightly enlarged.
 
     A double solution is in the middle of most boxes. Cut there, it would be on the rim of both halves.
     """

@@ -27,7 +27,7 @@ from flint import arb, arb_mat, arb_series, ctx
 
 from workhold.kernels.base.tables import Limits
 from workhold.proof.ball_contacts import compute_contact_values, is_empty
-from workhold.proof.singular_frame import SingularFrame, cut_in_thirds, is_smaller, newton_step
+from workhold.proof.singular_frame import SingularFrame, cut_in_thirds, is_smaller, take_newton_step
 
 __all__ = ["SolutionCurve", "TaylorForm", "find_roots_on_curve"]
 
@@ -46,26 +46,29 @@ SHARP, SHARPENINGS = 1e-20, 3
 
 @frozen(eq=False)
 class TaylorForm:
-    """A function of one unknown t about 0.
+    """A function of one unknown t about 0: terms[0] + terms[1] t + ... + last t^n.
 
     Parameters
     ----------
     terms : n balls, the coefficients at 0.
-    last : the coefficient of order n anywhere in the range.
+    last : a ball with the coefficient of order n anywhere in the range.
     """
 
     terms: Sequence[arb]
     last: arb
 
-    def at(self, t: arb) -> arb:
-        """The values on a ball in the range."""
+    def evaluate(self, t: arb) -> arb:
+        """Return an enclosure of the values on a ball in the range."""
         value = self.last
         for term in reversed(self.terms):
             value = value * t + term
         return value
 
-    def slope(self, t: arb) -> arb:
-        """The derivatives on a ball in the range, whose remainder is of the same derivative of order n."""
+    def evaluate_slope(self, t: arb) -> arb:
+        """Return an enclosure of the derivatives on a ball in the range.
+
+        The remainder of the derivative has the same derivative of order n.
+        """
         order = len(self.terms)
         value = order * self.last
         for k in range(order - 1, 0, -1):
@@ -80,40 +83,50 @@ class SolutionCurve:
     Parameters
     ----------
     center : the fourth coordinate of the frame at the point.
-    unknowns : the three well determined coordinates, as functions of the fourth from there.
-    rest : the fourth combined equation on the curve.
+    unknowns : the three well determined coordinates, as functions of the fourth minus ``center``.
+    rest : the fourth combined equation on the curve, as such a function.
     """
 
     center: arb
     unknowns: Sequence[TaylorForm]
     rest: TaylorForm
 
-    def place(self, t: arb) -> list[arb]:
-        """The part of the frame's coordinates that the curve passes for the last one in a ball."""
-        return [*(unknown.at(t - self.center) for unknown in self.unknowns), t]
+    def find_place(self, t: arb) -> list[arb]:
+        """Return an enclosure of the frame's coordinates on the curve
+        while the fourth coordinate is in the ball t.
+        """
+        return [*(unknown.evaluate(t - self.center) for unknown in self.unknowns), t]
 
-    def value(self, t: arb) -> arb:
-        """The fourth equation on a ball."""
-        return self.rest.at(t - self.center)
+    def evaluate_equation(self, t: arb) -> arb:
+        """Return an enclosure of the fourth equation on a ball t of the fourth coordinate."""
+        return self.rest.evaluate(t - self.center)
 
-    def slope(self, t: arb) -> arb:
-        return self.rest.slope(t - self.center)
+    def evaluate_slope(self, t: arb) -> arb:
+        """Return an enclosure of the derivative of the fourth equation on a ball t of the fourth
+        coordinate.
+        """
+        return self.rest.evaluate_slope(t - self.center)
 
     def has_zero(self, t: arb) -> bool:
-        """Whether the fourth equation may hold in a ball, by the mean value theorem as well."""
+        """Return whether the fourth equation may be 0 in a ball, by its
+        values and by the mean value theorem.
+        """
         middle = arb(t.mid())
         return bool(
-            self.value(t).contains(0) and (self.value(middle) + self.slope(t) * (t - middle)).contains(0)
+            self.evaluate_equation(t).contains(0)
+            and (self.evaluate_equation(middle) + self.evaluate_slope(t) * (t - middle)).contains(0)
         )
 
     def is_blurred(self, t: arb) -> bool:
-        """Whether the equation in the middle of a ball is not known much better than throughout."""
-        return bool(self.value(arb(t.mid())).rad() > BLUR * self.value(t).rad())
+        """Return whether the error of the equation in the middle of a
+        ball exceeds ``BLUR`` times its variation over the ball.
+        """
+        return bool(self.evaluate_equation(arb(t.mid())).rad() > BLUR * self.evaluate_equation(t).rad())
 
 
 @contextmanager
 def set_series_terms(count: int) -> Iterator[None]:
-    """Power series are worked with to so many terms."""
+    """Let python-flint's power series have ``count`` terms within a ``with`` block."""
     before, ctx.cap = ctx.cap, count
     try:
         yield
@@ -122,12 +135,13 @@ def set_series_terms(count: int) -> Iterator[None]:
 
 
 def find_roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]] | None:
-    """Finds all solutions of a box that may be fixtures, each alone in a part of the box.
+    """Return a part of a box, in the frame's coordinates, for each
+    solution that may be a fixture; each has one solution.
 
-    None where the well determined coordinates are not shown to be a function of the other one, or where f
-    vanishes so nearly that ``MOST_PARTS`` parts do not decide.
+    Return None where the three well determined coordinates are not shown to be a function of the fourth, or
+    where the fourth equation vanishes so nearly along it that ``MOST_PARTS`` parts do not decide.
     """
-    *well, t = frame.start()
+    *well, t = frame.make_start_box()
     well, is_curve = bound_along_curve(frame, well, t)
     whole = find_curve_about(frame, well, t) if is_curve else None
     if whole is None:
@@ -135,14 +149,14 @@ def find_roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]]
     waiting, roots = [(whole, t)], list[tuple[SolutionCurve, arb]]()
     for _ in range(MOST_PARTS):
         if not waiting:
-            return [sharpened(frame, curve.place(root)) for curve, root in roots]
+            return [sharpen_root(frame, curve.find_place(root)) for curve, root in roots]
         curve, t = waiting.pop()
         if not curve.has_zero(t):
             continue
-        found = newton(curve, t)
+        found = isolate_root(curve, t)
         if found is None:
-            place = curve.place(t)
-            if not is_empty(frame.box, frame.places(place), limits):
+            place = curve.find_place(t)
+            if not is_empty(frame.box, frame.compute_contacts(place), limits):
                 if curve.is_blurred(t):
                     curve = find_curve_about(frame, place[:3], t) or curve
                 waiting += [(curve, part) for (part,) in cut_in_thirds([t])]
@@ -152,18 +166,20 @@ def find_roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]]
 
 
 def is_same(curve: SolutionCurve, one: arb, other: arb) -> bool:
-    """Whether two balls with one root each have the same one, which is in two parts that overlap."""
-    return bool(one.overlaps(other)) and not curve.slope(one.union(other)).contains(0)
+    """Return whether two balls with one root each certainly have the same root, which lies in both."""
+    return bool(one.overlaps(other)) and not curve.evaluate_slope(one.union(other)).contains(0)
 
 
-def newton(curve: SolutionCurve, t: arb) -> list[arb] | None:
-    """A small part of a ball with the one root in it, or none; None where it may have several or none."""
-    if curve.slope(t).contains(0):
+def isolate_root(curve: SolutionCurve, t: arb) -> list[arb] | None:
+    """Return a list with a smaller ball that holds the one root in a
+    ball, an empty list for no root; None if undecided.
+    """
+    if curve.evaluate_slope(t).contains(0):
         return None
     is_root = False
     for _ in range(REFINEMENTS):
         middle = arb(t.mid())
-        image = middle - curve.value(middle) / curve.slope(t)
+        image = middle - curve.evaluate_equation(middle) / curve.evaluate_slope(t)
         if not image.overlaps(t):
             return []
         is_root = is_root or t.contains_interior(image)
@@ -174,19 +190,22 @@ def newton(curve: SolutionCurve, t: arb) -> list[arb] | None:
     return [t] if is_root else None
 
 
-def sharpened(frame: SingularFrame, place: list[arb]) -> list[arb]:
-    """The place of one root known better, on the curve expanded there."""
+def sharpen_root(frame: SingularFrame, place: list[arb]) -> list[arb]:
+    """Return a smaller place of one root, on the curve expanded there again."""
     for _ in range(SHARPENINGS):
         curve = find_curve_about(frame, place[:3], place[3])
-        found = newton(curve, place[3]) if curve is not None and place[3].rad() > SHARP else None
+        found = isolate_root(curve, place[3]) if curve is not None and place[3].rad() > SHARP else None
         if curve is None or not found:
             break
-        place = curve.place(found[0])
+        place = curve.find_place(found[0])
     return place
 
 
 def find_curve_about(frame: SingularFrame, well: list[arb], t: arb) -> SolutionCurve | None:
-    """The curve where its last coordinate is in a ball; it is known to be there, and where the others are."""
+    """Return the curve for the fourth coordinate in a ball; None where it cannot be expanded.
+
+    ``well`` are balls of the other three, which must hold the curve over t.
+    """
     middle = arb(t.mid())
     whole, begun = bound_along_curve(frame, well, t)[0], bound_along_curve(frame, well, middle)[0]
     with set_series_terms(ORDER + 1):
@@ -198,24 +217,25 @@ def find_curve_about(frame: SingularFrame, well: list[arb], t: arb) -> SolutionC
 
 
 def bound_along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[list[arb], bool]:
-    """The part of three coordinates that is passed for the fourth in a ball, and whether by a curve.
+    """Return the part of three coordinates that solutions have for
+    the fourth in a ball, and whether it holds a curve.
 
-    It is by one where a step of Hansen and Sengupta in three unknowns maps the part into its own inside, for
-    every t alike: exactly one point for each. By the implicit function theorem these make a smooth curve.
+    It does where a step of Hansen and Sengupta in three unknowns maps the part into its own inside, for every
+    t alike: exactly one point for each. By the implicit function theorem these make a smooth curve.
     """
     is_curve, middle_t = False, arb(t.mid())
     for _ in range(MOST_STEPS):
         middle = [arb(p.mid()) for p in well]
-        slopes = frame.slopes(frame.places([*well, t]))
-        values = frame.values([*middle, middle_t])
-        inverse = inverse_of(slopes, middle=True)
+        slopes = frame.evaluate_jacobian(frame.compute_contacts([*well, t]))
+        values = frame.evaluate_equations([*middle, middle_t])
+        inverse = invert_jacobian(slopes, middle=True)
         if inverse is None:
             break
         off = inverse * arb_mat(3, 1, [values[k] + slopes[k][3] * (t - middle_t) for k in range(3)])
         matrix = inverse * arb_mat([row[:3] for row in slopes[:3]])
         if any(matrix[k, k].contains(0) for k in range(3)):
             break
-        out, inside = newton_step(well, off.entries(), matrix.tolist())
+        out, inside = take_newton_step(well, off.entries(), matrix.tolist())
         if out is None:
             break
         is_curve, before, well = is_curve or inside, well, out
@@ -224,8 +244,12 @@ def bound_along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[li
     return well, is_curve
 
 
-def inverse_of(slopes: Sequence[Sequence[arb]], middle: bool = False) -> Any:
-    """The inverse of the Jacobian of three equations and coordinates, or an exact one near it."""
+def invert_jacobian(slopes: Sequence[Sequence[arb]], middle: bool = False) -> Any:
+    """Return the inverse of the Jacobian of the first three equations
+    over three coordinates; None where it is singular.
+
+    With ``middle``, return an exact matrix near that inverse.
+    """
     matrix = arb_mat([row[:3] for row in slopes[:3]])
     try:
         return matrix.mid().inv().mid() if middle else matrix.inv()
@@ -234,12 +258,14 @@ def inverse_of(slopes: Sequence[Sequence[arb]], middle: bool = False) -> Any:
 
 
 def expand_power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[list[arb]] | None:
-    """Coefficients of q_1, q_2, q_3 and f about a point of the curve, or about all points in a part of it.
+    """Return the power series of the three well determined coordinates and
+    of the fourth equation, over the fourth coordinate.
 
-    The residual of order k of the three equations is linear in the coefficients of order k. So these are
-    found one after the other.
+    They are about a point of the curve, or about all points in a part of it (``well`` and t); ORDER + 1
+    coefficients each. Return None where the Jacobian is singular. The residual of order k of the three
+    equations is linear in the coefficients of order k. So these are found one after the other.
     """
-    inverse = inverse_of(frame.slopes(frame.places([*well, t])))
+    inverse = invert_jacobian(frame.evaluate_jacobian(frame.compute_contacts([*well, t])))
     if inverse is None:
         return None
     terms, last = [[value] for value in well], arb_series([t, 1])
@@ -253,13 +279,13 @@ def expand_power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[l
 
 
 def compute_series_values(frame: SingularFrame, place: Sequence[Any]) -> list[Any]:
-    """The combined contact equations at power series of the frame's coordinates."""
-    turn, *steps = product(frame.turning, place)
+    """Return the four combined contact equations at power series of the frame's coordinates."""
+    turn, *steps = multiply_series(frame.turning, place)
     unknowns = [m + s for m, s in zip(frame.box.middle, [turn / frame.length, *steps], strict=True)]
-    return product(frame.combining, compute_contact_values(frame.box, unknowns))
+    return multiply_series(frame.combining, compute_contact_values(frame.box, unknowns))
 
 
-def product(matrix: Any, vector: Sequence[Any]) -> list[Any]:
-    """A 4 x 4 matrix of balls times a vector of power series."""
+def multiply_series(matrix: Any, vector: Sequence[Any]) -> list[Any]:
+    """Return the product of a 4 x 4 matrix of balls with a vector of four power series."""
     rows = matrix.tolist()
     return [sum((a * b for a, b in zip(row, vector, strict=True)), arb_series([0])) for row in rows]

@@ -1,4 +1,4 @@
-"""Memory that the kernels of a search write to, of which each thread has its own."""
+"""Buffers that the kernels of a search write to, a set of its own for each thread."""
 
 from __future__ import annotations
 
@@ -18,32 +18,37 @@ from workhold.kernels.curves.block_work import (
 
 __all__ = ["BlockMemory"]
 
-# Rows to begin with.
+# Initial numbers of rows of each buffer.
 FIRST_RECORDS, FIRST_PIECES, FIRST_MEMBERS = 256, 1024, 1024
 
 
 class BlockMemory(local):
-    """The memory of one search; it grows where a kernel has no room for all it finds."""
+    """Buffers that the kernels of one search write to, one set
+    for each thread; they grow when a kernel runs out of room.
+    """
 
     def __init__(self) -> None:
         self.records, self.pieces, self.members = FIRST_RECORDS, FIRST_PIECES, FIRST_MEMBERS
         self.renew()
 
     def renew(self) -> None:
-        """Make memory of the present size."""
+        """Replace the buffers by new ones of the present sizes; their contents are lost."""
         self.space: BlockSpace = make_block_space(self.records, self.pieces, self.members)
 
-    def run(
+    def run_kernel(
         self, kernel: Callable[..., int], members: NDArray[np.int64], stats: NDArray[np.int64], *given: Any
     ) -> NDArray[np.float64]:
-        """Run a kernel until it has room, and return the (N, 19) records that it finds.
+        """Run a kernel, again with larger buffers while these
+        are too small, and return a copy of its (N, 19) records.
 
         Parameters
         ----------
-        members : (M,) curves, the kernel's first argument.
-        stats : (5,) counts that the kernel adds to, its last argument but the memory; what it counts before it
-            has room is taken back.
-        given : its other arguments.
+        kernel : called as ``kernel(members, *given, stats, space)``; returns the number of records, or a
+            negative code where the buffers are too small.
+        members : (M,) indices of curves.
+        stats : (5,) counts that the kernel adds to; counts of runs without enough room are taken back, except
+            the stop flag.
+        given : the kernel's other arguments.
         """
         if len(members) > self.members:
             self.members = max(2 * self.members, len(members))

@@ -1,9 +1,9 @@
 """Why no contacts on a lattice make a fixture: what each rule takes away of them until none is left.
 
-Every simultaneous contact is asked which rule it breaks first. The rules are asked one after the other, as a
-person would. First comes what the user ruled out, then whether four pegs can touch at all, contact margin,
-smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts as computed, in
-plain numbers; the proof that there is no fixture is the search's.
+For every simultaneous contact the first rule that it breaks is found. The rules are tested in the order in
+which a person would: first the user's restrictions, then whether four pegs can touch at all, contact margin,
+smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts in floating-point
+arithmetic; the proof that there is no fixture is the search's.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.features import measure_end_distances
-from workhold.contact.problem import Frame, Problem
+from workhold.contact.problem import Problem, SearchFrame
 from workhold.contact.swept import list_swept_clearances
 from workhold.contact.trimming import find_line_most_in_the_way
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
@@ -26,24 +26,24 @@ from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
 from workhold.limits import choose_thread_count
-from workhold.listing.asked import are_precise, touch_all
-from workhold.listing.canonical_form import Candidates, list_each_once, make_candidates, make_canonical
+from workhold.listing.asked import are_precise, are_touching_all
+from workhold.listing.canonical_form import CandidateFixtures, list_each_once, make_candidates, make_canonical
 from workhold.listing.placing import are_placeable, place_candidates
 from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
-from workhold.model.search_report import NearestMiss, Removal
+from workhold.model.search_report import NearestMiss, RuleRemoval
 from workhold.proof.deciding import is_standing
 from workhold.search.cells import run_blocks
 from workhold.search.shares import has_body_to_pass
-from workhold.search.toolkit_search import ToolkitSearch, contacts_of
+from workhold.search.toolkit_search import ToolkitSearch, count_problem_contacts
 from workhold.statics.contact_matrix import compute_outward_normals
 from workhold.units import Unit
 
 __all__ = [
-    "Removals",
+    "RuleRemovals",
     "SECOND_CLAMP",
     "find_all_contacts",
     "describe_body_rule",
@@ -53,34 +53,38 @@ __all__ = [
     "describe_stroke_rule",
 ]
 
-# What is asked last of locators and a clamp, where two clamps are needed.
+# The rule that is asked last of locators and one clamp, where two clamps are needed.
 SECOND_CLAMP = "a second clamp that holds the part together with the first, and is needed for it"
 
 
-def drop_removals_of_nothing(removals: Iterable[Removal]) -> tuple[Removal, ...]:
-    """Removals without those of rules for which no contact was left."""
+def drop_removals_of_nothing(removals: Iterable[RuleRemoval]) -> tuple[RuleRemoval, ...]:
+    """Return the removals of those rules that were asked of at least one contact, in the same order."""
     return tuple(removal for removal in removals if removal.before > 0)
 
 
 @frozen
-class Removals:
-    """What rules take away, one after the other.
+class RuleRemovals:
+    """How many contacts each rule takes away, one rule after the other.
 
     Parameters
     ----------
     first : how many contacts there are before any rule.
-    removals : of the rules for which contacts were left, in the order in which they are asked.
-    nearest : what comes nearest to a fixture, if anything is near.
+    removals : one for each rule that was asked of at least one contact, in the order in which the rules are
+        asked.
+    nearest : the contact that comes nearest to being a fixture, and why it is none; None where none is near
+        or known.
     """
 
     first: int
-    removals: tuple[Removal, ...] = field(converter=drop_removals_of_nothing)
+    removals: tuple[RuleRemoval, ...] = field(converter=drop_removals_of_nothing)
     nearest: NearestMiss | None
 
     @classmethod
-    def together(cls, found: Sequence[Removals]) -> Removals:
-        """The removals of several directions as one, with what came nearest where the most was left
-        longest."""
+    def merge(cls, found: Sequence[RuleRemovals]) -> RuleRemovals:
+        """Return the sums of the removals of several directions of the clamp, rule by rule.
+
+        The nearest miss is that of the direction with the most rules asked before no contact was left.
+        """
         # A rule may be asked twice in one direction, early where that saves work and again at its place.
         counts: dict[tuple[str, int], tuple[int, int]] = {}
         for one in found:
@@ -90,82 +94,95 @@ class Removals:
                 before, after = counts.get(asked, (0, 0))
                 counts[asked] = before + removal.before, after + removal.after
         nearest = max(found, key=lambda one: len(one.removals)).nearest
-        removals = tuple(Removal(rule, *numbers) for (rule, _), numbers in counts.items())
+        removals = tuple(RuleRemoval(rule, *numbers) for (rule, _), numbers in counts.items())
         return cls(sum(one.first for one in found), removals, nearest)
 
 
 Array = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-# ContactSets kept from each block of the search; far more than a part without a fixture has.
+# Contact sets listed by each block of the search; far more than a part without a fixture has.
 MOST_LISTED = 5_000
-# Pegs this near in x, in mm, are even.
+# mm. Pegs whose x differ by less count as equally far right.
 EVEN = 1e-6
-# Where something is that lies along +x of a frame so many quarter turns on.
+# Words for the direction +x of a frame that is turned by 0, 1, 2 or 3 quarter turns.
 BESIDE = ("to the right of", "above", "to the left of", "below")
-# A contact misses closure by this much at most to be called near.
+# A contact whose smallest share of force is above minus this is said to have a contact without force.
 ROUNDING = 1e-12
 
 
 @define(frozen=True, eq=False)
 class ContactSets:
-    """N sets of four simultaneous contacts and what the rules ask of them.
+    """N sets of four simultaneous contacts, with the figures that the rules test.
 
     Parameters
     ----------
-    candidates : the contacts, as fixtures would be.
-    margin : (N,) smallest entry of the null vector of sum of sizes 1, of the sign that makes it largest.
-    null : (N, 4) that null vector.
-    clamping : (N,) the clamping force for it.
+    candidates : the contacts as candidates for fixtures.
+    null : (N, 4) null vector of the wrenches, sizes summing to 1, with the sign that makes its smallest entry
+        largest.
+    margin : (N,) smallest entry of ``null``; -1.0 where the wrenches do not span the space.
+    clamping : (N,) clamping force that goes with ``null``.
     end_distance : (N,) smallest distance in mm to the end of a feature, as the contact margin counts it.
     """
 
-    candidates: Candidates
+    candidates: CandidateFixtures
     margin: Array
     null: Array
     clamping: Array
     end_distance: Array
 
     def take(self, chosen: BoolArray) -> ContactSets:
-        """Some of them."""
+        """Return the contact sets that a mask (N,) selects."""
         rest = (values[chosen] for values in (self.margin, self.null, self.clamping, self.end_distance))
         return ContactSets(self.candidates.take(chosen), *rest)
 
 
-def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> Removals:
-    """How many contacts there are without any restriction, what each rule takes away of them, and what comes
-    nearest.
+def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> RuleRemovals:
+    """Return how many simultaneous contacts there are
+    without restrictions, and how many each rule takes away.
+
+    With them comes the contact that is nearest to being a fixture, if a rule leaves none.
 
     Parameters
     ----------
-    alone : whether one clamp is to hold the part; of two the contacts are those of three locators and one of
-        them. None comes nearest, as each is a clamp short.
+    threads : None for one on each processor.
+    unit : of the lengths in the words of the nearest miss.
+    alone : whether one clamp holds the part. If False, two are needed: the contacts are those of three
+        locators and one clamp, the rule :data:`SECOND_CLAMP` takes all of them away, and there is no nearest
+        miss.
     """
     contacts = find_all_contacts(problem, threads)
     first, removals = count_restriction_removals(problem, threads, len(contacts.margin))
     if not alone:
-        return Removals(first, [*removals, Removal(SECOND_CLAMP, len(contacts.margin), 0)], None)
+        return RuleRemovals(first, [*removals, RuleRemoval(SECOND_CLAMP, len(contacts.margin), 0)], None)
     nearest = None
-    for rule, keeps, miss in rules(problem, unit):
+    for rule, keeps, miss in list_rules(problem, unit):
         if len(contacts.margin) == 0:
             break
         kept = keeps(contacts)
-        removals.append(Removal(rule, len(kept), int(kept.sum())))
+        removals.append(RuleRemoval(rule, len(kept), int(kept.sum())))
         if not kept.any():
             nearest = make_nearest_miss(contacts, miss(contacts), problem)
         contacts = contacts.take(kept)
-    return Removals(first, removals, nearest)
+    return RuleRemovals(first, removals, nearest)
 
 
 def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
-    """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
+    """Return every set of four simultaneous contacts of a
+    problem, each once, whether or not it keeps the rules.
+
+    The search uses a contact margin of 0, and lists at most :data:`MOST_LISTED` sets per block of work.
+    ``threads`` None is one on each processor.
+    """
     workers = choose_thread_count(threads)
-    search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
-    records, _ = run_blocks(search.blocks(problem.query.types), workers, None, None)
-    swapped = search.frame.swapped
+    search = ToolkitSearch.from_problem(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
+    records, _ = run_blocks(search.make_blocks(problem.query.types), workers, None, None)
+    swapped = search.frame.swapped_peg_count
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
-    c = list_each_once(facing(make_canonical(make_candidates(together, problem), swapped), swapped))
+    c = list_each_once(
+        select_facing_right(make_canonical(make_candidates(together, problem), swapped), swapped)
+    )
     rows = problem.rows[c.feature]
     normals = compute_outward_normals(rows, c.point)
     # All entries are -1 where the wrenches do not span the space.
@@ -183,53 +200,62 @@ def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
     )
 
 
-def facing(c: Candidates, swapped: int) -> Candidates:
-    """Contacts with the moving chord on the right, where the carriers may swap their ``swapped`` pegs: those
-    whose moving pegs are farther right in the middle.
+def select_facing_right(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
+    """Return the contacts without those that repeat another with the two carriers' pegs exchanged.
 
-    Either chord may be on the left, and each set of four contacts is found both ways. Where neither is
-    farther right, the lower one is taken for the right one.
+    Where as many pegs stand as ``swapped``, so that the carriers may exchange them, each set of four contacts
+    is found both ways. The one is kept whose moving pegs are farther in +x on average; with equal x, the one
+    whose moving pegs are lower in y.
     """
     across, upward = rotate_vectors(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
     return c.take((c.standing != swapped) | (right > EVEN) | ((right > -EVEN) & (lower > 0.0)))
 
 
-def count_restriction_removals(problem: Problem, threads: int | None, left: int) -> tuple[int, list[Removal]]:
-    """Simultaneous contacts without any restriction, and what each kind of restriction takes away of them.
+def count_restriction_removals(
+    problem: Problem, threads: int | None, left: int
+) -> tuple[int, list[RuleRemoval]]:
+    """Return how many simultaneous contacts there are without
+    restrictions, and what each restriction takes away.
+
+    The restrictions, in order: faces to avoid, keep-out zones, program, blocked holes and peg bodies, angles;
+    only those that are asked for.
 
     Parameters
     ----------
-    left : contacts that keep all restrictions.
+    left : how many contacts keep all restrictions.
     """
     toolkit, asked = problem.toolkit, problem.restrictions
     holes = [limit for limit in toolkit.limits if limit.bounds == "holes"]
     bodies = [limit for limit in toolkit.limits if limit.bounds == "bodies"]
-    free = toolkit.without([*holes, *bodies])
+    free = toolkit.without_limits([*holes, *bodies])
     steps: list[tuple[str, Restrictions, Toolkit, Query]] = []
     whole, bare = problem.query, problem.query.without_program
     if asked.avoid:
         steps.append(("faces to avoid", Restrictions(avoid=asked.avoid), free, bare))
     if asked.zones:
-        # What stands over a zone is a peg's body.
+        # Only bodies of pegs can reach over a zone, so their limits are kept here.
         zones = Restrictions(avoid=asked.avoid, zones=asked.zones)
-        steps.append(("keep-out zones", zones, toolkit.without(holes), bare))
+        steps.append(("keep-out zones", zones, toolkit.without_limits(holes), bare))
     if whole.program is not None:
-        steps.append((describe_program_rule(whole), evolve(asked, angles=()), toolkit.without(holes), whole))
+        steps.append(
+            (describe_program_rule(whole), evolve(asked, angles=()), toolkit.without_limits(holes), whole)
+        )
     if holes or bodies:
         steps.append((toolkit.wording.holes, evolve(asked, angles=()), toolkit, whole))
     if asked.angles:
         steps.append(("angles of the part", asked, toolkit, whole))
 
     def count(restrictions: Restrictions, held_in: Toolkit, query: Query) -> int:
+        """Return how many simultaneous contacts there are under these restrictions."""
         asked = evolve(query, toolkit=held_in, restrictions=restrictions, contact_margin=0.0)
-        return contacts_of(Problem.of(asked), threads)
+        return count_problem_contacts(Problem.from_query(asked), threads)
 
     first = before = max(count(Restrictions(), free, bare), left) if steps else left
     removals = []
     for rule, restrictions, held_in, query in steps:
         after = left if rule == steps[-1][0] else min(max(count(restrictions, held_in, query), left), before)
-        removals.append(Removal(rule, before, after))
+        removals.append(RuleRemoval(rule, before, after))
         before = after
     return first, removals
 
@@ -237,9 +263,13 @@ def count_restriction_removals(problem: Problem, threads: int | None, left: int)
 Rule = tuple[str, Callable[[ContactSets], BoolArray], Callable[[ContactSets], tuple[int, str]]]
 
 
-def rules(problem: Problem, unit: Unit) -> list[Rule]:
-    """The rules in the order they are asked: words, which contacts keep it, and which broken one comes
-    nearest and why."""
+def list_rules(problem: Problem, unit: Unit) -> list[Rule]:
+    """Return the rules from contact margin to exact test, in the order in which they are asked.
+
+    Each rule is a triple: its words; a function that returns which contacts (N,) keep it; and a function that
+    returns, of contacts that all break it, the index of the nearest one and a sentence why it breaks the
+    rule.
+    """
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
     if margin > 0.0:
@@ -265,9 +295,10 @@ def rules(problem: Problem, unit: Unit) -> list[Rule]:
 
 
 def list_placing_rules(problem: Problem) -> list[Rule]:
-    """The rules about where fixtures stand on the carriers, as far as the toolkit and the user have any.
+    """Return the rules about the place on the carriers: clear
+    of the clamp, the toolkit's limits, angles of the part.
 
-    The angles come after the pegs' bodies, and each rule is asked together with those before it.
+    Each rule's test includes the rules before it. Angles are asked after the limits on the pegs' bodies.
     """
     toolkit, asked = problem.toolkit, problem.restrictions
     limits = toolkit.limits
@@ -275,9 +306,10 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
     out: list[Rule] = []
 
     def rule(words: str, kept: int, restrictions: Restrictions, asked_of: Query = problem.query) -> None:
-        query = evolve(asked_of, toolkit=toolkit.without(limits[kept:]), restrictions=restrictions)
+        """Append a rule that tests the first ``kept`` limits of the toolkit and some restrictions."""
+        query = evolve(asked_of, toolkit=toolkit.without_limits(limits[kept:]), restrictions=restrictions)
         part = evolve(problem, query=query)
-        keeps = partial(no_place, toolkit.noun, words)
+        keeps = partial(explain_no_place, toolkit.noun, words)
         out.append((words, lambda c: are_placeable(c.candidates, part), keeps))
 
     if problem.frame.moving.on is not None:
@@ -287,7 +319,7 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
             rule("angles of the part", first, asked)
         ruled_out = asked if number >= first else Restrictions()
         if limit.bounds == "travel" and has_body_to_pass(problem.query):
-            # First without what the tools do to the body that the stroke gives the clamp.
+            # First without the program, then with the rule that tools keep clear of the clamp's body.
             rule(limit.rule, number + 1, ruled_out, problem.query.without_program)
             rule(describe_body_rule(problem.query), number + 1, ruled_out)
         else:
@@ -298,7 +330,9 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
 
 
 def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
-    """The rules that are asked of each fixture by itself, as far as the user has any."""
+    """Return the rules asked of each fixture by itself:
+    faces to touch and largest location error, if given.
+    """
     query, out = problem.query, list[Rule]()
 
     def table(c: ContactSets) -> FixtureTable:
@@ -319,7 +353,7 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
         )
 
     if query.restrictions.touch:
-        out.append(("faces to touch", lambda c: touch_all(table(c), query), untouched))
+        out.append(("faces to touch", lambda c: are_touching_all(table(c), query), untouched))
     if query.max_location_error is not None:
         out.append(
             (
@@ -332,12 +366,15 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
 
 
 def keep_no_contact(contacts: ContactSets) -> BoolArray:
-    """None of the contacts."""
+    """Return False for each of the contacts, (N,)."""
     return np.zeros(len(contacts.margin), np.bool_)
 
 
 def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str]:
-    """The contact whose pegs are farthest from the ends of their faces."""
+    """Return the index of the contact farthest inside the ends of its features, and why it breaks the margin.
+
+    ``margin`` is in mm, ``unit`` that of the sentence.
+    """
     index = int(c.end_distance.argmax())
     return index, (
         f"a peg touches {unit.format_length(c.end_distance[index])} from where its face ends for it; "
@@ -345,8 +382,10 @@ def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int,
     )
 
 
-def find_miss_of_gap(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str]:
-    """The contact whose moving pegs are farthest along the travel from the others."""
+def find_miss_of_gap(frame: SearchFrame, unit: Unit, c: ContactSets) -> tuple[int, str]:
+    """Return the index of the contact with the largest gap,
+    and a sentence that compares it with the smallest gap.
+    """
     index = int(c.candidates.gap.argmax())
     gap = c.candidates.gap[index]
     beyond = BESIDE[frame.quarters if gap >= 0 else (frame.quarters + 2) % 4]
@@ -358,7 +397,7 @@ def find_miss_of_gap(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str
 
 
 def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
-    """The contact that comes nearest to force closure."""
+    """Return the index of the contact that comes nearest to force closure, and a sentence why it has none."""
     index = int(c.margin.argmax())
     if c.margin[index] > -ROUNDING:
         return (
@@ -371,44 +410,58 @@ def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
     return index, f"{many} would have to pull the part instead of pressing on it: the part can slip out."
 
 
-def find_miss_of_clamping(frame: Frame, c: ContactSets) -> tuple[int, str]:
-    """The contact that comes nearest to being clamped."""
+def find_miss_of_clamping(frame: SearchFrame, c: ContactSets) -> tuple[int, str]:
+    """Return the index of the contact with the largest
+    clamping force, and a sentence why it does not clamp.
+    """
     return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
 
 
-def no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
-    """The best of what cannot be placed."""
+def explain_no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
+    """Return the index of the contact with the largest closure
+    margin, and a sentence that no place is allowed for it.
+
+    ``noun`` names the toolkit, ``words`` the limit.
+    """
     return int(
         c.margin.argmax()
     ), f"it would hold, but the limits that were given for the {noun} forbid it: {words}."
 
 
 def find_miss_of_exact_test(c: ContactSets) -> tuple[int, str]:
-    """The best of what the exact test removes."""
+    """Return the index of the contact with the largest closure
+    margin, and a sentence that rounding alone lets it pass.
+    """
     return int(c.margin.argmax()), "it meets every rule to within rounding, but not exactly."
 
 
 def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem) -> NearestMiss:
-    """A contact that is no fixture, placed in a toolkit without limits."""
+    """Return a contact as a fixture placed in the toolkit without its limits, with the words of its miss.
+
+    ``miss`` is the contact's index and the sentence.
+    """
     index, words = miss
-    toolkit = problem.toolkit.without(problem.toolkit.limits)
+    toolkit = problem.toolkit.without_limits(problem.toolkit.limits)
     part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
     table = place_candidates(contacts.candidates.take(np.array([index])), part)
     return NearestMiss(make_fixture_of_row(table, toolkit, 0, problem.workpiece), words)
 
 
 def find_program_line_in_the_way(query: Query) -> int | None:
-    """The line of a query's program whose tool passes the longest stretch of places for pegs.
+    """Return the line of a query's program whose tool comes
+    too near the longest part of the loci of peg centres.
 
-    None without a program, where it passes none, and where there are no pegs.
+    The carriers are tried in order; the first with such a line counts. None without a program, for toolkits
+    that hold by friction, where no line is in the way, and where the query has no problem without the
+    program.
     """
     if query.program is None or query.toolkit.holds_by_friction:
         return None
     try:
-        problem = Problem.of(query.without_program)
+        problem = Problem.from_query(query.without_program)
     except InputError:
         return None
-    carriers = Frame.of(query.toolkit, problem.diameter).carriers
+    carriers = SearchFrame.from_toolkit(query.toolkit, problem.diameter).carriers
     for locus, carrier in zip(problem.loci, carriers, strict=True):
         pieces, beyond = list_swept_clearances(query, carrier)[0]
         line = find_line_most_in_the_way([feature.segment for feature in locus], pieces, beyond)
@@ -418,19 +471,22 @@ def find_program_line_in_the_way(query: Query) -> int | None:
 
 
 def describe_program_rule(query: Query) -> str:
-    """What a program asks, as the rule that takes contacts away.
-
-    It reads such as "tools of the program, most in line 7".
+    """Return the name of the rule about the program's
+    tools, such as "tools of the program, most in line 7".
     """
     line = find_program_line_in_the_way(query)
     return "tools of the program" + ("" if line is None else f", most in line {line}")
 
 
 def describe_body_rule(query: Query) -> str:
-    """What a program asks of the bodies of clamps, from the tip back to the hole."""
+    """Return the name of the rule that a clamp's body,
+    from tip to hole, keeps clear of the program's tools.
+    """
     return f"body of the {query.toolkit.moving.noun} clear of the program's tools"
 
 
 def describe_stroke_rule(query: Query, rule: str) -> str:
-    """The rule on a clamp's stroke, with what a program asks of the body that the clamp then has."""
+    """Return the name of the rule on a clamp's stroke, with
+    the rule on its body added where a program may hit that.
+    """
     return f"{rule}, {describe_body_rule(query)}" if has_body_to_pass(query) else rule

@@ -1,4 +1,6 @@
-"""Sharing the search out: cells of orientation, worked on by threads, with progress and cancel."""
+"""The division of a search into cells of orientation, and threads that work on them, with progress and
+cancel.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +18,10 @@ from numpy.typing import NDArray
 
 from workhold.contact.curves import CurveTable
 from workhold.contact.problem import Progress
-from workhold.listing.collector import Needed
+from workhold.listing.collector import InterestLimits
 
 __all__ = [
-    "Block",
+    "SearchBlock",
     "divide_into_cells",
     "estimate_cost",
     "count_curves_in_cells",
@@ -31,58 +33,63 @@ Records = NDArray[np.float64]
 
 # Orientations are counted from here, so that no aligned part has its coincidences at the edge of a cell.
 FIRST_ORIENTATION = -0.7320508075688772
-# A block is given what is needed as known so many blocks before it; as many may run at the same time.
+# A block is passed what fixtures must reach as it was known LAG blocks earlier; so many may run at once.
 LAG = 8
-ANYTHING = Needed()
-# Seconds in which threads are left alone: waking for every small block takes the interpreter from them, and
-# time to wake up.
+ANYTHING = InterestLimits()
+# Seconds between looks at running threads: waking for every small block costs them the interpreter, and time.
 NAP = 5e-4
-# Blocks handed out for each thread beyond those that are done: more than end in a nap.
+# Blocks submitted for each thread beyond those done; more than finish within a nap.
 AHEAD = 32
-# Curves are of a cell that they end so near to.
+# Radians. A curve that ends within this of a cell counts as in the cell.
 SLACK = 1e-9
-# Radians, of which there are whole numbers in a turn: curves of neighbouring cells are sought together.
+# Radians. Width of a sector, a whole part of a turn; the curves of a sector's cells are looked up together.
 SECTOR = tau / 64
 
 
 @define(frozen=True)
-class Block:
-    """A piece of work that shares nothing with the others.
+class SearchBlock:
+    """A unit of search work that shares nothing with other blocks.
 
     Parameters
     ----------
-    work : does it, given what fixtures must reach to be of interest, and returns records.
-    cost : a guess of how long it takes, in any unit.
-    cells : how many cells it works on.
-    start : the orientation in radians at which the first of them begins.
-    dense : how many records it finds, relative to its cost.
+    work : called with what fixtures must reach to be of interest; returns records (N, 19).
+    cost : estimated time, in units common to all blocks.
+    cells : how many cells of orientation it works on.
+    start : orientation in radians at which its first cell begins.
+    dense : expected number of records relative to its cost.
     """
 
-    work: Callable[[Needed], Records]
+    work: Callable[[InterestLimits], Records]
     cost: float
     cells: int = 1
     start: float = 0.0
     dense: float = 1.0
 
 
-def estimate_cost(blocks: Iterable[Block]) -> float:
-    """A guess of how long blocks take, in the unit of ``Block.cost``."""
+def estimate_cost(blocks: Iterable[SearchBlock]) -> float:
+    """Return the sum of the estimated times of blocks, in the unit of ``SearchBlock.cost``."""
     return sum(block.cost for block in blocks)
 
 
 def divide_into_cells(half_turns: int, cells: int) -> NDArray[np.float64]:
-    """Edges (cells + 1,) in radians of equal cells over one or two half turns of orientations."""
+    """Return the edges (cells + 1,) in radians of equal
+    cells that cover one or two half turns of orientations.
+    """
     return FIRST_ORIENTATION + half_turns * pi * np.arange(cells + 1) / cells
 
 
 def find_curves_in_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
-    """Indices of the curves that exist somewhere in a cell of orientations (or within 1e-9 of it)."""
+    """Return the indices, ascending, of the curves that exist
+    somewhere between two orientations in radians, or within 1e-9.
+
+    The curves of each sector (1/64 turn) are cached in ``table.sectors``.
+    """
     begin = (low - SLACK) % tau
     end = begin + (high - low) + 2 * SLACK
     sector = int(begin / SECTOR)
     if not (sector * SECTOR <= begin and end <= (sector + 1) * SECTOR):
         return find_curves_between(table.spans, begin, end)
-    # Those of a sector are sought once for all of its cells.
+    # The curves of a sector are looked up once for all its cells.
     if sector not in table.sectors:
         table.sectors[sector] = find_curves_between(table.spans, sector * SECTOR, (sector + 1) * SECTOR)
     some = table.sectors[sector]
@@ -93,7 +100,12 @@ def find_curves_in_cell(table: CurveTable, low: float, high: float) -> NDArray[n
 def find_curves_between(
     spans: tuple[NDArray[np.float64], NDArray[np.float64]], begin: float, end: float
 ) -> NDArray[np.int64]:
-    """Which curves, given their spans (N,), exist somewhere from one orientation in [0, 2 pi) to another."""
+    """Return the indices, ascending, of the curves whose
+    spans meet the orientations from ``begin`` to ``end``.
+
+    ``spans`` are first and last find_candidate_orientations (N,) in radians; ``begin`` is in [0, 2 pi). Spans and range
+    count modulo a turn.
+    """
     first, last = spans
     # Where the cell runs over a whole turn, or a curve does, the other may be met a turn later.
     there = (first <= end) & (last >= begin)
@@ -103,7 +115,10 @@ def find_curves_between(
 def count_curves_in_cells(
     table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """How many curves exist somewhere in each of some cells (K,), but for a hair at their ends."""
+    """Return how many curves (K,) exist in each of the cells from ``low`` (K,) to ``high`` (K,), in radians.
+
+    Unlike :func:`find_curves_in_cell` there is no tolerance at the cells' ends.
+    """
     first, last = table.sorted_spans
     turns = [-tau, 0.0, tau]
     begun = sum(np.searchsorted(first, high + turn, "right") for turn in turns)
@@ -111,41 +126,43 @@ def count_curves_in_cells(
 
 
 def run_blocks(
-    blocks: Sequence[Block],
+    blocks: Sequence[SearchBlock],
     threads: int,
     progress: Progress | None,
     cancel: Event | None,
-    receive: Callable[[Records], Needed] | None = None,
+    receive: Callable[[Records], InterestLimits] | None = None,
     look: Callable[[Records], None] | None = None,
     stop: Callable[[], None] | None = None,
     pool: Executor | None = None,
-    needed: Needed = ANYTHING,
-) -> tuple[list[Records], list[Block]]:
-    """Does all blocks on some threads.
+    needed: InterestLimits = ANYTHING,
+) -> tuple[list[Records], list[SearchBlock]]:
+    """Run all blocks on threads; return their records and the blocks that were done.
 
     Parameters
     ----------
-    receive : called from this thread with the records of each block, in the order of the blocks; they are
-        then not kept. It returns what further fixtures must reach. The block ``LAG``
-        places later is given it, so what a block leaves out does not depend on how fast the others are.
+    progress : called from this thread as ``progress(fraction done, records found)``.
+    cancel : when set, no further block is begun.
+    receive : called from this thread with the records of each block, in the order of the blocks; these
+        records are then not returned. It returns what further fixtures must reach, which is passed to the
+        block ``LAG`` places later. So what a block leaves out does not depend on the threads' speed.
     look : called from this thread with the records of each block as it finishes, in any order.
-    stop : called once when the work is cancelled or given up: blocks that run then end soon, with what they
+    stop : called once when the work is cancelled or given up, to make running blocks end soon with what they
         have found.
-    pool : of so many threads, where there is one already.
-    needed : what fixtures must reach as is known before any is received.
+    pool : executor with ``threads`` threads; None to make one.
+    needed : what fixtures must reach before anything is received.
 
     Returns
     -------
-    (records of the blocks, also of those that were stopped, in the order of the blocks; the blocks done)
+    (records of the blocks in their order, also of stopped blocks; the blocks that came to their end)
     """
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
-    # What is needed once so many blocks have been received.
+    # Entry k: what fixtures must reach once k blocks are received.
     margins = [needed]
     done_cost, found = 0.0, 0
-    done: list[Block] = []
+    done: list[SearchBlock] = []
     known = margins if receive is not None else None
-    for index, records, whole in finished_blocks(blocks, threads, cancel, known, stop, pool):
+    for index, records, whole in iterate_finished_blocks(blocks, threads, cancel, known, stop, pool):
         results[index] = records
         while receive is not None and len(margins) - 1 in results:
             margins.append(receive(results.pop(len(margins) - 1)))
@@ -166,21 +183,23 @@ def run_blocks(
     return rest, done
 
 
-def finished_blocks(
-    blocks: Sequence[Block],
+def iterate_finished_blocks(
+    blocks: Sequence[SearchBlock],
     threads: int,
     cancel: Event | None,
-    margins: list[Needed] | None,
+    margins: list[InterestLimits] | None,
     stop: Callable[[], None] | None,
     pool: Executor | None,
 ) -> Iterator[tuple[int, Records, bool]]:
-    """Blocks as they finish: number, records, and whether they came to their end; no new one is begun once
-    ``cancel`` is set.
+    """Yield (number, records, whether it came to its end) for each block as it finishes, in any order.
+
+    No block is begun once ``cancel`` is set; then ``stop`` is called once.
 
     Parameters
     ----------
-    margins : grows by one for each block received; a block waits for the one ``LAG`` places before it. None
-        for no margins.
+    margins : what fixtures must reach after 0, 1, 2, … received blocks; the caller appends to it. A block
+        waits until the entry ``LAG`` places before it is there. None to need nothing.
+    pool : executor to use; None to make one with ``threads`` threads.
     """
     first, running, whole = 0, dict[Future[Records], int](), True
     # Other work in the pool is not to wait behind many blocks, and blocks are given margins as these become
@@ -195,7 +214,7 @@ def finished_blocks(
             while True:
                 if whole and cancel is not None and cancel.is_set():
                     whole = False
-                    # Those that wait are not begun.
+                    # Blocks that wait are cancelled.
                     running = {future: index for future, index in running.items() if not future.cancel()}
                     if stop is not None:
                         stop()

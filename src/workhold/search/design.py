@@ -25,7 +25,7 @@ from workhold.listing.collector import BestFixtures, ResultCollector
 from workhold.listing.ranking import OrderKeys, make_figure_keys
 from workhold.listing.results import (
     MEASURED,
-    Work,
+    SearchWork,
     join_ways,
     list_result,
     make_best_result,
@@ -59,25 +59,31 @@ from workhold.search.lattice_shares import (
     count_ways,
     list_search_blocks,
     make_problems,
-    searches_of,
+    make_searches,
 )
-from workhold.search.seated import Sink, answer_with_seating
+from workhold.search.seated import ResultSink, answer_with_seating
 from workhold.search.shares import (
     LIMITED_FROM,
     OF_TWO,
     Preview,
     Previews,
     answer_by_shares,
-    best_first,
     has_body_to_pass,
-    limited_work,
+    search_best_first,
+    search_within_error,
     select_one_clamp,
-    work_of,
+    summarize_work,
 )
-from workhold.search.toolkit_search import ANY_ERROR, ToolkitSearch, contacts_of, is_round, lattice_steps
-from workhold.statics.judging import unfit
+from workhold.search.toolkit_search import (
+    ANY_ERROR,
+    ToolkitSearch,
+    count_problem_contacts,
+    is_round,
+    list_lattice_steps,
+)
+from workhold.statics.judging import are_unfit
 
-__all__ = ["Explored", "Sink", "answer", "design", "explore", "first_choice"]
+__all__ = ["ToolkitOutcome", "ResultSink", "answer", "design", "explore", "choose_first_toolkit"]
 
 # The share of the work, as progress reports it, that goes into finding records. The rest decides which of
 # them are fixtures.
@@ -105,7 +111,7 @@ def design(
     preview: Preview | None = None,
     **further: Any,
 ) -> Result:
-    """Finds every fixture of a workpiece in a toolkit, such as a vise.
+    """Return every fixture of a workpiece in a toolkit, or the best, ranked.
 
     Parameters
     ----------
@@ -166,9 +172,9 @@ def answer(
     progress: Progress | None = None,
     cancel: Event | None = None,
     preview: Preview | None = None,
-    sink: Sink | None = None,
+    sink: ResultSink | None = None,
 ) -> Result:
-    """Finds every fixture that a query asks for, or the best of them.
+    """Return every fixture that a query asks for, or the best of them.
 
     Parameters
     ----------
@@ -202,7 +208,7 @@ def answer(
     refuse_kind(query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
     workers = choose_thread_count(check_count("threads", threads))
     if query.toolkit.flat_jaws is not None:
-        # What holds by friction loads its own solver, which pegs do not need.
+        # Flat jaws need a solver of their own, which is imported only here.
         from workhold.search.jaw_search import find_fixtures_between_jaws
 
         return send_to_sink(find_fixtures_between_jaws(query, progress, cancel), sink)
@@ -216,16 +222,16 @@ def answer(
             query, search, threads=workers, progress=progress, cancel=cancel, sink=sink
         )
     if WALL_END in query.toolkit.contacts:
-        # What searches beside walls loads ball arithmetic, which no other toolkit needs beforehand.
+        # Searches beside walls import ball arithmetic, which no other toolkit needs beforehand.
         from workhold.search.wall_shares import WallShares
 
-        return send_to_sink(answer_by_shares(WallShares.of(query, cancel), progress, cancel), sink)
+        return send_to_sink(answer_by_shares(WallShares.from_query(query, cancel), progress, cancel), sink)
     if can_limit_errors(query) and is_large(query, workers, cancel):
         result = find_best_fixtures(query, workers, progress, cancel, preview)
         if result is not None:
             return send_to_sink(result, sink)
     if query.toolkit.travels > 1:
-        with LatticeShares.of(query, workers, cancel) as shares:
+        with LatticeShares.open_for_query(query, workers, cancel) as shares:
             return send_to_sink(answer_by_shares(shares, progress, cancel, preview), sink)
     ways = query.toolkit.ways
     if len(ways) == 1:
@@ -239,13 +245,16 @@ def answer(
 
 
 def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
-    """Whether so much is to be searched that limits of the location error are worth their while."""
+    """Return whether the search is so large that searching by limits of the location error pays.
+
+    Always False for arrangements with fewer than three standing pegs.
+    """
     if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.types):
-        # Of two pegs that stand still nobody knows where they touch for a small error.
+        # With two standing pegs there is no bound of the error from the features they touch.
         return False
-    problem = Problem.of(select_one_clamp(query, query.toolkit.ways[0]))
+    problem = Problem.from_query(select_one_clamp(query, query.toolkit.ways[0]))
     first, end = problem.standing
-    steps = lattice_steps((problem.frame.standing,), problem.diameter).steps
+    steps = list_lattice_steps((problem.frame.standing,), problem.diameter).steps
     # Pairs of chords that the lattice may join. A search looks at a tenth to a thousandth of them.
     pairs = float(len(steps) * (end - first) ** 2) ** 2
     if pairs / 10.0 < LIMITED_FROM:
@@ -254,24 +263,28 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
         return True
     if query.toolkit.travels > 1:
         return (
-            count_ways(map(list_search_blocks, searches_of(query, threads, cancel))) > OF_TWO * LIMITED_FROM
+            count_ways(map(list_search_blocks, make_searches(query, threads, cancel))) > OF_TWO * LIMITED_FROM
         )
-    ways = [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
-    searches = [ToolkitSearch.of(way, threads=threads, cancel=cancel) for way in ways]
-    return count_ways(search.blocks(query.types) for search in searches) > LIMITED_FROM
+    ways = [Problem.from_query(evolve(query, toolkit=way)) for way in query.toolkit.ways]
+    searches = [ToolkitSearch.from_problem(way, threads=threads, cancel=cancel) for way in ways]
+    return count_ways(search.make_blocks(query.types) for search in searches) > LIMITED_FROM
 
 
 def find_best_fixtures(
     query: Query, threads: int, progress: Progress | None, cancel: Event | None, preview: Preview | None
 ) -> Result | None:
-    """The best fixtures, found by limits of the location error; None where every one has to be looked at."""
+    """Return the best fixtures, by searches up to growing limits of the location error.
+
+    None where no limit is small enough to help, so that a whole search is needed. After ``cancel``, an
+    incomplete result.
+    """
     is_paired = query.toolkit.travels > 1
     problems = (
         make_problems(query)
         if is_paired
-        else [Problem.of(evolve(query, toolkit=way)) for way in query.toolkit.ways]
+        else [Problem.from_query(evolve(query, toolkit=way)) for way in query.toolkit.ways]
     )
-    spots = [LocatorSpots.of(problem) for problem in problems[: 1 if is_paired else None]]
+    spots = [LocatorSpots.from_problem(problem) for problem in problems[: 1 if is_paired else None]]
     most, number = choose_first_limit(spots, query), 0
     search_up_to = find_paired_fixtures_within_limits if is_paired else find_fixtures_within_limits
     while most < inf:
@@ -279,7 +292,7 @@ def find_best_fixtures(
             make_stage_progress(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)),
             number + 1,
         )
-        limits = [one.limit(most) for one in spots]
+        limits = [one.make_error_limit(most) for one in spots]
         keys, finish = search_up_to(limits, problems, query, threads, share, cancel, preview)
         if is_enough(most, keys, query) or (cancel is not None and cancel.is_set()):
             return finish()
@@ -287,7 +300,7 @@ def find_best_fixtures(
     return None
 
 
-# The keys of what a search up to a limit found, and what makes a result of it.
+# The ranking keys of what was found within a limit, and a function that makes the result.
 FoundUpTo = tuple[OrderKeys, Callable[[], Result]]
 
 
@@ -300,13 +313,18 @@ def find_fixtures_within_limits(
     cancel: Event | None,
     preview: Preview | None,
 ) -> FoundUpTo:
-    """What one carrier that moves holds up to limits, one for each way of the toolkit."""
-    kepts, works = list[BestFixtures](), list[Work]()
+    """Search, one direction after the other, for the fixtures
+    within a limit of the location error, with one moving carrier.
+
+    Return the ranking keys of what was found, and a function that makes the result. ``limits`` and
+    ``problems`` have one entry for each direction.
+    """
+    kepts, works = list[BestFixtures](), list[SearchWork]()
     for place, (problem, limit) in enumerate(zip(problems, limits, strict=True)):
         kept = BestFixtures(problem, cancel, is_limited=True)
         part = make_stage_progress(progress, place / len(problems), (place + 1) / len(problems))
         look = None if preview is None else Previews(problem, preview).add
-        works.append(limited_work(limit, problem, kept, threads, part, cancel, look))
+        works.append(search_within_error(limit, problem, kept, threads, part, cancel, look))
         kepts.append(kept)
     keys = reduce(OrderKeys.concatenate, [kept.found_keys for kept in kepts])
 
@@ -329,8 +347,12 @@ def find_paired_fixtures_within_limits(
     cancel: Event | None,
     preview: Preview | None,
 ) -> FoundUpTo:
-    """What two clamps hold up to a limit."""
-    with LatticeShares.of(query, threads, cancel, limits[0]) as shares:
+    """Search for the fixtures with two clamps within ``limits[0]`` of the location error.
+
+    Return the ranking keys of what was found, and a function that makes the result. ``problems`` is not used;
+    it is there for the signature of :func:`find_fixtures_within_limits`.
+    """
+    with LatticeShares.open_for_query(query, threads, cancel, limits[0]) as shares:
         result = answer_by_shares(shares, progress, cancel, preview)
     statistics = {**result.statistics, **limits[0].statistics}
     return shares.collector.ranked.keys, lambda: evolve(result, statistics=statistics)
@@ -342,76 +364,87 @@ def answer_one_direction(
     progress: Progress | None,
     cancel: Event | None,
     preview: Preview | None,
-    sink: Sink | None = None,
+    sink: ResultSink | None = None,
     is_part: bool = False,
 ) -> Result:
-    """The answer in a toolkit of which one carrier moves, see :func:`answer`.
+    """Return the answer to a query in a toolkit with one moving carrier, see :func:`answer`.
 
-    Of one of several ways, it is all that may be among the best of all.
+    With ``is_part`` the toolkit is one of several directions, and the result lists what may be among the best
+    of all.
     """
-    problem = Problem.of(query)
+    problem = Problem.from_query(query)
     precision = bound_location_errors(problem) if can_limit_errors(query) else ANY_ERROR
-    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel, precision=precision)
+    search = ToolkitSearch.from_problem(problem, threads=threads, cancel=cancel, precision=precision)
     kept = None if query.best is None else BestFixtures(problem, cancel)
     look = None if preview is None else Previews(problem, preview).add
     before, rest = make_stage_progress(progress, 0.0, SEARCH), make_stage_progress(progress, SEARCH, 1.0)
     if kept is not None:
-        work = best_first(search, kept, threads, before, cancel, look)
+        work = search_best_first(search, kept, threads, before, cancel, look)
         return send_to_sink(add_reason(make_best_result(kept, work, is_part), search, threads, cancel), sink)
-    blocks = search.blocks(query.types)
+    blocks = search.make_blocks(query.types)
     if sink is not None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
             collector = ResultCollector(problem, pool, 2 * threads, cancel, sink.folder)
             with collector.give_up_on_errors():
-                _, done = run_blocks(blocks, threads, before, cancel, collector.take, look, search.stop, pool)
+                _, done = run_blocks(
+                    blocks, threads, before, cancel, collector.take_records, look, search.stop, pool
+                )
                 result = make_collected_result(
-                    collector, work_of(search, blocks, done), make_stage_progress(rest, 0.0, MEASURED)
+                    collector, summarize_work(search, blocks, done), make_stage_progress(rest, 0.0, MEASURED)
                 )
                 result = add_reason(result, search, threads, cancel)
-                listed = collector.listed
+                listed = collector.listed_count
                 if listed < sum(result.found.values()):
-                    result = result.cut_short(listed)
+                    result = result.mark_cut_short(listed)
                 sink.receive(
                     result, listed, collector.iterate_tables(make_stage_progress(rest, MEASURED, 1.0))
                 )
         return result
     records, done = run_blocks(blocks, threads, before, cancel, look=look, stop=search.stop)
-    work = work_of(search, blocks, done)
+    work = summarize_work(search, blocks, done)
     result = list_result(
         problem, records, work, progress=rest, cancel=cancel, threads=threads, is_part=is_part
     )
     return send_to_sink(add_reason(result, search, threads, cancel), sink)
 
 
-def send_to_sink(result: Result, sink: Sink | None) -> Result:
-    """A result that is whole in memory, after a sink, if there is one, has taken it."""
+def send_to_sink(result: Result, sink: ResultSink | None) -> Result:
+    """Give a result that is whole in memory to the sink, if there is one, and return the result."""
     if sink is not None:
         sink.receive(result, len(result), [result.table])
     return result
 
 
 def add_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:
-    """A result, with the reason where it has no fixture and nobody is in a hurry."""
+    """Return the result with the reason why it has no fixture, if it is complete and has none.
+
+    Any other result is returned unchanged, and so is one for which ``cancel`` gets set meanwhile.
+    """
     if not result.complete or any(result.found.values()) or result.reasons:
         return result
     proven = 0 if result.proof is None else result.proof.verified
-    reason = why_none(search, int(search.totals[CONTACTS]), proven, threads, cancel)
+    reason = explain_no_fixture(search, int(search.totals[CONTACTS]), proven, threads, cancel)
     reason = blame_what_was_asked(reason, search.problem, threads)
     return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
 
 
-def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None) -> Note:
-    """The reason when a search finds no fixture."""
+def explain_no_fixture(
+    search: ToolkitSearch, contacts: int, proven: int, threads: int, cancel: Event | None
+) -> Note:
+    """Return the reason why a search found no fixture.
+
+    ``contacts`` counts simultaneous contacts examined, ``proven`` those proven to hold the part.
+    """
     problem, table, wording = search.problem, search.table, search.problem.toolkit.wording
     line = find_program_line_in_the_way(problem.query)
     if is_round(problem):
         # The program is not to blame for a part that is round without it.
-        alone = problem.query.program is None or is_round(Problem.of(problem.query.without_program))
+        alone = problem.query.program is None or is_round(Problem.from_query(problem.query.without_program))
         return NoFixture("shape", wording, None if alone else line)
     if len(table) + len(table.sliding_pairs.integers) == 0:
         return NoFixture("pair", wording, line)
     # What cannot be a fixture was left out early; whether pegs can touch at all is then asked once more.
-    if contacts == 0 and contacts_of(problem, threads, cancel) == 0:
+    if contacts == 0 and count_problem_contacts(problem, threads, cancel) == 0:
         return NoFixture("set", wording, line)
     if proven:
         return NoPlace(proven, wording, has_body_to_pass(problem.query))
@@ -419,39 +452,47 @@ def why_none(search: ToolkitSearch, contacts: int, proven: int, threads: int, ca
 
 
 def blame_what_was_asked(reason: Note, problem: Problem, threads: int) -> Note:
-    """A reason that blames part or pitch, or one that blames what was asked for where that is the cause."""
+    """Return the reason, with the query's requests added if without them its cause would be gone.
+
+    Only reasons that blame the shape of the part or the pitch are examined; other reasons come back
+    unchanged.
+    """
     query, toolkit = problem.query, problem.toolkit
     if not isinstance(reason, NoFixture) or reason.stage not in STAGES[:2] or reason.line is not None:
         return reason
     if not query.asked_of_places:
         return reason
-    toolkit = toolkit.without([limit for limit in toolkit.limits if limit.rule in query.asked_of_places])
-    whole = Problem.of(evolve(query.without_program, toolkit=toolkit, restrictions=None))
+    toolkit = toolkit.without_limits(
+        [limit for limit in toolkit.limits if limit.rule in query.asked_of_places]
+    )
+    whole = Problem.from_query(evolve(query.without_program, toolkit=toolkit, restrictions=None))
     if reason.stage == "shape":
         is_to_blame = is_round(whole)
     else:
-        table = ToolkitSearch.of(whole, threads=threads).table
+        table = ToolkitSearch.from_problem(whole, threads=threads).table
         is_to_blame = len(table) + len(table.sliding_pairs.integers) == 0
     return reason if is_to_blame else evolve(reason, asked=query.asked_of_places)
 
 
-# Of a tenth of a part's length: what is this little short of one counts as it.
+# Tenths of a part's length are rounded down; one that is short by less than this part of itself counts.
 HELD_SLACK = 1e-6
 
 
 @frozen
-class Explored:
+class ToolkitOutcome:
     """What one toolkit can do for a part.
 
     Parameters
     ----------
     name : what it is called.
-    found : fixtures of each arrangement; empty for a toolkit that cannot be, and where nobody counted them.
-    figures : of the first fixture, the one to set up; empty when there is none.
-    fit : whether that is a fixture for a workshop.
-    held : the share of the part's length that is between its outermost contacts, from 0 to 1.
-    reason : why there is no fixture, or why the toolkit cannot be; empty otherwise.
-    about : how many fixtures there are, about, two digits of it, where they are too many to count.
+    found : number of fixtures of each arrangement; empty for an impossible toolkit, and where they were not
+        counted.
+    figures : figures of quality of the first fixture by key; empty when there is none.
+    fit : whether the first fixture is fit for a workshop.
+    held : share from 0 to 1 of the part's longer side that lies between the first fixture's outermost
+        contacts.
+    reason : why there is no fixture, or why the toolkit is impossible; empty otherwise.
+    about : estimated number of fixtures, to two digits, where there are too many to count; else None.
     """
 
     name: str
@@ -464,18 +505,21 @@ class Explored:
 
     @property
     def fixtures(self) -> int:
-        """How many fixtures there are, or about how many."""
+        """Number of fixtures; an estimate where ``about`` is given."""
         return sum(self.found.values()) if self.about is None else self.about
 
 
 def explore(
     queries: Iterable[tuple[str, Query | InputError]], cancel: Event | None = None
-) -> Iterator[Explored]:
-    """Answers the same query for one toolkit after the other.
+) -> Iterator[ToolkitOutcome]:
+    """Yield the outcome of each query, one toolkit after the other.
+
+    A query that is an InputError, or raises one, yields an outcome with its text as reason. The iteration
+    ends early once cancelled.
 
     Parameters
     ----------
-    queries : what each toolkit is called, and the query, or why there is none.
+    queries : (name of the toolkit, query, or the error why there is none).
     cancel : when set, no further query is answered.
     """
     for name, query in queries:
@@ -490,30 +534,34 @@ def explore(
             # Where there are many, the first is enough.
             result = answer(query if count is None else evolve(query, best=1), cancel=cancel)
         except InputError as error:
-            yield Explored(name, {}, {}, str(error))
+            yield ToolkitOutcome(name, {}, {}, str(error))
             continue
         if not result.complete:
             return
         reason = "" if len(result) else " ".join(map(str, result.reasons))
         figures = dict(result[0].quality) if len(result) else {}
-        fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
+        fit = bool(figures) and not are_unfit(result.table.quality[:1], result.query.tolerance)[0]
         if result.holds:
             fit = is_held_fit(result.holds[0])
-        held = held_share(result[0], result.workpiece) if len(result) else 0.0
+        held = measure_held_share(result[0], result.workpiece) if len(result) else 0.0
         known = None if count is None or not len(result) else round_to_two_digits(count)
         found = dict(result.found) if known is None else {}
-        yield Explored(name, found, figures, reason, fit, held, known)
+        yield ToolkitOutcome(name, found, figures, reason, fit, held, known)
 
 
 def is_held_fit(hold: JawHold | StrappedHold) -> bool:
-    """Whether friction holds a part as a workshop would."""
+    """Return whether a hold by friction is fit for a workshop: not
+    unfit, and pressed all over, or straps that hold something.
+    """
     if isinstance(hold, JawHold):
         return not hold.is_unfit and hold.full_contact
     return not hold.is_unfit and not hold.holds_nothing
 
 
-def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
-    """The share of a part's length, its longer side as drawn, that is between its outermost contacts."""
+def measure_held_share(fixture: Fixture, workpiece: Workpiece) -> float:
+    """Return the share, 0 to 1, of the part's longer side
+    (as drawn) that lies between its outermost contacts.
+    """
     x0, y0, x1, y1 = workpiece.bounds
     sides, back = (x1 - x0, y1 - y0), fixture.pose.inverse
     longer = int(sides[1] > sides[0])
@@ -525,15 +573,16 @@ def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
     return min((max(places) - min(places)) / sides[longer], 1.0)
 
 
-def first_choice(
-    explored: Sequence[Explored], ranking: Sequence[str], is_sold: Callable[[str], bool] = lambda name: True
-) -> Explored | None:
-    """The toolkit whose first fixture stands first among those of all; None when none has a fixture.
+def choose_first_toolkit(
+    explored: Sequence[ToolkitOutcome],
+    ranking: Sequence[str],
+    is_sold: Callable[[str], bool] = lambda name: True,
+) -> ToolkitOutcome | None:
+    """Return the toolkit whose first fixture is the best of all; None when none has a fixture.
 
-    A fixture for a workshop goes before one that is none, and what is sold, as ``is_sold`` says of a name,
-    before what nobody sells. Of those without warnings, or with as many, what holds the part over more tenths
-    of its length goes first, then the figures count. In any other order that is asked for the length counts
-    last.
+    First come fixtures fit for a workshop, then toolkits that ``is_sold(name)`` says are sold. With a ranking
+    by warnings first, fewer warnings come next, then more tenths of the part's length between the contacts,
+    then the other figures. With any other ranking the figures come first, and the length last.
     """
     able = [item for item in explored if item.figures]
     if not able:
@@ -543,7 +592,7 @@ def first_choice(
     held = np.array([item.held for item in able])
     known = [name for name in list_ranking_figures(ranking) if find_ranked_number(name) is not None]
     figures, warned = make_figure_keys(quality, known) if known else [], FIGURES[WARNINGS].key
-    # What flat jaws hold has figures of its own, of which the area that they touch counts.
+    # Holds by flat jaws have figures of their own, of which the contact area counts.
     figures += [np.array([-item.figures.get("contact_area", 0.0) for item in able])]
     first = 1 if ranking[:1] == (warned,) else len(figures)
     tenths = -np.floor(10.0 * held + HELD_SLACK)

@@ -1,17 +1,17 @@
 """The best fixtures first: searches up to a limit of the location error, which grows until enough are found.
 
-In the usual order one fixture surely comes before another whose effective location error is a tenth larger,
-if it is fit for a workshop and has no warning. So once as many such fixtures are known as are asked for,
-nothing with an error a tenth above theirs is among the best. What is searched first is therefore what has a
-small error.
+In the usual ranking a fixture that is fit for a workshop and has no warning surely comes before another whose
+effective location error is a tenth larger. So once as many such fixtures are known as are asked for, nothing
+with an error a tenth above theirs is among the best. Therefore fixtures with a small error are searched
+first.
 
-Three locators have a small error only far apart and on faces that do not all look the same way. So features
-are cut into short stretches, spots, and a bound of the error is found for all three of them
-(``kernels.contact.location_bounds``). Chords that join no two spots of a seat with a small error are not even
-made. What is left of a limited search is a small part of all, and is searched as always, with proof.
+Three locators have a small error only far apart and on faces with different normals. So features are cut into
+short stretches, called spots, and the error of three locators on three spots is bounded
+(``kernels.contact.location_bounds``). Chords are made only between spots that two locators of a seat with a
+small error may touch. A limited search is a small part of the whole, and is done in the same way, with proof.
 
-Other angles than those of the drawing, by quarters, count half as much again. So square to the drawing the
-limit holds as it is. Elsewhere it is a smaller one, below which there is often nothing at all.
+Angles other than the drawing's and its quarter turns increase the effective error by half. So at square
+angles the limit holds as it is; at others it is divided by 1.5, and often nothing is left there.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.curves import loosened
+from workhold.contact.curves import loosen_rows
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.geometry.hull import compute_convex_hull
@@ -35,8 +35,8 @@ from workhold.kernels.contact.location_bounds import (
     SPOT_COUNT,
     SPOT_FIRST,
     SPOT_LENGTH,
+    find_least_middle_error,
     join_near_spots,
-    least_middle_error,
 )
 from workhold.kernels.curves.near_spots import NEARLY_WHOLE
 from workhold.listing.ranking import A_STEP, OrderKeys, make_best_possible_figures, make_order_keys
@@ -45,8 +45,8 @@ from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
 from workhold.model.query import Query
 from workhold.search.toolkit_search import ASLANT, limit_precision
 from workhold.statics.effective_error import find_unasked_faces
-from workhold.statics.judging import Judging
-from workhold.statics.quality import extremes, main_direction, measure_faces
+from workhold.statics.judging import JudgingLimits
+from workhold.statics.quality import find_main_direction, find_silhouette_extremes, measure_faces
 
 __all__ = [
     "ErrorLimit",
@@ -62,39 +62,45 @@ __all__ = [
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# The finest spots are no longer than the part's size over this, and no arc turns by more in one, in radians.
+# The finest spots are no longer than the part's size divided by SPOTS_ACROSS, and on arcs turn by no more
+# than MOST_TURN radians.
 SPOTS_ACROSS, MOST_TURN = 32, pi / 8
-# Spots are cut in two so many times at most.
+# Largest number of times that a spot is halved.
 MOST_CUTS = 3
-# Of more spots no triples are kept, which would take too much memory.
+# Triples are stored for up to this many spots; for more they would take too much memory.
 MOST_TRIPLED = 360
-# Points nearer than this part of L are side by side.
+# Points nearer to each other than this part of L count as one.
 BESIDE = 0.1
-# Directions over half a turn, and points of the silhouette, in which movements are looked at.
+# Numbers of directions over half a turn, and of outermost points, for which movements are bounded.
 DIRECTIONS, OUTERMOST = 8, 8
-# The first limit is so many times the least error of any three contacts, and the next so many times the last
-# one as long as too few fixtures are found. After so many there is none. The contacts of two clamps wait
-# together in memory, and grow with the tenth power of the limit. So their limits grow slowly.
+# With one clamp and with two: the first limit over the least error of any three contacts; each next limit
+# over the last, as long as too few fixtures are found; and how many limits are tried. With two clamps
+# contacts wait together in memory, and grow with the tenth power of the limit, so limits grow slowly.
 OF_ONE, OF_TWO = (1.1, 1.3, 9), (0.9, 1.1, 25)
 IN_BORE = next(one.times for one in FACTORS if one.key == "dowel_in_bore")
-# Limits between two among which the next is chosen.
+# Number of values tried between the last limit and the largest useful one.
 NEARER = 40
 
 
 def can_limit_errors(query: Query) -> bool:
-    """Whether the best fixtures of a query are found by limits of the location error."""
+    """Return whether a query's best fixtures can be searched by limits of the location error.
+
+    It must ask for the best, in the usual ranking, with a tolerance above 0, and the part must have one
+    outline for all carriers.
+    """
     off = query.tolerance.peg + query.tolerance.face
     return query.best is not None and query.has_house_order and off > 0.0 and not query.workpiece.outlines
 
 
 @frozen(eq=False)
 class ErrorLimit:
-    """A limit of the effective location error, and what it leaves of the search.
+    """A limit of the effective location error, and the search work that it leaves.
 
     Parameters
     ----------
-    precision : for the kernels.
-    square, aslant : which two spots locators may touch square to the drawing, and elsewhere.
+    precision : the limit, for the kernels.
+    square, aslant : which pairs of spots two locators may touch, where the part lies square to the drawing,
+        and at other angles.
     boxes, ruled_out : how many triples of spots were looked at, and how many the bound ruled out.
     """
 
@@ -106,20 +112,20 @@ class ErrorLimit:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """Counts for the account of the search."""
+        """Counts of boxes (triples of spots) by name, for ``Result.statistics``."""
         return {"boxes": self.boxes, "boxes_ruled_out": self.ruled_out}
 
 
 @frozen(eq=False)
 class LocatorSpots:
-    """The spots of the features that standing pegs of a problem touch.
+    """The spots, short stretches, of those features that standing pegs touch, in a tree by halving.
 
     Parameters
     ----------
-    spots : (S, 7), see ``kernels.contact.location_bounds``, the coarsest first.
-    roots : how many of them are the coarsest.
-    starts : (F + 1,) numbers of the finest ones of each feature.
-    precision : without a limit.
+    spots : (S, 7), see ``kernels.contact.location_bounds``; the coarsest first.
+    roots : how many of them are coarsest.
+    starts : (F + 1,); the finest spots of feature f are numbered starts[f] to starts[f + 1] - 1.
+    precision : error bounds without a limit.
     """
 
     spots: Array
@@ -128,10 +134,10 @@ class LocatorSpots:
     precision: Precision
 
     @classmethod
-    def of(cls, problem: Problem) -> LocatorSpots:
-        """The spots of a problem."""
-        rows, precision = loosened(problem.rows[:, :SEGMENT_LENGTH]), bound_location_errors(problem)
-        apart = find_largest_distance(outermost(problem))
+    def from_problem(cls, problem: Problem) -> LocatorSpots:
+        """Return the spots of a problem's standing features; a whole circle has one finest spot."""
+        rows, precision = loosen_rows(problem.rows[:, :SEGMENT_LENGTH]), bound_location_errors(problem)
+        apart = find_largest_distance(find_outermost_points(problem))
         first, end = problem.standing
         cut = [
             cut_feature(row, number, give, apart, problem.wrench_length)
@@ -139,21 +145,26 @@ class LocatorSpots:
                 zip(rows[first:end], precision.gives[first:end].tolist(), strict=True)
             )
         ]
-        # Nobody asks where on a whole circle a contact is, so all its spots count as one.
+        # The place of a contact on a whole circle does not matter, so all its finest spots count as one.
         whole = (rows[first:end, IS_ARC] != 0.0) & (rows[first:end, HALF_EXTENT] > NEARLY_WHOLE)
         sizes = [1 if is_one else len(levels[-1]) for is_one, levels in zip(whole, cut, strict=True)]
         starts = np.cumsum([0, *sizes])
         roots = sum(len(levels[0]) for levels in cut)
         return cls(join_spots(cut, starts), roots, starts, precision)
 
-    def limit(self, most: float) -> ErrorLimit:
-        """A limit of the effective error in mm."""
-        (square, one), (aslant, other) = self.near(most), self.near(most / ASLANT)
+    def make_error_limit(self, most: float) -> ErrorLimit:
+        """Return the limit for an effective location error of at most ``most`` mm."""
+        (square, one), (aslant, other) = self.find_near_spots(most), self.find_near_spots(most / ASLANT)
         boxes, ruled_out = (one + other).tolist()
         return ErrorLimit(limit_precision(self.precision, most), square, aslant, boxes, ruled_out)
 
-    def near(self, most: float) -> tuple[NearSpots, IntArray]:
-        """Which two spots locators may touch up to an effective error in mm, and counts of boxes."""
+    def find_near_spots(self, most: float) -> tuple[NearSpots, IntArray]:
+        """Return which pairs and triples of finest spots three locators
+        may touch for an effective error of at most ``most`` mm.
+
+        With it come counts (2,): triples looked at, and triples ruled out. Triples are kept for up to
+        :data:`MOST_TRIPLED` spots.
+        """
         count, counts = int(self.starts[-1]), np.zeros(2, np.int64)
         kept = count if count <= MOST_TRIPLED else 0
         near = NearSpots(self.starts, np.zeros((count, count), np.int8), np.zeros((kept,) * 3, np.int8))
@@ -163,13 +174,13 @@ class LocatorSpots:
 
     @property
     def least(self) -> float:
-        """The least effective error in mm of three contacts in the middles of the coarsest spots."""
-        return float(least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3))))
+        """Smallest effective location error in mm of three contacts in the middles of coarsest spots."""
+        return float(find_least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3))))
 
 
 def bound_location_errors(problem: Problem) -> Precision:
-    """What bounds location errors of a problem, without a limit."""
-    points = outermost(problem)
+    """Return what bounds a problem's location errors, without a limit (``most`` is inf)."""
+    points = find_outermost_points(problem)
     query, length = problem.query, problem.wrench_length
     angles = np.arange(DIRECTIONS) * (pi / DIRECTIONS)
     along = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -191,9 +202,13 @@ def bound_location_errors(problem: Problem) -> Precision:
     )
 
 
-def outermost(problem: Problem) -> Array:
-    """A few points (C, 2) of the silhouette about the centre, outermost in some directions."""
-    corners, arcs = extremes(problem.workpiece)
+def find_outermost_points(problem: Problem) -> Array:
+    """Return a few points (C, 2) in mm of the silhouette,
+    relative to its centre, each outermost in one of 8 directions.
+
+    Points nearly coincident with another are left out.
+    """
+    corners, arcs = find_silhouette_extremes(problem.workpiece)
     points = [corners]
     for x, y, radius, ahead, aside, cosine in arcs.tolist():
         half, middle = np.arccos(np.clip(cosine, -1.0, 1.0)), np.arctan2(aside, ahead)
@@ -204,22 +219,23 @@ def outermost(problem: Problem) -> Array:
     chosen = {int(np.argmax(every @ [np.cos(angle), np.sin(angle)])) for angle in angles}
     out: list[Array] = []
     for point in every[sorted(chosen)]:
-        # Of two that are side by side one is enough.
+        # Points near one already chosen add nothing.
         if all(np.hypot(*(point - other)) > BESIDE * problem.wrench_length for other in out):
             out.append(point)
     return np.array(out)
 
 
 def find_largest_distance(points: Array) -> float:
-    """The largest distance in mm of two points."""
+    """Return the largest distance in mm between two of the points (C, 2)."""
     return max(float(np.hypot(*(points - point).T).max()) for point in points)
 
 
 def compute_contact_allowances(rows: Array, points: Array) -> Array:
-    """What contacts on features (F,) may be off by for a location error of 1.
+    """Return (F,), by which factor of its shift a contact
+    on each feature changes the location error, at most.
 
-    On a line it is for each mm that the contact is moved, on an arc for each radian. Points (C, 2) are those
-    of the silhouette. Nothing between them moves farther than they.
+    On a line per mm of shift, on an arc per radian. ``rows`` are feature rows, ``points`` (C, 2) those of the
+    silhouette in mm.
     """
     apart, hull = find_largest_distance(points), compute_convex_hull(map(tuple, points.tolist()))
     away = [
@@ -230,7 +246,9 @@ def compute_contact_allowances(rows: Array, points: Array) -> Array:
 
 
 def measure_distance_from_hull(hull: Sequence[Point], place: Point) -> float:
-    """The distance in mm of a place from a convex hull, as ``geometry.hull`` gives it; 0 inside."""
+    """Return the distance in mm of a point from a convex
+    hull, a counter-clockwise list of corners; 0 inside.
+    """
     sides = [Line(one, other) for one, other in zip(hull, [*hull[1:], hull[0]], strict=True)]
     if len(hull) > 2 and all(is_left_of(side, place) for side in sides):
         return 0.0
@@ -238,30 +256,35 @@ def measure_distance_from_hull(hull: Sequence[Point], place: Point) -> float:
 
 
 def is_left_of(side: Line, place: Point) -> bool:
-    """Whether a place is to the left of a segment, or on its line."""
+    """Return whether a point is to the left of a directed segment, or on its line."""
     (x0, y0), (x1, y1) = side.start, side.end
     return (x1 - x0) * (place[1] - y0) >= (y1 - y0) * (place[0] - x0)
 
 
 def cut_feature(row: Array, number: int, give: float, apart: float, length: float) -> list[Array]:
-    """The spots of a feature, coarse ones first, in as many lists as it is cut.
+    """Return the spots (2**k, 7) of a feature in lists from
+    coarse to fine, each spot of one list two of the next.
+
+    There are at most ``MOST_CUTS + 1`` lists.
 
     Parameters
     ----------
+    row : kernel row of the feature.
+    number : of the feature.
     give : see :func:`compute_contact_allowances`.
     apart : the largest distance in mm of two points of the silhouette.
-    length : L in mm.
+    length : characteristic length L of the wrenches, in mm.
     """
     half, is_arc = float(row[HALF_EXTENT]), row[IS_ARC] != 0.0
     size = 2.0 * half * (float(row[RADIUS]) if is_arc else 1.0)
     pieces = max(size * SPOTS_ACROSS / apart, 2.0 * half / MOST_TURN if is_arc else 1.0, 1.0)
     cuts = int(np.ceil(np.log2(pieces)))
     counts = [1 << cut for cut in range(max(cuts - MOST_CUTS, 0), cuts + 1)]
-    return [spots_of(row, number, count, give, length) for count in counts]
+    return [make_spots(row, number, count, give, length) for count in counts]
 
 
-def spots_of(row: Array, number: int, count: int, give: float, length: float) -> Array:
-    """So many spots (count, 7) of a feature, of which nobody knows yet what they are made of."""
+def make_spots(row: Array, number: int, count: int, give: float, length: float) -> Array:
+    """Return ``count`` equal spots (count, 7) of a feature; the columns for their children stay 0."""
     half, out = float(row[HALF_EXTENT]) / count, np.zeros((count, SPOT_LENGTH))
     at = (2.0 * np.arange(count) + 1.0 - count) * half
     axis = row[[3, 4]]
@@ -280,12 +303,16 @@ def spots_of(row: Array, number: int, count: int, give: float, length: float) ->
 
 
 def join_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
-    """All spots (S, 7) of features, the coarsest of each first, and what they are made of.
+    """Return all spots (S, 7) of features, the coarsest of
+    each first, linked to the spots that they consist of.
+
+    The input arrays' link columns are filled in place: a spot that is cut has count 2 and the index of its
+    first half; a finest spot has its number.
 
     Parameters
     ----------
     cut : of each feature, see :func:`cut_feature`.
-    starts : numbers of the finest ones of each feature.
+    starts : (F + 1,) numbers of the finest spots of each feature.
     """
     sizes = np.array(
         [[len(level[k]) if k < len(level) else 0 for level in cut] for k in range(MOST_CUTS + 1)]
@@ -304,43 +331,50 @@ def join_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
 
 
 def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
-    """The least keys of fixtures that are not found up to a limit of the effective error in mm.
+    """Return lower bounds of the ranking keys of fixtures whose effective error is above ``most`` mm.
 
-    They are one row for each class of angles, without and with a dowel in a bore, which the limit counts.
+    There are six rows: drawn angle, quarter turn, other angle, each without and with a dowel in a bore.
     """
-    times = [factor(key) for key in (None, "quarter_turn", "other_angle")]
+    times = [find_factor(key) for key in (None, "quarter_turn", "other_angle")]
     rows = [(place, times[place] * bore) for place in range(3) for bore in (1.0, IN_BORE)]
     quality = make_best_possible_figures(len(rows), query)
     quality[:, LOCATION_ERROR] = [most / total for _, total in rows]
     # Where the drawing lies aslant, other angles may be square.
-    is_square = main_direction(query.workpiece) == 0.0
+    is_square = find_main_direction(query.workpiece) == 0.0
     quality[:, TILT] = [SQUARE_TILT * (is_square and place == 2) for place, _ in rows]
     quality[:, SMALLEST_FACE] = np.nanmax(measure_faces(query.workpiece))
-    judging = Judging.of(1.0, query.toolkit, query.tolerance)
-    quality[:, PENALTY] = evolve(judging, small_face=0.0).penalty(quality)
+    judging = JudgingLimits.from_toolkit(1.0, query.toolkit, query.tolerance)
+    quality[:, PENALTY] = evolve(judging, small_face=0.0).compute_penalty(quality)
     return make_order_keys(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
 
 
 def choose_first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
-    """The limit in mm to begin with, given the spots of each way of the toolkit."""
+    """Return the first limit in mm, given the spots of each direction of the toolkit."""
     return choose_limit_growth(query)[0] * min(one.least for one in spots)
 
 
 def choose_limit_growth(query: Query) -> tuple[float, float, int]:
-    """The first limit and each next one, relative to the one before, and how many there are."""
+    """Return (first limit over the least error, each next limit over the one before, how many limits)."""
     return OF_ONE if query.toolkit.travels == 1 else OF_TWO
 
 
 def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
-    """Whether nothing beyond a limit in mm is among the best, given the keys of what was found up to it."""
+    """Return whether the best fixtures are surely among
+    those found with an effective error up to ``most`` mm.
+
+    ``kept`` are the ranking keys of what was found.
+    """
     if most == inf:
         return True
     bound = bound_keys_beyond_limit(most, query)
-    return bool(bound.are_beaten(kept, query.best or 0, bound.lowest).all())
+    return bool(bound.are_beaten(kept, query.best or 0, bound.lowest_error).all())
 
 
 def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
-    """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
+    """Return the next limit in mm, after ``most`` was not enough; inf where limits do not help any longer.
+
+    ``kept`` are the keys of what was found up to ``most``, ``number`` counts the limits tried.
+    """
     known = kept.find_last_fine_error(query.best or 0)
     if known is None:
         _, times, limits = choose_limit_growth(query)
@@ -353,6 +387,8 @@ def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -
     return next((limit for limit in nearer if is_enough(limit, kept, query)), last)
 
 
-def factor(key: str | None) -> float:
-    """The factor of a doubt; 1 for none."""
+def find_factor(key: str | None) -> float:
+    """Return the factor on the location error for a doubt,
+    by its key in ``model.choose_first_toolkit.FACTORS``; 1 for None.
+    """
     return next((one.times for one in FACTORS if one.key == key), 1.0)

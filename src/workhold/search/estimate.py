@@ -1,10 +1,10 @@
 """An estimate of how many fixtures there are, from a part of the search.
 
-Cells of orientation are drawn with a chance that grows with the work in them (Horvitz and Thompson 1952, *A
-Generalization of Sampling Without Replacement From a Finite Universe*). Each cell is searched as always, and
-what it holds counts as often as its chance is small. Fixtures lie where there is work, so a few per cent of
-the work show the number within some tenths of it. The draw is systematic: the same query has the same
-estimate.
+Cells of orientation are drawn with a probability that grows with the work in them (Horvitz and Thompson 1952,
+*A Generalization of Sampling Without Replacement From a Finite Universe*). A drawn cell is searched as
+always, and its fixtures are weighted by the inverse of its probability. Fixtures lie where there is work, so
+a few per cent of the work give the number within some tenths of it. The draw is systematic: the same query
+has the same estimate.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, R
 from workhold.kernels.base.tables import NearSpots
 from workhold.listing.canonical_form import make_candidates
 from workhold.listing.collector import finish, split_into_blocks
-from workhold.listing.seat_order import seat_numbers
+from workhold.listing.seat_order import number_seats
 from workhold.listing.seats import ClampedSeats
 from workhold.model.clamps import LOCATORS
 from workhold.model.query import Query
-from workhold.search.cells import Block, estimate_cost, run_blocks
+from workhold.search.cells import SearchBlock, estimate_cost, run_blocks
 from workhold.search.error_limits import bound_location_errors
-from workhold.search.lattice_shares import LatticeShares, searches_of
+from workhold.search.lattice_shares import LatticeShares, make_searches
 from workhold.search.toolkit_search import MOST_CELLS, ToolkitSearch, sample_numbers
 
 __all__ = ["LISTED", "MANY", "ask_for_best_where_many", "estimate_fixtures"]
@@ -40,30 +40,31 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Of more fixtures than this only so many are listed, the best, unless all are asked for.
+# Where there are about more than MANY fixtures, only the best LISTED are listed, unless all are asked for.
 MANY, LISTED = 200_000, 1_000
-# Searches that cost less, see ``cells.Block``, surely find fewer.
+# Searches that cost less, see ``cells.SearchBlock``, surely find fewer.
 FEW = 4e6
-# Work that is done for an estimate with one clamp and with two, and the fewest cells that are drawn for it.
-# Of cells for two clamps, more add little. So much more work is done with one clamp where cells hold more.
+# Work spent on an estimate with one clamp and with two, and the most with one clamp where cells hold much.
+# Then the fewest cells drawn with one clamp and with two, and the most with two, where more add little.
 WORK, WORK_OF_TWO, MOST_WORK = 6e6, 2e6, 3e7
 FEWEST_DRAWN, FEWEST_OF_TWO, MOST_OF_TWO = 48, 8, 32
-# Records that are decided for an estimate, and contacts of two clamps in one cell.
+# Records decided for an estimate with one clamp, and contacts decided in one cell with two.
 DECIDED, CONTACTS_DECIDED = 4000, 3000
-# Of more work for two clamps in one cell one triple of stretches in some is looked at. There are about so many
-# stretches.
+# With more work than MOST_IN_CELL in a cell, only one in some triples of stretches is searched; there are
+# about STRETCHES stretches.
 MOST_IN_CELL, STRETCHES = 3e5, 96
-# Parts of a stretch by which a contact at its end is moved, so that rounding does not say on which side it is.
+# A contact at the end of a stretch is moved by this part of the stretch, so that rounding does not decide its
+# side.
 ASIDE = 1e-6
 # Where in the first interval a systematic draw begins.
 BEGIN = 0.618
 
 
 def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
-    """How many fixtures a query has, about.
+    """Return the estimated number of fixtures of a query, all of them, whatever its ``best``.
 
-    None where they are surely few, beside a wall, with rules for their seating or for each by itself, and once
-    ``cancel`` is set.
+    None where they are surely few, with a wall, friction, seating, or rules for each fixture by itself, and
+    once ``cancel`` is set.
     """
     held_flat = WALL_END in query.toolkit.contacts or query.toolkit.holds_by_friction
     if held_flat or query.seating is not None or query.is_sifted:
@@ -79,9 +80,11 @@ def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -
 def ask_for_best_where_many(
     query: Query, threads: int, cancel: Event | None = None
 ) -> tuple[Query, int | None]:
-    """A query for all fixtures, or for the best where there are more than anybody reads.
+    """Return a query for all fixtures, or for the best
+    :data:`LISTED` where there are about more than :data:`MANY`.
 
-    With it comes how many there are, about; None where they are few, or the query is for the best already.
+    With it comes the estimated number; None where they are few, and for a query that asks for the best
+    already.
     """
     if query.best is not None:
         return query, None
@@ -90,18 +93,20 @@ def ask_for_best_where_many(
 
 
 def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> int | None:
-    """How many fixtures there are about in a toolkit of which one carrier moves; None where they are few."""
-    problem = Problem.of(query)
-    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
-    blocks = search.blocks(query.types, MOST_CELLS)
+    """Return the estimated number of fixtures in a toolkit
+    with one moving carrier; None where few, or once cancelled.
+    """
+    problem = Problem.from_query(query)
+    search = ToolkitSearch.from_problem(problem, threads=threads, cancel=cancel)
+    blocks = search.make_blocks(query.types, MOST_CELLS)
     costs = np.array([block.cost for block in blocks])
     if costs.sum() < FEW:
         return None
     dense = np.array([block.dense for block in blocks])
     finds = costs * dense
-    drawn, chances = draw_by_size(finds, max(number_for(WORK, costs, finds), FEWEST_DRAWN))
-    # Where these cells hold too much work, only some chord curves are looked at. What crosses is made of two
-    # of them, what slides of one.
+    drawn, chances = draw_by_size(finds, max(estimate_draw_count(WORK, costs, finds), FEWEST_DRAWN))
+    # Where the drawn cells hold too much work, only some chord curves are used. Crossings are made of two
+    # curves, sliding pairs of one.
     search.every = max(int(sqrt(costs[drawn].sum() / MOST_WORK)), 1)
     chances = chances / np.where(dense[drawn] > 1.0, search.every, search.every**2)
     records, _ = run_blocks([blocks[k] for k in drawn], threads, None, cancel, stop=search.stop)
@@ -110,7 +115,7 @@ def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> 
     weights = np.repeat(1.0 / chances, [len(some) for some in records])
     if len(weights) == 0:
         return 0
-    # Of all records so many are decided, drawn by their weights.
+    # Only some records, drawn by their weights, are decided.
     chosen, again = draw_by_size(weights, DECIDED)
     kept, _ = finish([np.concatenate(records)[chosen]], problem, cancel)
     proven = len(kept.standing) / len(chosen)
@@ -119,38 +124,38 @@ def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> 
 
 
 def estimate_clamp_pairs(query: Query, threads: int, cancel: Event | None) -> int | None:
-    """How many fixtures two clamps have, about, as they are listed; None where they are few."""
-    searches = searches_of(query, threads, cancel)
+    """Return the estimated number of listed fixtures with two clamps; None where few, or once cancelled."""
+    searches = make_searches(query, threads, cancel)
     one = searches[0]
-    blocks = one.blocks(one.problem.toolkit.types, MOST_CELLS)
+    blocks = one.make_blocks(one.problem.toolkit.types, MOST_CELLS)
     if estimate_cost(blocks) < FEW:
         return None
-    starts, costs, finds = cells_of(blocks)
+    starts, costs, finds = sum_up_cells(blocks)
     width, total = float(np.diff(starts, append=starts[0] + tau).min()), 0.0
-    count = min(max(number_for(WORK_OF_TWO, costs, finds), FEWEST_OF_TWO), MOST_OF_TWO)
+    count = min(max(estimate_draw_count(WORK_OF_TWO, costs, finds), FEWEST_OF_TWO), MOST_OF_TWO)
     problems = [search.problem for search in searches]
     for cell, chance in zip(*draw_by_size(finds, count), strict=True):
         # The part's angle is -psi, and a quarter turn more for each that the frame of the search is turned.
         high = (one.frame.quarters * pi / 2 - starts[cell]) % tau
         ranges = [(low, low + width) for low in (high - width, high - width + tau, high - width - tau)]
-        stretches = Stretches.of(problems, max(int(finds[cell] / MOST_IN_CELL), 1))
-        total += listed_in(searches, stretches, query, ranges, threads, cancel) / chance
+        stretches = FeatureStretches.from_problems(problems, max(int(finds[cell] / MOST_IN_CELL), 1))
+        total += estimate_listed(searches, stretches, query, ranges, threads, cancel) / chance
         if cancel is not None and cancel.is_set():
             return None
     return round(total)
 
 
 @frozen(eq=False)
-class Stretches:
-    """Of three locators, which stretches of features they touch; of triples of stretches one in some is chosen.
+class FeatureStretches:
+    """A random choice among triples of stretches of features that three locators touch.
 
-    The locators of a seat touch the same ones whatever the directions of its clamps are.
+    The locators of a seat touch the same stretches whatever the directions of its clamps are.
 
     Parameters
     ----------
-    every : one in so many triples is chosen.
+    every : one in ``every`` triples is chosen.
     near : the stretches, and which triples are chosen.
-    numbers : (M,) of each stretch one as if drawn.
+    numbers : (M,) a random number for each stretch.
     """
 
     every: int
@@ -158,8 +163,8 @@ class Stretches:
     numbers: IntArray
 
     @classmethod
-    def of(cls, problems: Sequence[Problem], every: int) -> Stretches:
-        """Stretches of the features of the problems of each direction, about equally long."""
+    def from_problems(cls, problems: Sequence[Problem], every: int) -> FeatureStretches:
+        """Return the choice for the problems of all directions; the stretches are about equally long."""
         rows = problems[0].rows[slice(*problems[0].standing)]
         lengths = rows[:, HALF_EXTENT] * np.where(rows[:, IS_ARC] != 0.0, rows[:, RADIUS], 1.0)
         counts = np.maximum(np.rint(STRETCHES * lengths / lengths.sum()), 1).astype(np.int64)
@@ -173,15 +178,15 @@ class Stretches:
         joined = np.ones(sums.shape, np.int8)
         return cls(every, NearSpots(starts, joined, triples.astype(np.int8)), numbers)
 
-    def chosen(self, records: list[Array], problem: Problem) -> Array:
-        """The contacts (M, 19) of blocks whose locators touch three stretches that are chosen."""
+    def select_contacts(self, records: list[Array], problem: Problem) -> Array:
+        """Return, of the records of blocks, those (M, 19) whose three locators touch a chosen triple."""
         blocks = split_into_blocks(records)
         if self.every > 1:
             blocks = (block[self.are_chosen(block, problem)] for block in blocks)
         return np.concatenate(list(blocks))
 
     def are_chosen(self, records: Array, problem: Problem) -> BoolArray:
-        """Whether the locators of contacts (N, 19) touch three stretches that are chosen."""
+        """Return whether each record's (N, 19) three locators touch a chosen triple of stretches, (N,)."""
         c = make_candidates(records, problem)
         feature, rows = c.feature[:, :LOCATORS], problem.rows[c.feature[:, :LOCATORS]]
         axis, ray = rows[..., AXIS_X : AXIS_Y + 1], c.point[:, :LOCATORS] - rows[..., X : Y + 1]
@@ -196,8 +201,12 @@ class Stretches:
         )
 
 
-def cells_of(blocks: Sequence[Block]) -> tuple[Array, Array, Array]:
-    """Where the cells of blocks begin, in radians, the work in each, and how much is found there."""
+def sum_up_cells(blocks: Sequence[SearchBlock]) -> tuple[Array, Array, Array]:
+    """Return (starts, costs, finds) of the cells in which blocks begin, ascending.
+
+    ``starts`` are find_candidate_orientations in radians; ``costs`` and ``finds`` sum the estimated work and the expected
+    records.
+    """
     starts, number = np.unique([block.start for block in blocks], return_inverse=True)
     costs, finds = np.zeros(len(starts)), np.zeros(len(starts))
     for block, at in zip(blocks, number.tolist(), strict=True):
@@ -206,17 +215,17 @@ def cells_of(blocks: Sequence[Block]) -> tuple[Array, Array, Array]:
     return starts, costs, finds
 
 
-def listed_in(
+def estimate_listed(
     searches: Sequence[ToolkitSearch],
-    stretches: Stretches,
+    stretches: FeatureStretches,
     query: Query,
     ranges: Sequence[tuple[float, float]],
     threads: int,
     cancel: Event | None,
 ) -> float:
-    """How many fixtures of two clamps are listed, about, with orientations in a range in radians.
+    """Return the estimated number of listed fixtures with two clamps, with orientations in one range.
 
-    The range is given with those a whole turn before and after it.
+    ``ranges`` are that range in radians first, then the same a whole turn later and earlier.
     """
     low, high = map(degrees, ranges[0])
     # Of cells that only touch the range none is searched.
@@ -224,35 +233,41 @@ def listed_in(
     found = []
     for search in searches:
         chosen = evolve(search, near=stretches.near, precision=bound_location_errors(search.problem))
-        blocks = chosen.blocks(search.problem.toolkit.types, MOST_CELLS, within=inside)
+        blocks = chosen.make_blocks(search.problem.toolkit.types, MOST_CELLS, within=inside)
         records = run_blocks(blocks, threads, None, cancel, stop=chosen.stop)[0]
-        found.append(stretches.chosen(records, search.problem))
+        found.append(stretches.select_contacts(records, search.problem))
     every = sum(map(len, found)) // CONTACTS_DECIDED + 1
     collector = ClampedSeats(query, searches[0].problem)
-    some = [thinned(part, search.problem, every) for part, search in zip(found, searches, strict=True)]
+    some = [thin_contacts(part, search.problem, every) for part, search in zip(found, searches, strict=True)]
     # What is not decided quickly is left out.
     hurry = Event()
     hurry.set()
-    with LatticeShares.made(searches, collector, threads, hurry) as shares:
-        return float(stretches.every * every * collector.count(shares.seats_among(some, ranges)))
+    with LatticeShares.open_for_contacts(searches, collector, threads, hurry) as shares:
+        return float(stretches.every * every * collector.count_fixtures(shares.find_seats(some, ranges)))
 
 
-def thinned(records: Array, problem: Problem, every: int) -> Array:
-    """Of contacts (N, 19) those (M, 19) of one seat in so many."""
-    holes, theta, *_ = seat_numbers(records, problem)
+def thin_contacts(records: Array, problem: Problem, every: int) -> Array:
+    """Return, of records (N, 19), about one in ``every`` seats with all contacts of these seats."""
+    holes, theta, *_ = number_seats(records, problem)
     # Seats with the same holes and nearly the same orientation are taken together.
     seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
     return np.asarray(records[sample_numbers(seats, every)])
 
 
 def draw_by_size(sizes: Array, count: float) -> tuple[IntArray, Array]:
-    """About so many numbers, drawn with chances that grow with their sizes (N,), and the chances."""
+    """Return about ``count`` indices, drawn with chances in
+    proportion to their sizes (N,) but at most 1, and the chances.
+
+    The draw is systematic and always the same.
+    """
     chances = np.minimum(count * sizes / sizes.sum(), 1.0)
     steps = np.floor(np.cumsum(chances) + BEGIN)
     drawn = np.flatnonzero(np.diff(steps, prepend=np.floor(BEGIN)) > 0)
     return drawn, chances[drawn]
 
 
-def number_for(work: float, costs: Array, finds: Array) -> float:
-    """How many of some costs (N,), drawn by what they find (N,), have together so much work."""
+def estimate_draw_count(work: float, costs: Array, finds: Array) -> float:
+    """Return how many items, drawn with chances in proportion
+    to ``finds`` (N,), cost ``work`` together on average.
+    """
     return work * float(finds.sum() / (finds @ costs))

@@ -1,7 +1,7 @@
 """A set-up that somebody has already: every pose in which the part touches just these pegs and is held.
 
-The toolkit is made as small as the holes allow, all its fixtures are sought there, and those that stand in the
-holes are taken. So what is said of a set-up is as complete as any list.
+The toolkit is reduced to the holes of the set-up, all its fixtures are searched, and those that stand in
+these holes are taken. So the evaluation of a set-up is as complete as any list.
 """
 
 from __future__ import annotations
@@ -16,7 +16,13 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLOSURE
 from workhold.errors import InputError, join_words
-from workhold.fixels.carrier import Carrier, Holes, find_carrier_letter, make_column_letters, parse_hole_name
+from workhold.fixels.carrier import (
+    Carrier,
+    HoleSelection,
+    find_carrier_letter,
+    make_column_letters,
+    parse_hole_name,
+)
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import check_count, choose_thread_count
@@ -37,14 +43,14 @@ CLAMP = "clamp "
 
 @frozen(repr=False)
 class Evaluation:
-    """What pegs in some holes do with a part.
+    """How pegs in given holes hold a part.
 
     Parameters
     ----------
     holes : as they were given.
-    result : the fixtures, one for each pose in which the pegs hold the part, best first. Its toolkit has no more
-        holes than the set-up needs.
-    reason : why there is none, in a sentence; empty where there is one.
+    result : the fixtures, one for each pose in which the pegs hold the part, best first. Its toolkit has no
+        more holes than the set-up needs.
+    reason : why there is no fixture, in a sentence; empty where there is one.
     """
 
     holes: tuple[str, ...]
@@ -74,7 +80,7 @@ def evaluate(
     jaw_force: float | None = None,
     threads: int | None = None,
 ) -> Evaluation:
-    """Judges a set-up: all poses in which the part touches exactly the pegs in these holes and is held by them.
+    """Find all poses in which the part touches exactly the pegs in given holes and is held by them.
 
     Parameters
     ----------
@@ -101,10 +107,10 @@ def evaluate(
     'L-A1 and L-A30 are 232 mm apart, and the part is 61.59 mm across: no pose touches both.'
     """
     given = (holes,) if isinstance(holes, str) else tuple(holes)
-    setup = OwnSetUp.of(given, toolkit)
+    setup = GivenSetUp.from_names(given, toolkit)
     query = Query(
         workpiece,
-        setup.smallest(),
+        setup.make_smallest_toolkit(),
         contact_margin=contact_margin,
         restrictions=restrictions,
         tolerance=tolerance,
@@ -112,42 +118,52 @@ def evaluate(
         jaw_force=jaw_force,
         listing="all" if toolkit.travels > 1 else None,
     )
-    far = setup.too_far(measure_outline_diameter(query.workpiece))
+    far = setup.describe_distant_peg(measure_outline_diameter(query.workpiece))
     if far:
-        return Evaluation(given, Result(query, FixtureTable.empty(query.toolkit), *no_counts(query)), far)
+        return Evaluation(
+            given, Result(query, FixtureTable.make_empty(query.toolkit), *make_zero_counts(query)), far
+        )
     result = answer(query, threads=threads)
-    result = result.choose(setup.matches(result.table, query.toolkit))
+    result = result.choose(setup.find_matching_fixtures(result.table, query.toolkit))
     workers = choose_thread_count(check_count("threads", threads))
-    return Evaluation(given, result, "" if len(result) else setup.reason(query, workers))
+    return Evaluation(given, result, "" if len(result) else setup.explain_no_fixture(query, workers))
 
 
-def no_counts(query: Query) -> tuple[dict[str, int], dict[str, int]]:
+def make_zero_counts(query: Query) -> tuple[dict[str, int], dict[str, int]]:
+    """Return two dicts with a count of 0 for each type: the fixtures found, and the distinct ones."""
     counts = dict.fromkeys(query.toolkit.types, 0)
     return counts, dict(counts)
 
 
 @frozen
-class OwnSetUp:
-    """Pegs and clamps in holes of a toolkit.
+class GivenSetUp:
+    """A set-up given by names: pegs and clamps in holes of a toolkit.
 
     Parameters
     ----------
-    toolkit : as it is.
-    pegs : on lattices, in the order of :attr:`order`.
-    clamps : where clamps are bolted; empty where that is left open.
+    toolkit : the toolkit.
+    pegs : holes of the pegs, in the order given.
+    clamps : holes in which clamps are bolted, in the order given; empty where that is left open.
     """
 
     toolkit: Toolkit
-    pegs: tuple[Holes, ...]
-    clamps: tuple[Holes, ...]
+    pegs: tuple[HoleSelection, ...]
+    clamps: tuple[HoleSelection, ...]
 
     @classmethod
-    def of(cls, names: Sequence[str], toolkit: Toolkit) -> OwnSetUp:
+    def from_names(cls, names: Sequence[str], toolkit: Toolkit) -> GivenSetUp:
+        """Return the set-up of pegs in named holes, and of clamps in holes named with "clamp " before.
+
+        Raises
+        ------
+        InputError
+            For a name of no hole, or another number of pegs or clamps than the toolkit has.
+        """
         lattices = [carrier for carrier in toolkit.carriers if carrier.has_lattice]
         for name in names:
             if not isinstance(name, str):
                 raise InputError(
-                    f"a hole cannot be {name!r}: give names, such as {lattices[0].place_name(1, 2)}."
+                    f"a hole cannot be {name!r}: give names, such as {lattices[0].name_place(1, 2)}."
                 )
         bolted = [name for name in names if name.lower().startswith(CLAMP)]
         pegs, clamps = (
@@ -166,11 +182,11 @@ class OwnSetUp:
 
     @property
     def has_blocked(self) -> bool:
-        """Whether holes of the toolkit can be blocked."""
+        """Whether holes of the toolkit can be blocked, as in a vise."""
         return hasattr(self.toolkit, "blocked")
 
-    def smallest(self) -> Toolkit:
-        """The toolkit with no more holes than the set-up needs."""
+    def make_smallest_toolkit(self) -> Toolkit:
+        """Return the toolkit reduced to the holes that the set-up needs, all others blocked or cut off."""
         pegs, changes = [*self.pegs, *self.clamps], dict[str, object]()
         rows = 1 + max(hole.row or 0 for hole in pegs)
         if self.has_blocked:
@@ -179,7 +195,7 @@ class OwnSetUp:
             rows = rows if lattices[0].rows is None else lattices[0].rows
             free = {(hole.carrier, hole.column, hole.row) for hole in pegs}
             changes["blocked"] = [
-                Holes(carrier.name, column, row)
+                HoleSelection(carrier.name, column, row)
                 for carrier in lattices
                 for column in range(carrier.column_count)
                 for row in range(rows)
@@ -192,35 +208,42 @@ class OwnSetUp:
             if not self.is_beside_wall:
                 columns = [hole.column for hole in pegs]
                 changes["columns"] = max(columns) - min(columns) + 1
-        return self.toolkit.changed(changes) if changes else self.toolkit
+        return self.toolkit.with_fields(changes) if changes else self.toolkit
 
     @property
     def is_beside_wall(self) -> bool:
+        """Whether the toolkit has a wall that the part lies on."""
         return WALL_END in self.toolkit.contacts
 
     @property
     def counts_from_wall(self) -> bool:
-        """Whether rows are counted from a wall, so that pegs farther on are another set-up."""
+        """Whether rows are counted from a wall, so that the
+        same pegs some rows farther on are another set-up.
+        """
         return self.is_beside_wall and any(carrier.on for carrier in self.toolkit.carriers)
 
-    def matches(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.bool_]:
-        """Which fixtures (N,) of a table stand in these holes."""
-        wanted = self.pattern([*self.pegs, *(evolve(one, carrier=CLAMP) for one in self.clamps)])
+    def find_matching_fixtures(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.bool_]:
+        """Return which fixtures (N,) of a table have their pegs, and given clamps, in the set-up's holes."""
+        wanted = self.make_pattern([*self.pegs, *(evolve(one, carrier=CLAMP) for one in self.clamps)])
         found = np.zeros(len(table), np.bool_)
         for number, (kind, columns, rows) in enumerate(
             zip(table.arrangement.tolist(), table.column.tolist(), table.row.tolist(), strict=True)
         ):
             carriers = [toolkit.carriers[one] for one in toolkit.arrangements[kind].carriers]
             there = [
-                Holes(carrier.name if carrier.has_lattice else CLAMP, column, row)
+                HoleSelection(carrier.name if carrier.has_lattice else CLAMP, column, row)
                 for carrier, column, row in zip(carriers, columns, rows, strict=True)
                 if carrier.has_lattice or (carrier.on is not None and self.clamps)
             ]
-            found[number] = self.pattern(there) == wanted
+            found[number] = self.make_pattern(there) == wanted
         return found
 
-    def pattern(self, holes: Sequence[Holes]) -> frozenset[tuple[str, int, int]]:
-        """Holes as far as they make a set-up: of a plate counted from the lowest."""
+    def make_pattern(self, holes: Sequence[HoleSelection]) -> frozenset[tuple[str, int, int]]:
+        """Return the holes as a set of (carrier name, column, row) that is equal for equal set-ups.
+
+        Where holes cannot be blocked (a plate), columns count from the lowest one; so do rows unless they
+        count from a wall.
+        """
         column, row = (
             (0, 0)
             if self.has_blocked
@@ -229,36 +252,49 @@ class OwnSetUp:
         row = 0 if self.counts_from_wall else row
         return frozenset((hole.carrier, hole.column - column, (hole.row or 0) - row) for hole in holes)
 
-    def too_far(self, diameter: float) -> str:
-        """The sentence on a peg that is too far from all others of its lattice; empty where none is."""
+    def describe_distant_peg(self, diameter: float) -> str:
+        """Return a sentence on the first peg too far from all
+        others of its carrier for a part of this diameter in mm.
+
+        Empty where there is none.
+        """
         for hole in self.pegs:
             carrier = self.toolkit.find_carrier(hole.carrier)
-            at = carrier.place(hole.column, hole.row or 0)
+            at = carrier.compute_hole_center(hole.column, hole.row or 0)
             others = [
-                (dist(at, carrier.place(one.column, one.row or 0)), name_of(one, carrier))
+                (
+                    dist(at, carrier.compute_hole_center(one.column, one.row or 0)),
+                    make_hole_label(one, carrier),
+                )
                 for one in self.pegs
                 if one.carrier == hole.carrier and one != hole
             ]
             away, nearest = min(others, default=(0.0, ""))
             if away > diameter + 2 * carrier.peg_radius:
-                pegs = join_words(sorted((name_of(hole, carrier), nearest)))
+                pegs = join_words(sorted((make_hole_label(hole, carrier), nearest)))
                 return (
                     f"{pegs} are {away:.4g} mm apart, and the part is {diameter:.4g} mm across: no pose touches "
                     "both."
                 )
         return ""
 
-    def reason(self, query: Query, threads: int) -> str:
-        """Why no fixture stands in these holes, in a sentence."""
-        named = join_words([name_of(hole, self.toolkit.find_carrier(hole.carrier)) for hole in self.pegs])
+    def explain_no_fixture(self, query: Query, threads: int) -> str:
+        """Return a sentence that says why no fixture stands in the
+        set-up's holes, given the query of its smallest toolkit.
+        """
+        named = join_words(
+            [make_hole_label(hole, self.toolkit.find_carrier(hole.carrier)) for hole in self.pegs]
+        )
         if self.is_beside_wall or query.toolkit.travels > 1:
             return f"No pose of {query.workpiece.name} touches {named} and all else, and is held by them."
         poses, pulls = 0, 4
         for way in query.toolkit.ways:
-            problem = Problem.of(evolve(query, toolkit=way))
+            problem = Problem.from_query(evolve(query, toolkit=way))
             contacts = find_all_contacts(problem, threads)
             contacts = contacts.take(are_placeable(contacts.candidates, problem))
-            contacts = contacts.take(self.matches(place_candidates(contacts.candidates, problem), way))
+            contacts = contacts.take(
+                self.find_matching_fixtures(place_candidates(contacts.candidates, problem), way)
+            )
             poses += len(contacts.margin)
             loose = (contacts.null < LEAST_CLOSURE).sum(axis=1)
             pulls = min(pulls, int(loose.min(initial=4)))
@@ -274,12 +310,19 @@ class OwnSetUp:
         return f"{query.workpiece.name} touches {named} {how}, and is held in none: {why}."
 
 
-def name_of(hole: Holes, carrier: Carrier) -> str:
-    return carrier.place_name(hole.column, hole.row or 0)
+def make_hole_label(hole: HoleSelection, carrier: Carrier) -> str:
+    """Return the name of a hole on its carrier, such as "L-A2"; row 1 for a whole column."""
+    return carrier.name_place(hole.column, hole.row or 0)
 
 
-def find_named_hole(name: str, lattices: Iterable[Carrier]) -> Holes:
-    """The hole of a name; refuses one that there is not, and a column."""
+def find_named_hole(name: str, lattices: Iterable[Carrier]) -> HoleSelection:
+    """Return the hole of a name such as "L-A2" or "B3".
+
+    Raises
+    ------
+    InputError
+        For a name of no hole of these lattices, and of a whole column.
+    """
     carriers = {carrier.name: carrier for carrier in lattices}
     first = next(iter(carriers.values()))
     if find_carrier_letter(first.name):
@@ -293,7 +336,7 @@ def find_named_hole(name: str, lattices: Iterable[Carrier]) -> Holes:
     carrier = carriers[hole.carrier]
     if hole.row is None:
         raise InputError(
-            f"{name} is a column: give a hole of it, such as {carrier.place_name(hole.column, 2)}."
+            f"{name} is a column: give a hole of it, such as {carrier.name_place(hole.column, 2)}."
         )
     if hole.column >= (carrier.columns or hole.column + 1) or hole.row >= (carrier.rows or hole.row + 1):
         last = "" if carrier.columns is None else f" up to {make_column_letters(carrier.columns - 1)}"

@@ -1,6 +1,6 @@
 """Why there is no fixture: what each rule takes away of the contacts, what is nearest, which change helps.
 
-Of contacts on a lattice the rules are asked in ``search.broken_rules``, of contacts beside a wall here.
+Contacts on a lattice are tested in ``search.broken_rules``, contacts beside a wall here.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from attrs import evolve
 from workhold.contact.problem import Problem
 from workhold.errors import InputError, join_words
 from workhold.fixels.contacts import WALL_END
-from workhold.fixels.toolkit import Change, Toolkit
+from workhold.fixels.toolkit import Toolkit, ToolkitChange
 from workhold.limits import choose_thread_count
 from workhold.listing.asked import are_as_asked
 from workhold.listing.ranking import measure_table
@@ -28,11 +28,11 @@ from workhold.model.quality import WARNINGS
 from workhold.model.query import Query
 from workhold.model.requirements import Restrictions
 from workhold.model.result import Result
-from workhold.model.search_report import Explanation, Help, NearestMiss, Removal
+from workhold.model.search_report import Explanation, HelpfulChange, NearestMiss, RuleRemoval
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import (
     SECOND_CLAMP,
-    Removals,
+    RuleRemovals,
     count_removals,
     describe_program_rule,
     describe_stroke_rule,
@@ -42,7 +42,7 @@ from workhold.search.design import answer
 from workhold.search.flush_search import FlushSearch
 from workhold.search.jaw_search import RULES, JawSearch
 from workhold.search.seat_search import find_seats
-from workhold.search.strapped_search import within_error
+from workhold.search.strapped_search import select_within_error
 from workhold.search.toolkit_search import is_round
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
@@ -51,36 +51,38 @@ from workhold.units import MILLIMETRE, Unit
 __all__ = ["explain", "count_removals_beside_wall"]
 
 
-def count_removals_beside_wall(query: Query, alone: bool) -> Removals:
-    """What the rules leave of the pairs of contacts in a toolkit of which one clamp moves.
+def count_removals_beside_wall(query: Query, alone: bool) -> RuleRemovals:
+    """Return how many pairs of contacts there are beside a
+    wall, with one moving clamp, and how many each rule removes.
 
-    It says how many pairs of contacts of locator and clamp there are before any rule, what each rule takes
-    away of them, and what comes nearest.
+    Pairs are those of a locator and the clamp, or of two pegs of a sliding lattice.
 
     Parameters
     ----------
-    alone : whether one clamp is to hold the part; of two none comes nearest, as each pair is a clamp short.
+    alone : whether one clamp holds the part. If False, two are needed, the rule :data:`SECOND_CLAMP` takes
+        all pairs away, and there is no nearest miss.
     """
     counts = list(count_left_by_rules(query, alone))
     before = first = counts[0][1]
     removals = []
     for rule, count in counts[1:]:
         after = min(count, before)
-        removals.append(Removal(rule, before, after))
+        removals.append(RuleRemoval(rule, before, after))
         before = after
-    search, nearest = searched(query) if alone else None, None
+    search, nearest = run_flush_search(query) if alone else None, None
     if search is not None and search.verified == 0 and search.nearest is not None:
-        nearest = miss_of(search.nearest[1], search.alone, query.workpiece)
-    return Removals(first, removals, nearest)
+        nearest = make_nearest_miss(search.nearest[1], search.pair_toolkit, query.workpiece)
+    return RuleRemovals(first, removals, nearest)
 
 
 def count_left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
-    """The rules in the order they are asked, with how many pairs are left after each; the first is no
-    rule."""
+    """Yield (rule's words, how many pairs are left) for each rule
+    in the order asked; the first has no words and counts all.
+    """
     toolkit, asked = query.toolkit, query.restrictions
-    free = toolkit.without(toolkit.limits)
+    free = toolkit.without_limits(toolkit.limits)
     others = [limit for limit in toolkit.limits if limit.bounds != "holes"]
-    holes = toolkit.without(others)
+    holes = toolkit.without_limits(others)
     bare = evolve(
         query.without_program,
         toolkit=free,
@@ -101,62 +103,71 @@ def count_left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
     for is_asked, rule, changed in steps:
         if is_asked:
             bare = evolve(bare, **changed)
-            yield rule, examined(bare)
+            yield rule, count_examined(bare)
     if not alone:
         yield SECOND_CLAMP, 0
         return
-    search = searched(bare)
+    search = run_flush_search(bare)
     yield "closure and clamping", 0 if search is None else search.verified
-    yield toolkit.wording.clear, placed(bare)
+    yield toolkit.wording.clear, count_placed(bare)
     for number, limit in enumerate(others, 1):
-        held_in = toolkit.without(others[number:])
-        yield describe_stroke_rule(query, limit.rule), placed(evolve(bare, toolkit=held_in))
+        held_in = toolkit.without_limits(others[number:])
+        yield describe_stroke_rule(query, limit.rule), count_placed(evolve(bare, toolkit=held_in))
     bare = evolve(bare, toolkit=toolkit)
     if asked.touch:
-        bare = restricted(bare, touch=asked.touch)
-        yield "faces to touch", placed(bare)
+        bare = change_restrictions(bare, touch=asked.touch)
+        yield "faces to touch", count_placed(bare)
     if query.max_location_error is not None:
         bare = evolve(bare, max_location_error=query.max_location_error)
-        yield "largest location error", placed(bare)
+        yield "largest location error", count_placed(bare)
 
 
-def search_of(query: Query, explains: bool = False) -> FlushSearch | None:
-    """The search of a query; None where nothing is left to touch."""
+def make_search(query: Query, explains: bool = False) -> FlushSearch | None:
+    """Return the search of a query beside a wall, not yet run; None where no feature is left to touch.
+
+    ``explains`` makes it keep the nearest miss.
+    """
     kind = LatticePairSearch if query.toolkit.moving.on is None else WallSearch
     try:
-        return kind(Problem.of(query), explains)
+        return kind(Problem.from_query(query), explains)
     except InputError:
         return None
 
 
-def searched(query: Query) -> FlushSearch | None:
-    """The search of a query, done; None where nothing is left to touch."""
-    search = search_of(query, explains=True)
+def run_flush_search(query: Query) -> FlushSearch | None:
+    """Return the search of a query beside a wall, run on
+    all hull edges; None where no feature is left to touch.
+    """
+    search = make_search(query, explains=True)
     for edge in [] if search is None else search.edges:
-        for _ in search.fixtures(edge) if search is not None else ():
+        for _ in search.iterate_fixtures(edge) if search is not None else ():
             pass
     return search
 
 
-def examined(query: Query) -> int:
-    """How many pairs a search looks at."""
-    search = searched(query)
+def count_examined(query: Query) -> int:
+    """Return how many pairs of contacts the search of a query examines."""
+    search = run_flush_search(query)
     return 0 if search is None else search.examined
 
 
-def placed(query: Query) -> int:
-    """How many pairs have a place and are as asked of each by itself."""
-    search = search_of(query)
+def count_placed(query: Query) -> int:
+    """Return how many pairs have a place in the toolkit and keep what is asked of each fixture by itself."""
+    search = make_search(query)
     if search is None:
         return 0
-    tables = (search.placed([part], edge) for edge in search.edges for part in search.fixtures(edge))
+    tables = (
+        search.place_fixtures([part], edge) for edge in search.edges for part in search.iterate_fixtures(edge)
+    )
     if not query.is_sifted:
         return sum(map(len, tables))
     return sum(int(are_as_asked(measure_table(table, search.problem), query).sum()) for table in tables)
 
 
-def miss_of(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
-    """The pair that comes nearest to pressing the part, as it would stand."""
+def make_nearest_miss(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
+    """Return the first row of a table as a nearest miss,
+    with a sentence why its contacts do not press the part.
+    """
     fixture = make_fixture_of_row(table, toolkit, 0, workpiece)
     pulls = sum(peg.force < 0 for peg in fixture.pegs)
     if pulls == 0:
@@ -167,27 +178,27 @@ def miss_of(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Near
     return NearestMiss(fixture, words)
 
 
-# Faces to avoid that are given back one by one.
+# Largest number of faces to avoid that are tried one by one.
 MOST_FACES = 8
-# Seconds after which a change has shown that it helps; how many fixtures there are in all is then not known.
+# Seconds for the search with a change; the fixtures counted by then show that it helps.
 HELP_SECONDS = 10.0
 
 
 def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -> Explanation:
-    """Explains why there is no fixture that a query asks for.
+    """Return an explanation why there is no fixture that a query asks for.
 
     Parameters
     ----------
-    query : what was asked in vain.
+    query : a query without any fixture.
     threads : how many threads share the work; None for one on each processor.
-    unit : of the lengths in its words.
+    unit : of the lengths in the explanation's words.
     """
-    # What is to come first makes no difference, and may be a figure that a changed toolkit has not.
+    # The ranking makes no difference here, and may name a figure that a changed toolkit has not.
     query = evolve(query, rank_by="warnings")
     toolkit, alone = query.toolkit, query.toolkit.travels == 1
-    ways = [held_in(query, way) for way in toolkit.ways]
+    ways = [move_to_toolkit(query, way) for way in toolkit.ways]
     if toolkit.strap_set is not None:
-        # Loads choose straps, and no seat is there or not because of them.
+        # Loads only choose straps; seats do not depend on them.
         query = evolve(query, loads=())
         found = [count_removals_of_seats(query, threads)]
     elif toolkit.flat_jaws is not None:
@@ -195,30 +206,30 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     elif WALL_END in toolkit.contacts:
         found = [count_removals_beside_wall(way, alone) for way in ways]
     else:
-        found = [count_removals(Problem.of(way), threads, unit, alone) for way in ways]
-    together, helped = Removals.together(found), helps(query, threads, unit)
-    nothing = None if together.first else no_contacts(ways)
+        found = [count_removals(Problem.from_query(way), threads, unit, alone) for way in ways]
+    together, helped = RuleRemovals.merge(found), find_helpful_changes(query, threads, unit)
+    nothing = None if together.first else explain_no_contacts(ways)
     return Explanation(together.first, together.removals, together.nearest, helped, nothing)
 
 
-def count_removals_between_jaws(query: Query) -> Removals:
-    """What the rules leave of the ways in which a part can lie between flat jaws, and which rule takes how many."""
-    rules = Counter(one.rule for one in JawSearch(query).examined())
+def count_removals_between_jaws(query: Query) -> RuleRemovals:
+    """Return in how many ways a part can lie between flat jaws, and how many of them each rule takes away."""
+    rules = Counter(one.rule for one in JawSearch(query).examine_all())
     first = left = sum(rules.values())
     removals = []
     for rule, words in RULES.items():
         if rules[rule]:
-            removals.append(Removal(words, left, left - rules[rule]))
+            removals.append(RuleRemoval(words, left, left - rules[rule]))
             left -= rules[rule]
-    return Removals(first, removals, None)
+    return RuleRemovals(first, removals, None)
 
 
-def count_removals_of_seats(query: Query, threads: int | None) -> Removals:
-    """What the rules leave of the seats of three locators on a plate, and which rule takes how many."""
+def count_removals_of_seats(query: Query, threads: int | None) -> RuleRemovals:
+    """Return how many seats of three locators a plate has, and how many of them each rule takes away."""
     toolkit, asked = query.toolkit, query.restrictions
     bare = evolve(
         query,
-        toolkit=toolkit.without(toolkit.limits),
+        toolkit=toolkit.without_limits(toolkit.limits),
         restrictions=Restrictions(),
         contact_margin=0.0,
         max_location_error=None,
@@ -242,47 +253,59 @@ def count_removals_of_seats(query: Query, threads: int | None) -> Removals:
         if is_asked:
             bare = evolve(bare, **changed)
             after = min(count_seats(bare, threads), before)
-            removals.append(Removal(rule, before, after))
+            removals.append(RuleRemoval(rule, before, after))
             before = after
-    return Removals(first, removals, None)
+    return RuleRemovals(first, removals, None)
 
 
 def count_seats(query: Query, threads: int | None) -> int:
-    """How many seats a query has; 0 where nothing is left to touch."""
+    """Return how many seats a query has that keep its
+    largest location error; 0 where nothing is left to touch.
+    """
     try:
-        return len(within_error(find_seats(query, choose_thread_count(threads)).table, query))
+        return len(select_within_error(find_seats(query, choose_thread_count(threads)).table, query))
     except InputError:
         return 0
 
 
-def no_contacts(ways: Sequence[Query]) -> Note:
-    """Why nothing touches a part at the same time in any way of a toolkit."""
+def explain_no_contacts(ways: Sequence[Query]) -> Note:
+    """Return the note why nothing touches a part at the same
+    time, given the query of each direction of the toolkit.
+    """
     wording = ways[0].toolkit.wording
     if ways[0].toolkit.strap_set is not None:
         return NoFixture("pair", wording)
-    if WALL_END not in ways[0].toolkit.contacts and all(is_round(Problem.of(way)) for way in ways):
+    if WALL_END not in ways[0].toolkit.contacts and all(is_round(Problem.from_query(way)) for way in ways):
         return NoFixture("shape", wording)
     return Remark(f"No {wording.four} can touch the part at the same time.")
 
 
-def helps(query: Query, threads: int | None, unit: Unit) -> tuple[Help, ...]:
-    """Single changes of what was asked for with which there are fixtures, the most first."""
-    out, lifts = [], list[Lift]()
-    for change in changes(query, unit):
-        result = answer_of(change.change, query, threads)
+def find_helpful_changes(query: Query, threads: int | None, unit: Unit) -> tuple[HelpfulChange, ...]:
+    """Return changes of a query that lead to fixtures, those with the most fixtures first.
+
+    They are single changes; where no single one that lifts a request helps, the smallest combination found of
+    such changes.
+    """
+    out, lifts = [], list[QueryChange]()
+    for change in list_changes(query, unit):
+        result = answer_changed_query(change.change, query, threads)
         if result is not None and any(result.found.values()):
             words = change.words + describe_nearest_turn(query, result)
             found = sum(result.found.values())
-            out.append(Help(words, found, result.complete, change.fields, change.rules))
+            out.append(HelpfulChange(words, found, result.complete, change.fields, change.rules))
         if change.is_whole:
             lifts.append(change)
     if len(lifts) > 1 and not any(help.rules for help in out):
-        out += together(query, lifts, threads)
+        out += find_changes_together(query, lifts, threads)
     return tuple(sorted(out, key=lambda help: -help.fixtures))
 
 
-def answer_of(changed: Callable[[Query], Query], query: Query, threads: int | None) -> Result | None:
-    """What a changed query finds within the time for one; None where there is no such query."""
+def answer_changed_query(
+    changed: Callable[[Query], Query], query: Query, threads: int | None
+) -> Result | None:
+    """Return what a changed query finds within :data:`HELP_SECONDS`,
+    perhaps incomplete; None where it is no valid query.
+    """
     enough = Event()
     timer = Timer(HELP_SECONDS, enough.set)
     timer.start()
@@ -295,16 +318,26 @@ def answer_of(changed: Callable[[Query], Query], query: Query, threads: int | No
         timer.cancel()
 
 
-def together(query: Query, lifts: Sequence[Lift], threads: int | None) -> Iterator[Help]:
-    """The fewest things asked for that leave fixtures if left out together, where one alone does not."""
+def find_changes_together(
+    query: Query, lifts: Sequence[QueryChange], threads: int | None
+) -> Iterator[HelpfulChange]:
+    """Yield at most one change that leaves out several requests
+    at once, as few of ``lifts`` as suffice for fixtures.
 
-    def found_without(some: Sequence[Lift]) -> Result | None:
+    ``lifts`` are the changes that leave out one request each; nothing is yielded if even all of them do not
+    help.
+    """
+
+    def found_without(some: Sequence[QueryChange]) -> Result | None:
+        """Return the result without some requests, if it has any fixture, else None."""
+
         def changed(asked: Query) -> Query:
+            """Return the query without these requests."""
             for lift in some:
                 asked = lift.change(asked)
             return asked
 
-        result = answer_of(changed, query, threads)
+        result = answer_changed_query(changed, query, threads)
         return result if result is not None and any(result.found.values()) else None
 
     needed, result = list(lifts), found_without(lifts)
@@ -315,18 +348,21 @@ def together(query: Query, lifts: Sequence[Lift], threads: int | None) -> Iterat
     if result is not None:
         words = join_words([lift.words for lift in needed])
         rules = tuple(rule for lift in needed for rule in lift.rules)
-        yield Help(words, sum(result.found.values()), result.complete, None, rules)
+        yield HelpfulChange(words, sum(result.found.values()), result.complete, None, rules)
 
 
 def describe_nearest_turn(query: Query, result: Result) -> str:
-    """Where angles were asked for, how far beyond them the part can be held, without warnings if that can
-    be."""
+    """Return words on how many degrees beyond the allowed
+    angles the part can be held, preferably without warnings.
+
+    Empty where no angles were asked for, or the result keeps them.
+    """
     if not query.restrictions.angles or result.query.restrictions.angles:
         return ""
     quality = result.table.quality
     good = quality[:, WARNINGS] == quality[:, WARNINGS].min()
     found = np.degrees(result.table.theta[good])
-    # What half a turn leaves in its arrangement lies in the jaws either way round.
+    # Fixtures that a half turn maps to their own arrangement fit the jaws either way round.
     swaps = bool(result.toolkit.symmetries)
     pegs = np.array([swaps and one.pegs[0] == one.pegs[-1] for one in result.toolkit.arrangements])
     found = np.concatenate([found, found[pegs[result.table.arrangement[good]]] + 180.0])
@@ -338,17 +374,17 @@ def describe_nearest_turn(query: Query, result: Result) -> str:
     return f", the nearest {beyond[nearest]:.1f} degrees farther, at {found[nearest] % 360.0:.2f}"
 
 
-class Lift(NamedTuple):
+class QueryChange(NamedTuple):
     """A change of a query to try.
 
     Parameters
     ----------
-    words : what it does.
-    changed : makes the changed query, or finds that there is none such.
-    fields : those of the toolkit that it changes, if it does.
-    rules : what was asked for that it leaves out, see ``Query.asked``.
-    change : the same for any query, so that it can be made together with others.
-    is_whole : whether nothing is left of the rules.
+    words : description of the change.
+    changed : returns the changed query; raises InputError where there is none.
+    fields : fields of the toolkit that it changes; None if it changes none.
+    rules : names of the requests that it leaves out, see ``Query.asked``.
+    change : makes the same change to any query, so that changes can be combined.
+    is_whole : whether it leaves out its requests entirely, not in part.
     """
 
     words: str
@@ -359,8 +395,10 @@ class Lift(NamedTuple):
     is_whole: bool
 
 
-def changes(query: Query, unit: Unit) -> Iterator[Lift]:
-    """Changes of a query to try, one at a time."""
+def list_changes(query: Query, unit: Unit) -> Iterator[QueryChange]:
+    """Yield the single changes of a query to try: without each
+    request, then with the toolkit's limits lifted or changed.
+    """
     asked, toolkit = query.restrictions, query.toolkit
 
     def lift(
@@ -369,29 +407,30 @@ def changes(query: Query, unit: Unit) -> Iterator[Lift]:
         rules: tuple[str, ...],
         fields: Mapping[str, Any] | None = None,
         is_whole: bool = True,
-    ) -> Lift:
-        return Lift(words, partial(change, query), fields, rules, change, is_whole)
+    ) -> QueryChange:
+        """Return a change of the query that leaves out some requests."""
+        return QueryChange(words, partial(change, query), fields, rules, change, is_whole)
 
     if asked.avoid:
         faces = ("faces " if len(asked.avoid) > 1 else "face ") + ", ".join(map(str, asked.avoid))
-        yield lift(f"touching {faces} too", partial(restricted, avoid=()), ("faces to avoid",))
+        yield lift(f"touching {faces} too", partial(change_restrictions, avoid=()), ("faces to avoid",))
         for face in asked.avoid[: MOST_FACES if len(asked.avoid) > 1 else 0]:
             rest = tuple(number for number in asked.avoid if number != face)
-            touching = partial(restricted, avoid=rest)
+            touching = partial(change_restrictions, avoid=rest)
             yield lift(f"touching face {face} too", touching, ("faces to avoid",), is_whole=False)
     if asked.zones:
-        yield lift("without the keep-out zones", partial(restricted, zones=()), ("keep-out zones",))
+        yield lift("without the keep-out zones", partial(change_restrictions, zones=()), ("keep-out zones",))
     if query.program is not None:
         line = find_program_line_in_the_way(query)
         first = "" if line is None else f", of which line {line} is most in the way"
         without = attrgetter("without_program")
         yield lift(f"without the program{first}", without, ("tools of the program",))
     if asked.angles:
-        yield lift("at any angle", partial(restricted, angles=()), ("angles of the part",))
+        yield lift("at any angle", partial(change_restrictions, angles=()), ("angles of the part",))
     if query.contact_margin > 0:
         yield lift("without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",))
     if asked.touch:
-        yield lift("without the faces to touch", partial(restricted, touch=()), ("faces to touch",))
+        yield lift("without the faces to touch", partial(change_restrictions, touch=()), ("faces to touch",))
     if query.max_location_error is not None:
         imprecise = partial(evolve, max_location_error=None)
         yield lift("with any location error", imprecise, ("largest location error",))
@@ -404,25 +443,27 @@ def changes(query: Query, unit: Unit) -> Iterator[Lift]:
         yield lift(change.words, partial(change_toolkit, change=change), (), change.fields, is_whole=False)
 
 
-def restricted(query: Query, **changed: Any) -> Query:
-    """A query with some of its restrictions changed."""
+def change_restrictions(query: Query, **changed: Any) -> Query:
+    """Return a query with some fields of its restrictions changed."""
     return evolve(query, restrictions=evolve(query.restrictions, **changed))
 
 
-def change_toolkit(query: Query, change: Change) -> Query:
-    """A query in a changed toolkit.
+def change_toolkit(query: Query, change: ToolkitChange) -> Query:
+    """Return a query with the toolkit's fields changed.
 
     Raises
     ------
     InputError
         When there is no such toolkit.
     """
-    return held_in(query, query.toolkit.changed(change.fields))
+    return move_to_toolkit(query, query.toolkit.with_fields(change.fields))
 
 
-def held_in(query: Query, toolkit: Toolkit) -> Query:
-    """A query in another toolkit of the kind, where that has another number of clamps without what only the
-    first has."""
+def move_to_toolkit(query: Query, toolkit: Toolkit) -> Query:
+    """Return a query with another toolkit of the same kind.
+
+    Where the number of pegs differs, its types, ranking and listing go back to their defaults.
+    """
     if toolkit.peg_count == query.toolkit.peg_count:
         return evolve(query, toolkit=toolkit)
     return evolve(query, toolkit=toolkit, types=None, rank_by=None, listing=None)

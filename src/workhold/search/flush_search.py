@@ -20,15 +20,15 @@ from workhold.contact.problem import Problem
 from workhold.conventions import CLEARANCE, GAP_SLACK, LEAST_SPAN, PARALLEL
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import bounding_box
+from workhold.geometry.segment import compute_bounding_box
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.pose import Pose
 from workhold.model.requirements import lie_in_angle_ranges
-from workhold.model.search_report import Undecided
+from workhold.model.search_report import UndecidedCandidate
 
-__all__ = ["FlushSearch", "PartOnWall", "part_on_wall"]
+__all__ = ["FlushSearch", "PartOnWall", "lay_part_on_wall"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -44,10 +44,10 @@ class PartOnWall:
 
     Parameters
     ----------
-    rows : (F, 12) kernel rows in the wall's frame.
+    rows : (F, 12) kernel rows in the wall's frame: u along the hull edge from its start, v up from it, in mm.
     length : of the hull edge, in mm.
-    turn : by how many radians its direction may be off.
-    off : by how many mm lengths may be off.
+    turn : error bound of its direction, in radians.
+    off : error bound of lengths, in mm.
     """
 
     rows: Array
@@ -56,8 +56,8 @@ class PartOnWall:
     off: float
 
 
-def part_on_wall(problem: Problem, edge: int) -> PartOnWall:
-    """The features of a part that lies on a hull edge, by the edge's number."""
+def lay_part_on_wall(problem: Problem, edge: int) -> PartOnWall:
+    """Return a problem's features in the frame of the wall, with the hull edge of this number on the wall."""
     rows = problem.rows
     start, end = problem.workpiece.flush.ends[edge] - np.array(problem.workpiece.center)
     step = end - start
@@ -73,14 +73,14 @@ def part_on_wall(problem: Problem, edge: int) -> PartOnWall:
 
 
 def list_allowed_edges(problem: Problem) -> list[int]:
-    """The numbers of the hull edges on which a part may lie.
+    """Return the numbers of the hull edges on which a part may lie, ascending.
 
-    There it is at an angle that is allowed, on faces that may be touched. No keep-out zone reaches into the
-    wall, and the program's tools pass clear of it.
+    Left out are edges at a forbidden angle, edges of faces to avoid alone, edges with a keep-out zone that
+    reaches into the wall, and edges where the program's tools come too near the wall.
     """
     part, asked = problem.workpiece, problem.restrictions
     avoided, carriers = list_avoided_faces(part, asked), problem.toolkit.carriers
-    swept, out = problem.swept(next(one for one in carriers if one.contact is WALL_END)), []
+    swept, out = problem.find_swept_spans(next(one for one in carriers if one.contact is WALL_END)), []
     for number, (theta, touching) in enumerate(
         zip(part.flush.theta.tolist(), part.flush.touching, strict=True)
     ):
@@ -91,28 +91,29 @@ def list_allowed_edges(problem: Problem) -> list[int]:
             continue
         x, y = part.flush.ends[number, 0].tolist()
         pose = Pose(turned, 0.0, -float(rotate_vectors(x, y, theta)[1]))
-        if swept is not None and swept[0].above(theta, -pose.y)[0] < swept[1] - GAP_SLACK:
+        if swept is not None and swept[0].find_reach_below_line(theta, -pose.y)[0] < swept[1] - GAP_SLACK:
             continue
         zones = [pose.carry(segment) for zone in asked.zones for segment in zone.segments]
-        if all(bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
+        if all(compute_bounding_box(segment)[1] >= -CLEARANCE for segment in zones):
             out.append(number)
     return out
 
 
 @define(eq=False)
 class FlushSearch:
-    """A search of what presses a part against a wall, one hull edge after the other, and what it counts.
+    """A search for what presses a part against a wall, one hull edge after the other, with its counts.
 
     Parameters
     ----------
     problem : what is searched.
-    explains : whether it is to say what comes nearest.
-    locators, examined, verified, escalated : how many contacts of a locator and pairs of contacts there were,
-        how many pairs were proven to press the part, and how many needed balls.
-    undecided : the pairs that not even they decide, for the account.
-    is_square : whether every face that was offered is straight, and parallel or square to the wall.
-    nearest : the smallest share of the four contacts in the pair in which it is the largest, and that pair.
-        It is known where it is asked for, and as long as none is proven.
+    explains : whether to keep the pair that comes nearest.
+    locators : how many contacts of locators there were.
+    examined, verified, escalated : how many pairs of contacts there were; how many were proven to press the
+        part; how many were decided in ball arithmetic.
+    undecided : pairs that ball arithmetic leaves undecided, for the search report.
+    is_square : whether every face met so far is straight, and parallel or square to the wall.
+    nearest : the smallest share of a contact in the null vector, for the pair in which that is largest, and
+        its table; None while no pair is known. Kept only with ``explains`` and while no pair is verified.
     """
 
     problem: Problem
@@ -121,48 +122,58 @@ class FlushSearch:
     examined: int = field(default=0, init=False)
     verified: int = field(default=0, init=False)
     escalated: int = field(default=0, init=False)
-    undecided: list[Undecided] = field(factory=list, init=False)
+    undecided: list[UndecidedCandidate] = field(factory=list, init=False)
     is_square: bool = field(default=True, init=False)
     nearest: tuple[float, FixtureTable] | None = field(default=None, init=False)
 
     @property
     def edges(self) -> list[int]:
-        """The numbers of the hull edges on which the part may lie."""
+        """Numbers of the hull edges on which the part may lie, ascending."""
         return list_allowed_edges(self.problem)
 
     @property
-    def alone(self) -> Toolkit:
-        """The toolkit in which the pair that comes nearest stands."""
+    def pair_toolkit(self) -> Toolkit:
+        """Toolkit in which the nearest pair stands."""
         return self.problem.toolkit
 
     @property
-    def touches(self) -> bool:
-        """Whether pegs can touch the part."""
+    def can_touch(self) -> bool:
+        """Whether pegs can touch the part, once the search has run."""
         raise NotImplementedError
 
-    def fixtures(self, edge: int) -> Iterator[Any]:
-        """The pairs that press the part as it lies on a hull edge, some at a time."""
+    def iterate_fixtures(self, edge: int) -> Iterator[Any]:
+        """Yield the pairs that press the part as it lies on a hull edge, in batches of the subclass's kind.
+
+        The counts are updated while it runs.
+        """
         raise NotImplementedError
 
-    def placed(self, parts: list[Any], edge: int) -> FixtureTable:
-        """The table of those pairs on a hull edge that have a place, each once; at least one part."""
+    def place_fixtures(self, parts: list[Any], edge: int) -> FixtureTable:
+        """Return the table of those pairs on a hull edge that have a place in the toolkit, each once.
+
+        ``parts`` are batches from :meth:`iterate_fixtures`, at least one.
+        """
         raise NotImplementedError
 
-    def lying_on(self, edge: int) -> PartOnWall:
-        """The part as it lies on a hull edge."""
-        lying = part_on_wall(self.problem, edge)
+    def lay_on_edge(self, edge: int) -> PartOnWall:
+        """Return the part as it lies on a hull edge; sets
+        ``is_square`` to False where a face is round or oblique.
+        """
+        lying = lay_part_on_wall(self.problem, edge)
         tilted = np.minimum(np.abs(lying.rows[:, AXIS_X]), np.abs(lying.rows[:, AXIS_Y])) > PARALLEL
         self.is_square &= bool(((lying.rows[:, IS_ARC] == 0.0) & ~tilted).all())
         return lying
 
-    def look_nearer(self, null: Array, is_none: BoolArray, table: Callable[[IntArray], FixtureTable]) -> None:
-        """Keeps the pair that is nearest to pressing the part, as long as none is proven.
+    def keep_nearest(
+        self, null: Array, is_none: BoolArray, table: Callable[[IntArray], FixtureTable]
+    ) -> None:
+        """Keep the pair with the largest least share in ``nearest``, as long as no pair is verified.
 
         Parameters
         ----------
         null : (M, 4) null vectors of pairs.
-        is_none : (M,) which of them have no force by which forces could be given.
-        table : gives the table of the pairs of an index array.
+        is_none : (M,) pairs to leave out, since the force that others are relative to is zero.
+        table : returns the table of the pairs of an index array.
         """
         if self.verified or len(null) == 0:
             return

@@ -27,12 +27,12 @@ from workhold.contact.problem import Progress
 from workhold.contact.swept import find_swept_below
 from workhold.conventions import PARALLEL, READING, SQUARE_TILT, TOUCHING
 from workhold.fixels.jaw_pair import JawPair
-from workhold.geometry.hull import HullEdge, HullTouch, find_touches_along, hull_edges
+from workhold.geometry.hull import HullEdge, HullTouch, find_hull_edges, find_touches_along
 from workhold.geometry.segment import Arc, Segment
 from workhold.geometry.symmetry import find_rotations_onto_itself
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.friction import find_friction_coefficient
-from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
+from workhold.model.jaw_hold import JawHold, JawPatch, ProgramJawForce
 from workhold.model.notes import NoFixture, Note, Remark, Stage
 from workhold.model.program import Program
 from workhold.model.quality import round_number_coarsely
@@ -42,15 +42,15 @@ from workhold.model.result import Result
 from workhold.model.solid import Band
 from workhold.model.workpiece import Workpiece
 from workhold.statics.friction import (
-    Grip,
-    corners_of_load,
+    FrictionHold,
     find_least_peak_pressure,
     is_pressed_all_over,
+    list_load_corners,
 )
-from workhold.statics.jaw_program import CuttingPieces, worst_of_program
+from workhold.statics.jaw_program import CuttingPieces, find_worst_move
 from workhold.statics.patches import PressedPatch, hulls_meet
 
-__all__ = ["RULES", "Examined", "JawSearch", "find_fixtures_between_jaws"]
+__all__ = ["RULES", "ExaminedHold", "JawSearch", "find_fixtures_between_jaws"]
 
 Array = NDArray[np.float64]
 # The rules in the order in which they are asked.
@@ -63,27 +63,28 @@ RULES = {
     "touch": "faces to touch",
     "program": "jaws clear of the program",
 }
-# What a rule is about that left nothing, as notes have it.
+# The stage, as notes name it, of a rule that took the last way.
 STAGE_OF: dict[str, Stage] = {"angles": "shape", "grip": "pair", "push": "set"}
-# Straight sides that a drawing's decimals turn by less are parallel where they are off by no more than it means.
+# Sine of the angle between straight sides that still count as parallel, if their ends are off by no more than
+# a drawing's rounding.
 NEARLY_PARALLEL = 1e-6
-# Two heights of one thickness where nobody says how thick the part is, in mm.
+# Heights in mm that stand for a part's where its thickness is not given.
 UNKNOWN_BAND = (0.0, 1.0)
-# How far outward in mm jaws are taken to reach whose thickness is not given.
+# mm. Depth of jaws whose thickness is not given.
 JAW_DEPTH = 1e4
-# How far in mm what both jaws touch may miss each other by rounding.
+# mm. The patches on both jaws may miss each other by this much, for rounding.
 PUSH_SLACK = 1e-7
 
 
 @frozen
 class JawTouch:
-    """What of a part lies on a jaw.
+    """A stretch or a point along a jaw at which the part touches it.
 
     Parameters
     ----------
     low, high : from where to where along the jaw, in mm; equal for a point.
-    band : the heights at which it touches, in mm.
-    faces : numbers of the faces that touch; none for a corner.
+    band : (lowest, highest) height at which it touches, in mm.
+    faces : numbers of the faces that touch; empty for a corner.
     """
 
     low: float
@@ -93,18 +94,19 @@ class JawTouch:
 
     @property
     def is_point(self) -> bool:
+        """Whether it is a point rather than a stretch."""
         return self.high <= self.low
 
 
 @frozen(eq=False)
 class JawOutline:
-    """The outline that jaws meet whose top is at one height, and how it can lie.
+    """The outline of a part that jaws with their top at one height meet.
 
     Parameters
     ----------
     outline : of the part between the heights of the jaws.
     first : the number of its first segment.
-    height : of the part, in mm; None where nobody says.
+    height : of the part, in mm; None where not given.
     """
 
     outline: Workpiece
@@ -113,58 +115,69 @@ class JawOutline:
 
     @cached_property
     def segments(self) -> list[Segment]:
+        """Faces of the outer loops as segments, loop after loop."""
         return [face.segment for face in self.outline.outer_faces]
 
     @cached_property
     def edges(self) -> tuple[HullEdge, ...]:
-        return hull_edges(self.segments, self.outline.outer_face_counts)
+        """Hull edges of the outer loops; empty for a part without any, such as a disc."""
+        return find_hull_edges(self.segments, self.outline.outer_face_counts)
 
     @cached_property
     def angles(self) -> list[float]:
-        """The orientations in radians at which it can lie on the fixed jaw; as drawn where it has no hull edge."""
+        """Orientations in radians in [0, 2 pi), one for each hull
+        edge that can lie on the fixed jaw; [0.0] without hull edges.
+        """
         turns = [-atan2(edge.tangent[1], edge.tangent[0]) % (2 * pi) for edge in self.edges]
         return turns or [0.0]
 
-    def band(self, number: int) -> Band | None:
-        """The heights at which a face of an index is touched; None where it may not be."""
+    def find_band(self, number: int) -> Band | None:
+        """Return the heights (low, high) in mm at which a face may be touched; None where it may not.
+
+        ``number`` is the face's index in ``segments``.
+        """
         solid = self.outline.solid
         if solid is not None:
             return solid.bands[self.outline.outer_faces[number].number]
         return UNKNOWN_BAND if self.height is None else (0.0, self.height)
 
-    def number(self, index: int) -> int:
-        """The number of a face, as files and pictures have it."""
+    def find_face_number(self, index: int) -> int:
+        """Return the number in files and pictures of the face with an index in ``segments``."""
         return self.first + self.outline.outer_faces[index].number
 
-    def lying(self, place: int) -> Lying:
-        """How it lies at the angle of a place in :attr:`angles`."""
-        return Lying(self, self.angles[place], self.edges[place] if self.edges else None)
+    def lay_at_angle(self, place: int) -> PartOnJaw:
+        """Return the part as it lies at ``angles[place]``,
+        with the hull edge of that place on the fixed jaw.
+        """
+        return PartOnJaw(self, self.angles[place], self.edges[place] if self.edges else None)
 
 
 @frozen(eq=False)
-class Lying:
+class PartOnJaw:
     """A part that lies at an angle on the fixed jaw; x runs along the jaws, y away from the fixed one.
 
     Parameters
     ----------
-    theta : in radians.
-    edge : the hull edge that lies on the fixed jaw; None of a part that has none.
+    of : the outline and its hull edges.
+    theta : orientation in radians.
+    edge : the hull edge that lies on the fixed jaw; None for a part without one.
     """
 
     of: JawOutline
     theta: float
     edge: HullEdge | None
 
-    def turned(self, point: tuple[float, float]) -> tuple[float, float]:
-        """A point of the drawing, turned."""
+    def turn_point(self, point: tuple[float, float]) -> tuple[float, float]:
+        """Return a point of the drawing in mm, turned by theta about the origin."""
         c, s = cos(self.theta), sin(self.theta)
         return c * point[0] - s * point[1], s * point[0] + c * point[1]
 
     @cached_property
     def reaches(self) -> dict[tuple[int, int], tuple[float, list[tuple[float, float, tuple[int, ...]]]]]:
-        """How far the outline reaches along -x, x, -y and y, in mm, and the turned points there with their faces.
+        """Reach of the turned outline by direction: key (-1, 0), (1, 0), (0, -1) or (0, 1).
 
-        A point has one face where it lies on an arc, and two where it is a corner.
+        Each value is the largest coordinate in mm along the direction, and the points (x, y, indices of
+        faces) there. A point on an arc has one face, a corner two.
         """
         points: list[tuple[float, float, tuple[int, ...]]] = []
         count = 0
@@ -174,10 +187,10 @@ class Lying:
             for k in range(count, count + size):
                 face, before = self.of.segments[k], count + (k - count - 1) % size
                 if not (isinstance(face, Arc) and face.is_full):
-                    x, y = self.turned(face.start)
+                    x, y = self.turn_point(face.start)
                     points.append((x, y, (before, k)))
                 if isinstance(face, Arc) and face.sign > 0:
-                    (x, y), middle = self.turned(face.center), face.mid_angle + self.theta
+                    (x, y), middle = self.turn_point(face.center), face.mid_angle + self.theta
                     for a, b in ways:
                         along = a * cos(middle) + b * sin(middle)
                         if face.is_full or along >= cos(face.half_sweep):
@@ -197,12 +210,15 @@ class Lying:
             out[way] = most, there
         return out
 
-    def reach(self, a: int, b: int) -> float:
+    def measure_reach(self, a: int, b: int) -> float:
+        """Return the largest coordinate in mm of the turned outline
+        along the direction (a, b), one of the keys of ``reaches``.
+        """
         return self.reaches[a, b][0]
 
     @cached_property
     def opposite(self) -> HullEdge | None:
-        """The hull edge that lies on the jaw that moves, if one does."""
+        """Hull edge that lies on the moving jaw: that antiparallel to ``edge``; None without one."""
         if self.edge is None:
             return None
         tx, ty = self.edge.tangent
@@ -217,44 +233,49 @@ class Lying:
 
     @cached_property
     def level(self) -> float:
-        """y of the fixed jaw."""
-        return -self.reach(0, -1) if self.edge is None else self.turned(self.edge.start.point)[1]
+        """y of the fixed jaw in mm, in the turned drawing."""
+        return -self.measure_reach(0, -1) if self.edge is None else self.turn_point(self.edge.start.point)[1]
 
     @cached_property
     def opening(self) -> float:
-        """S in mm."""
-        return self.reach(0, 1) - self.level
+        """Distance between the jaws' faces, in mm."""
+        return self.measure_reach(0, 1) - self.level
 
     @cached_property
     def touched(self) -> tuple[list[JawTouch], list[JawTouch]]:
-        """What the fixed jaw touches, and what the one that moves does."""
-        return self.touches(self.edge, -1), self.touches(self.opposite, 1)
+        """Touches on the fixed jaw, and touches on the moving jaw."""
+        return self.find_touches(self.edge, -1), self.find_touches(self.opposite, 1)
 
-    def touches(self, edge: HullEdge | None, way: int) -> list[JawTouch]:
-        """What lies on the jaw below (-1) or above (1)."""
+    def find_touches(self, edge: HullEdge | None, way: int) -> list[JawTouch]:
+        """Return the stretches and points at which the part touches
+        the jaw below (way -1) or above (way 1), stretches first.
+
+        ``edge`` is the hull edge on that jaw; None to take the outermost points. Faces that may not be
+        touched are left out, and so are corners on a stretch that is listed.
+        """
         if edge is None:
             along = [HullTouch(x, x, faces) for x, _, faces in self.reaches[0, way][1]]
         else:
-            start = self.turned(edge.start.point)[0]
+            start = self.turn_point(edge.start.point)[0]
             along = []
             for one in find_touches_along(edge, self.of.segments, self.of.outline.outer_face_counts):
                 low, high = sorted((start - way * one.low, start - way * one.high))
                 along.append(HullTouch(low, high, one.faces))
         out = list[JawTouch]()
         for one in sorted(along, key=lambda one: (one.low == one.high, len(one.faces), one.low)):
-            bands = [self.of.band(index) for index in one.faces]
+            bands = [self.of.find_band(index) for index in one.faces]
             if any(band is None for band in bands):
                 continue
             low, high = max(band[0] for band in bands if band), min(band[1] for band in bands if band)
             is_corner = len(one.faces) > 1
             if is_corner and any(other.low - READING <= one.low <= other.high + READING for other in out):
                 continue
-            faces = () if is_corner else tuple(self.of.number(index) for index in one.faces)
+            faces = () if is_corner else tuple(self.of.find_face_number(index) for index in one.faces)
             out.append(JawTouch(one.low, one.high, (low, high), faces))
         return out
 
-    def faces_at(self) -> set[int]:
-        """The numbers of all faces that either jaw touches, those of corners as well."""
+    def list_touched_faces(self) -> set[int]:
+        """Return the numbers of all faces that touch either jaw, both faces of a corner included."""
         out = set[int]()
         for edge, way in ((self.edge, -1), (self.opposite, 1)):
             if edge is None:
@@ -263,19 +284,26 @@ class Lying:
                 touched = find_touches_along(edge, self.of.segments, self.of.outline.outer_face_counts)
                 along = [one for one in touched if len(one.faces) == 1]
                 indices = [index for one in along or touched for index in one.faces]
-            out |= {self.of.number(index) for index in indices}
+            out |= {self.of.find_face_number(index) for index in indices}
         return out
 
 
-def gripped(touches: Sequence[JawTouch], top: float, least: float) -> list[JawTouch]:
-    """What of some touches jaws grip whose top is so high above the part's lower side: stretches, or else points."""
+def select_gripped(touches: Sequence[JawTouch], top: float, least: float) -> list[JawTouch]:
+    """Return the touches cut to the heights 0 to ``top`` that are still at least ``least`` high, in mm.
+
+    Points are returned only where no stretch is left.
+    """
     cut = [evolve(one, band=(max(one.band[0], 0.0), min(one.band[1], top))) for one in touches]
     high = [one for one in cut if one.band[1] - one.band[0] >= least]
     return [one for one in high if not one.is_point] or high
 
 
-def clip_touches_to_jaws(touches: Sequence[JawTouch], shift: float, width: float) -> Patch | None:
-    """What of some touches lies on jaws of a width, moved along them by ``shift``; None where nothing does."""
+def clip_touches_to_jaws(touches: Sequence[JawTouch], shift: float, width: float) -> JawPatch | None:
+    """Return the touches, moved by ``shift`` mm along the jaws,
+    that lie on jaws from 0 to ``width`` mm, as one patch.
+
+    Adjacent stretches of the same heights are joined. None where nothing lies on the jaws.
+    """
     moved = [evolve(one, low=one.low + shift, high=one.high + shift) for one in touches]
     rows = list[tuple[float, float, float, float]]()
     faces = list[int]()
@@ -290,19 +318,21 @@ def clip_touches_to_jaws(touches: Sequence[JawTouch], shift: float, width: float
         faces += one.faces
     if not rows:
         return None
-    return Patch(tuple(rows), tuple(sorted(dict.fromkeys(faces))), not faces)
+    return JawPatch(tuple(rows), tuple(sorted(dict.fromkeys(faces))), not faces)
 
 
 def find_common_middle(one: Sequence[JawTouch], other: Sequence[JawTouch]) -> float | None:
-    """The middle of what the ranges of two jaws' touches have in common; None where that is nothing."""
+    """Return the middle, in mm along the jaws, of the overlap
+    of two jaws' ranges of touches; None without overlap.
+    """
     low = max(min(touch.low for touch in touches) for touches in (one, other))
     high = min(max(touch.high for touch in touches) for touches in (one, other))
     return (low + high) / 2 if low <= high else None
 
 
 @frozen
-class Examined:
-    """A hull edge with parallels and a stop.
+class ExaminedHold:
+    """A hull edge with parallels and a stop, and the first rule that it breaks.
 
     Parameters
     ----------
@@ -327,47 +357,55 @@ class JawSearch:
 
     @property
     def jaws(self) -> JawPair:
+        """Flat jaws of the query's toolkit."""
         jaws = self.query.toolkit.flat_jaws
         assert jaws is not None
         return jaws
 
     @cached_property
-    def lyings(self) -> dict[float, list[Lying]]:
-        """How the part can lie, for each height of parallels."""
-        out, known = {}, dict[int, list[Lying]]()
+    def lyings(self) -> dict[float, list[PartOnJaw]]:
+        """Ways in which the part can lie on the fixed jaw, by height of parallels in mm."""
+        out, known = {}, dict[int, list[PartOnJaw]]()
         for parallels in self.jaws.parallels:
-            outline, first = self.query.workpiece.outline_of(self.jaws.name_outline_role(parallels))
+            outline, first = self.query.workpiece.find_outline(self.jaws.name_outline_role(parallels))
             if first not in known:
                 one = JawOutline(outline, first, self.query.part_height)
-                known[first] = [one.lying(place) for place in range(len(one.angles))]
+                known[first] = [one.lay_at_angle(place) for place in range(len(one.angles))]
             out[parallels] = known[first]
         return out
 
     @property
     def size(self) -> int:
-        """How many ways there are to examine."""
+        """Number of combinations of hull edge, parallels and stop."""
         return sum(len(some) for some in self.lyings.values()) * len(self.jaws.stops)
 
-    def examined(self) -> Iterator[Examined]:
-        """Each way that there is, with the first rule that it breaks."""
+    def examine_all(self) -> Iterator[ExaminedHold]:
+        """Yield every combination of parallels, stop and hull
+        edge as examined, with the first rule that it breaks.
+        """
         for parallels, stop in product(self.jaws.parallels, self.jaws.stops):
             for lying in self.lyings[parallels]:
                 yield self.examine(lying, parallels, stop)
 
-    def examine(self, lying: Lying, parallels: float, stop: str | None) -> Examined:
+    def examine(self, lying: PartOnJaw, parallels: float, stop: str | None) -> ExaminedHold:
+        """Return the hold with the part in a position, on parallels
+        and against a stop ("left", "right", None), as examined.
+
+        Loads and warnings are not yet applied.
+        """
         query, jaws = self.query, self.jaws
         top = jaws.compute_top(parallels)
-        nothing = Examined(lying.theta, (0.0, 0.0), None, "grip")
+        nothing = ExaminedHold(lying.theta, (0.0, 0.0), None, "grip")
         if not lie_in_angle_ranges(degrees(lying.theta), query.restrictions.angles):
             return evolve(nothing, rule="angles")
         least = jaws.least_grip if query.part_height is not None else 0.0
         if top < jaws.least_grip:
             return nothing
-        fixed, moving = (gripped(touches, top, least) for touches in lying.touched)
+        fixed, moving = (select_gripped(touches, top, least) for touches in lying.touched)
         if not fixed or not moving:
             return nothing
         middle = find_common_middle(fixed, moving)
-        low, high = -lying.reach(-1, 0), lying.reach(1, 0)
+        low, high = -lying.measure_reach(-1, 0), lying.measure_reach(1, 0)
         match stop:
             case "left":
                 shift = jaws.stop_offset - low
@@ -391,15 +429,17 @@ class JawSearch:
             max_force=jaws.max_force,
             unit_force=query.unit_force,
         )
-        found = Examined(lying.theta, (shift, 0.0 - lying.level), hold, None)
-        rule = self.broken(hold, lying)
+        found = ExaminedHold(lying.theta, (shift, 0.0 - lying.level), hold, None)
+        rule = self.find_broken_rule(hold, lying)
         if rule is None and query.program is not None:
-            line = self.line_near_jaws(query.program, found, hold)
+            line = self.find_line_near_jaws(query.program, found, hold)
             return found if line is None else evolve(found, rule="program", line=line)
         return evolve(found, rule=rule)
 
-    def broken(self, hold: JawHold, lying: Lying) -> str | None:
-        """The first rule that a hold breaks."""
+    def find_broken_rule(self, hold: JawHold, lying: PartOnJaw) -> str | None:
+        """Return the key in :data:`RULES` of the first broken rule
+        from opening to faces to touch; None where it keeps all.
+        """
         most = self.jaws.max_opening
         if most is not None and hold.opening > most + TOUCHING:
             return "opening"
@@ -407,45 +447,52 @@ class JawSearch:
         if not hulls_meet(one, other, PUSH_SLACK):
             return "push"
         asked = self.query.restrictions
-        if asked.avoid and not lying.faces_at().isdisjoint(self.every_face(asked.avoid)):
+        if asked.avoid and not lying.list_touched_faces().isdisjoint(
+            self.list_faces_in_outlines(asked.avoid)
+        ):
             return "avoid"
         if asked.touch and not set(asked.touch) <= {*hold.fixed.segments, *hold.moving.segments}:
             return "touch"
         return None
 
-    def line_near_jaws(self, program: Program, one: Examined, hold: JawHold) -> int | None:
-        """The line of a program whose tool comes too near a jaw, a box from its face outward; None where none does."""
+    def find_line_near_jaws(self, program: Program, one: ExaminedHold, hold: JawHold) -> int | None:
+        """Return the line of a program whose tool comes too near a jaw; None where none does.
+
+        Each jaw is a box from its face outward, as deep as the jaw's thickness.
+        """
         swept = find_swept_below(program, self.jaws.compute_top(hold.parallels))
         if not len(swept):
             return None
         depth = JAW_DEPTH if self.jaws.thickness is None else self.jaws.thickness
         c, s = cos(one.theta), sin(one.theta)
-        # Turned back, as the part was drawn.
+        # Rotation from the toolkit's frame back to the drawing's.
         back, place = np.array([[c, -s], [s, c]]), np.array(one.position)
         for low, high in ((-depth, 0.0), (hold.opening, hold.opening + depth)):
             box = np.array([[0.0, low], [self.jaws.width, low], [self.jaws.width, high], [0.0, high]])
-            reach, line = swept.reach_of_box((box - place) @ back)
+            reach, line = swept.find_reach_to_box((box - place) @ back)
             if reach < program.clearance:
                 return line
         return None
 
-    def every_face(self, faces: Sequence[int]) -> set[int]:
-        """The numbers of faces, in every outline of a solid."""
+    def list_faces_in_outlines(self, faces: Sequence[int]) -> set[int]:
+        """Return the numbers of faces, with the numbers that
+        the same faces have in every other outline of a solid.
+        """
         numbered = self.query.workpiece.numbered
-        return {*faces, *numbered.segments_under(numbered.faces_over(faces))}
+        return {*faces, *numbered.list_segments_under(numbered.list_faces_over(faces))}
 
-    def grip(self, one: Examined, hold: JawHold) -> Grip:
-        """The grip of a fixture, for its loads."""
+    def make_grip(self, one: ExaminedHold, hold: JawHold) -> FrictionHold:
+        """Return the friction model of a hold, with the points on the stop, for its loads."""
         lying = next(each for each in self.lyings[hold.parallels] if each.theta == one.theta)
         points, way = list[tuple[float, float, float]](), 1.0
         if hold.stop is not None:
             side = -1 if hold.stop == "left" else 1
             way = -float(side)
             y = [at + one.position[1] for _, at, _ in lying.reaches[side, 0][1]]
-            x = side * lying.reach(side, 0) + one.position[0]
+            x = side * lying.measure_reach(side, 0) + one.position[0]
             high = min(self.jaws.compute_top(hold.parallels), self.height)
             points = [(x, each, z) for each in sorted({min(y), max(y)}) for z in (0.0, high)]
-        return Grip.of(
+        return FrictionHold.from_patches(
             hold.fixed,
             hold.moving,
             hold.opening,
@@ -456,67 +503,81 @@ class JawSearch:
 
     @property
     def height(self) -> float:
-        """How high the part is in mm, or what stands for it where nobody says."""
+        """Height of the part in mm; 1.0 where it is not given."""
         known = self.query.part_height
         return UNKNOWN_BAND[1] if known is None else known
 
-    def wrenches(self, load: Load, one: Examined, grip: Grip) -> Array:
-        """The wrenches (N, 6) of a load's corners, with the safety factor."""
+    def compute_wrenches(self, load: Load, one: ExaminedHold, grip: FrictionHold) -> Array:
+        """Return wrenches (N, 6) that span a load's range, times
+        the safety factor, as ``FrictionHold`` counts them.
+        """
         height = load.height if load.height is not None else self.height
         if self.query.part_height is None:
             height = self.height / 2
-        rows = grip.wrenches(*corners_of_load(load, one.theta, one.position, height))
+        rows = grip.compute_wrenches(*list_load_corners(load, one.theta, one.position, height))
         rows[:, 5] += load.moment / grip.length
         return np.asarray(rows * self.query.safety_factor)
 
     @cached_property
     def pieces(self) -> CuttingPieces | None:
-        """Where the tools of the program press on the part; None without their forces."""
+        """Pieces of the program's moves on which tools cut the
+        part; None where the program has no cutting forces.
+        """
         program = self.query.program
         if program is None or program.forces is None:
             return None
         return CuttingPieces.from_program(program, self.height)
 
     @property
-    def first_cut(self) -> ProgramNeed | None:
-        """What the program asks for where no jaw force holds anything: more than any force, where it first cuts."""
+    def first_cut(self) -> ProgramJawForce | None:
+        """Need of a program that no jaw force holds, at its first
+        cut, with a force of None; None where nothing is cut.
+        """
         pieces, program = self.pieces, self.query.program
         if pieces is None or program is None or not len(pieces):
             return None
         move = int(pieces.move.min())
-        return ProgramNeed(None, int(program.moves.line[move]), int(program.moves.tool[move]), move)
+        return ProgramJawForce(None, int(program.moves.line[move]), int(program.moves.tool[move]), move)
 
-    def asked_by_program(self, one: Examined, grip: Grip) -> ProgramNeed | None:
-        """What the tools of the program ask for; None without their forces."""
+    def compute_program_need(self, one: ExaminedHold, grip: FrictionHold) -> ProgramJawForce | None:
+        """Return the largest jaw force that the program's
+        tools need, and where; None without cutting forces.
+        """
         pieces, query = self.pieces, self.query
         if pieces is None or query.program is None:
             return None
-        return worst_of_program(grip, pieces, query.program, one.theta, one.position, query.safety_factor)
+        return find_worst_move(grip, pieces, query.program, one.theta, one.position, query.safety_factor)
 
-    def loaded(self, one: Examined) -> Examined:
-        """A fixture with what its loads ask for, and with its warnings."""
+    def apply_loads(self, one: ExaminedHold) -> ExaminedHold:
+        """Return a hold with the jaw forces that its loads and program need, its pressure and its warnings.
+
+        Without full contact every need is None: no force holds.
+        """
         hold, loads = one.hold, self.query.loads
         assert hold is not None
         each: list[float | None] = [None] * len(loads)
         of_program = self.first_cut
         if self.query.is_loaded and hold.full_contact:
-            grip = self.grip(one, hold)
-            each = [find_largest_force(grip.forces_needed(self.wrenches(load, one, grip))) for load in loads]
-            of_program = self.asked_by_program(one, grip)
+            grip = self.make_grip(one, hold)
+            each = [
+                find_largest_force(grip.compute_forces_needed(self.compute_wrenches(load, one, grip)))
+                for load in loads
+            ]
+            of_program = self.compute_program_need(one, grip)
         hold = evolve(hold, clamp_needed_each=tuple(each), program_need=of_program)
         needed = hold.clamp_needed
         pressure = None if not needed else find_least_peak_pressure(hold.fixed, hold.moving, needed)
         hold = evolve(hold, max_pressure=None if self.query.part_height is None else pressure)
-        return evolve(one, hold=evolve(hold, warnings=tuple(self.warnings(hold))))
+        return evolve(one, hold=evolve(hold, warnings=tuple(self.iterate_warnings(hold))))
 
     @property
     def acting(self) -> str:
-        """What acts on the part, in words."""
+        """Names of what acts on the part, for sentences: "the loads", "the tools", or both."""
         names = ("the loads", bool(self.query.loads)), ("the tools", self.pieces is not None)
         return " and ".join(name for name, is_there in names if is_there)
 
-    def warnings(self, hold: JawHold) -> Iterator[str]:
-        """What to beware of, sentences."""
+    def iterate_warnings(self, hold: JawHold) -> Iterator[str]:
+        """Yield the warnings about a hold, as sentences."""
         for words, patch in (("fixed", hold.fixed), ("moving", hold.moving)):
             if patch.is_corner:
                 yield f"unfit: the {words} jaw touches a corner alone, which marks the part"
@@ -549,18 +610,20 @@ class JawSearch:
 
 
 def find_largest_force(needs: Sequence[float | None]) -> float | None:
-    """The largest of some forces; None where one of them is none."""
+    """Return the largest of some forces in N, at least one; None where any of them is None."""
     known = [need for need in needs if need is not None]
     return max(known) if len(known) == len(needs) else None
 
 
 def is_square(theta: float) -> bool:
-    """Whether an angle in radians is a quarter turn, or none."""
+    """Return whether an angle in radians is a multiple of a quarter turn, within ``SQUARE_TILT`` degrees."""
     return abs((degrees(theta) + 45.0) % 90.0 - 45.0) < SQUARE_TILT
 
 
-def order_of(one: Examined, query: Query) -> tuple[float, ...]:
-    """What fixtures are put in order by: smaller comes first."""
+def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
+    """Return the sort key of a hold: better ones have smaller
+    keys; unfit ones last, then by the query's ranking.
+    """
     hold = one.hold
     assert hold is not None
     key: list[float] = [hold.is_unfit, not hold.full_contact, hold.is_beyond_rating]
@@ -590,31 +653,31 @@ def order_of(one: Examined, query: Query) -> tuple[float, ...]:
 def find_fixtures_between_jaws(
     query: Query, progress: Progress | None = None, cancel: Event | None = None
 ) -> Result:
-    """Finds every way to hold a part between the flat jaws of a query's toolkit."""
-    search, found, whole = JawSearch(query), list[Examined](), True
+    """Return every way, or the best, to hold a part between the flat jaws of a query's toolkit."""
+    search, found, whole = JawSearch(query), list[ExaminedHold](), True
     size, rules, lines = search.size, dict.fromkeys(RULES, 0), Counter[int]()
-    for number, one in enumerate(search.examined(), 1):
+    for number, one in enumerate(search.examine_all(), 1):
         if cancel is not None and cancel.is_set():
             whole = False
             break
         if one.rule is None:
-            found.append(search.loaded(one))
+            found.append(search.apply_loads(one))
         else:
             rules[one.rule] += 1
             lines.update([] if one.line is None else [one.line])
         if progress is not None:
             progress(number / size, len(found))
-    found.sort(key=lambda one: order_of(one, query))
+    found.sort(key=lambda one: make_order_key(one, query))
     listed = found[: query.best]
     notes = list[Note]()
     if whole and not found:
-        notes.append(no_fixture(rules, lines, query))
+        notes.append(explain_no_fixture(rules, lines, query))
     count = {query.toolkit.arrangements[0].name: len(found)}
     return Result(
         query=query,
-        table=table_of(listed),
+        table=make_table(listed),
         found=count,
-        distinct=dict.fromkeys(count, distinct(found, query.workpiece)),
+        distinct=dict.fromkeys(count, count_distinct(found, query.workpiece)),
         complete=whole,
         notes=tuple(notes),
         statistics={"hull_edges": sum(len(some) for some in search.lyings.values()), "examined": size},
@@ -622,8 +685,8 @@ def find_fixtures_between_jaws(
     )
 
 
-def table_of(listed: Sequence[Examined]) -> FixtureTable:
-    """The table of some fixtures."""
+def make_table(listed: Sequence[ExaminedHold]) -> FixtureTable:
+    """Return the fixture table of holds by flat jaws, one row each."""
     holds = [one.hold for one in listed if one.hold is not None]
     return make_flat_jaw_table(
         [one.theta for one in listed],
@@ -633,8 +696,8 @@ def table_of(listed: Sequence[Examined]) -> FixtureTable:
     )
 
 
-def distinct(found: Sequence[Examined], workpiece: Workpiece) -> int:
-    """How many fixtures there are where such that a rotation of the part makes the same count once."""
+def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
+    """Return the number of holds, counting once those that a rotation of the part onto itself makes equal."""
     every = workpiece.numbered
     turns = [
         one.angle for one in find_rotations_onto_itself([face.segment for face in every.faces], every.marks)
@@ -647,8 +710,12 @@ def distinct(found: Sequence[Examined], workpiece: Workpiece) -> int:
     return len(seen)
 
 
-def no_fixture(rules: dict[str, int], lines: Counter[int], query: Query) -> Note:
-    """Why there is no fixture: the last rule that took any away."""
+def explain_no_fixture(rules: dict[str, int], lines: Counter[int], query: Query) -> Note:
+    """Return the note why there is no fixture: the last rule
+    in order that took any way, or the program's worst line.
+
+    ``rules`` counts ways by the first rule they break, ``lines`` by the program's line.
+    """
     wording = query.toolkit.wording
     if lines:
         line = min(lines, key=lambda line: (-lines[line], line))

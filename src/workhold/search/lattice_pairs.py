@@ -10,9 +10,9 @@ Where two curves have a common stretch (parallel lines, equal arcs about one cen
 both normals are parallel there. With the wall's they then span no space, so nothing closes (``compute_pair_closure``).
 
 Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians
-(``PartOnWall``). A crossing is off by ``off`` over the sine of the angle between both normals. This holds as
-long as that turns no normal by a tenth of the angle. Elsewhere there is no bound, and the pair is decided in
-balls.
+(``PartOnWall``). The error of a crossing is ``off`` divided by the sine of the angle between both normals, as
+long as that turns neither normal by more than a tenth of the angle. Otherwise there is no bound, and the pair
+is decided in ball arithmetic.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
-from workhold.listing.canonical_form import Rows
+from workhold.listing.canonical_form import RowArrays
 from workhold.proof.flush import LatticePair, decide_pair
 from workhold.search.flush_search import PartOnWall
 
@@ -49,30 +49,30 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Pairs of features and steps of the lattice looked at together.
+# Number of pairs of features and lattice steps that are computed together.
 TOGETHER = 1 << 19
-# mm. Contacts of which no bound is known are off by less: the root of roundings times the size of a part.
+# mm. Contacts without a known error bound are off by less: the square root of rounding times the size of a
+# part.
 GRAZING = 1e-2
-# Sine of the angle between two normals over the angle by which an error may turn one, at least.
+# The sine of the angle between two normals must exceed their error bound by this factor.
 STEEP = 10.0
 
 
 @frozen(eq=False)
-class LatticePairs(Rows):
+class LatticePairs(RowArrays):
     """N pairs of pegs of one lattice that touch a part on a wall.
 
     Parameters
     ----------
-    feature : (N, 2) touched by the first peg, whose hole has the lower column or, in one column, row, and by
-        the second.
+    feature : (N, 2) features touched by the first and the second peg. The first peg's hole has the lower
+        column or, in the same column, the lower row.
     step : (N, 2) columns and rows from the first peg's hole to the second's.
-    branch : (N,) -1 or 1, which of two crossings it is; 1 of two lines.
+    branch : (N,) -1 or 1, which of two crossings it is; 1 for two lines.
     point : (N, 2, 2) centres of both pegs, in mm along the hull edge from its start and above it.
     normal : (N, 2, 2) outward unit normals of the part there.
-    slack : (N,) by how many mm the contact nearer to an end of its feature is inside it; infinite on whole
-        circles.
-    reach, swing : (N,) by how many mm places and by how many radians normals may be off; infinite where that
-        is not known.
+    slack : (N,) distance in mm from the end of a feature, the smaller of both pegs, negative beyond it; inf
+        on whole circles.
+    reach, swing : (N,) error bounds of places in mm and of normals in radians; inf where not known.
     null : (N, 4) forces of the wall's two ends and both pegs, not scaled.
     """
 
@@ -87,11 +87,12 @@ class LatticePairs(Rows):
     null: Array = field()
 
     @null.default
-    def _unknown(self) -> Array:
+    def make_unknown_null(self) -> Array:
+        """Return zeros (N, 4), for forces that are not computed yet."""
         return np.zeros((len(self.branch), 4))
 
-    def candidate(self, number: int, edge: int) -> LatticePair:
-        """A pair on a hull edge as balls decide it."""
+    def make_candidate(self, number: int, edge: int) -> LatticePair:
+        """Return pair ``number`` on a hull edge in the form that ball arithmetic decides."""
         features, step = (tuple(values[number].tolist()) for values in (self.feature, self.step))
         return LatticePair(edge, features, step, int(self.branch[number]))
 
@@ -99,16 +100,19 @@ class LatticePairs(Rows):
 def find_pairs_on_edge(
     lying: PartOnWall, pitch: tuple[float, float], most: tuple[float, float], margin: float
 ) -> Iterator[LatticePairs]:
-    """The pairs of pegs that touch a part on a wall, nearly ``margin`` mm inside their features or farther.
+    """Yield, in batches, the pairs of pegs that touch a part on
+    a wall, within error bounds ``margin`` inside their features.
+
+    Only pairs are made whose normals can have opposed parts along the wall.
 
     Parameters
     ----------
     pitch : distances in mm between neighbouring columns and rows.
-    most : the most columns and rows from one peg to the other; infinite where nothing bounds them.
+    most : the most columns and rows from one peg to the other; inf where unbounded.
     margin : smallest distance in mm from the end of a feature.
     """
     rows = lying.rows
-    low, high = extents(rows)
+    low, high = bound_features(rows)
     # Normals must have opposed parts along the wall, which arcs may have either way and level lines have not.
     ahead = rows[:, AXIS_Y]
     across = np.where(np.abs(ahead) > 4.0 * lying.turn, np.sign(ahead), np.nan)
@@ -133,12 +137,14 @@ def find_pairs_on_edge(
         forward = (step[:, 0] > 0) | (step[:, 1] > 0)
         which, step = which[forward], step[forward]
         feature = np.stack([one[which], other[which]], axis=1)
-        for part in crossings(lying, feature, step, np.array(pitch)):
+        for part in find_crossings(lying, feature, step, np.array(pitch)):
             yield part.take(part.slack - margin > -(1.2 * np.minimum(part.reach, GRAZING) + LOOSE))
 
 
-def extents(rows: Array) -> tuple[Array, Array]:
-    """Least and largest coordinates (F, 2) in mm of features (F, 12), and of ``LOOSE`` past ends of arcs."""
+def bound_features(rows: Array) -> tuple[Array, Array]:
+    """Return the least and the largest coordinates (F, 2) in mm
+    of features (F, 12), arcs longer by ``LOOSE`` mm at each end.
+    """
     center, axis, is_arc = rows[:, [X, Y]], rows[:, [AXIS_X, AXIS_Y]], rows[:, IS_ARC] != 0.0
     along = np.abs(axis) * rows[:, [HALF_EXTENT]]
     radius = np.where(is_arc, rows[:, RADIUS], 1.0)
@@ -146,7 +152,7 @@ def extents(rows: Array) -> tuple[Array, Array]:
     half = rows[:, HALF_EXTENT] + LOOSE / radius
 
     def reach(direction: float) -> Array:
-        """How far (F,) arcs reach from their centres in a direction in radians."""
+        """Return how far (F,) in mm arcs reach from their centres in a direction in radians."""
         away = np.abs((middle - direction + np.pi) % (2.0 * np.pi) - np.pi)
         return np.asarray(radius * np.cos(np.clip(away - half, 0.0, np.pi)))
 
@@ -156,10 +162,14 @@ def extents(rows: Array) -> tuple[Array, Array]:
     return center - np.where(arcs, back, along), center + np.where(arcs, ahead, along)
 
 
-def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array) -> Iterator[LatticePairs]:
-    """Where the first features of pairs (M, 2) cross the second ones.
+def find_crossings(
+    lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
+) -> Iterator[LatticePairs]:
+    """Yield the pegs at which feature one meets feature two
+    shifted back by a lattice step, for pairs (M, 2) of features.
 
-    The second ones are moved back by steps (M, 2) of a lattice.
+    One batch for each combination of lines and arcs. ``step`` (M, 2) is in holes, ``pitch`` (2,) in mm.
+    Crossings beyond the ends of features are included, with negative slack.
     """
     rows = lying.rows
     is_arc = rows[feature, IS_ARC] != 0.0
@@ -188,17 +198,20 @@ def crossings(lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
                 which, branch, offset = cross_two_circles(between[chosen], radius[chosen], lying.off)
         chosen = chosen[which]
         point = rows[feature[chosen, 0]][:, [X, Y]] + offset
-        yield touching(
+        yield make_touching_pairs(
             lying, feature[chosen], step[chosen], branch, np.stack([point, point + shift[chosen]], axis=1)
         )
 
 
 def cross_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
-    """Which pairs (M,) of lines cross, the branch, and the place (K, 2) from the middle of the first.
+    """Return the indices (K,) of the pairs of lines that are
+    not parallel, branch 1, and the crossings (K, 2) in mm.
+
+    Crossings are relative to the middle of the first line.
 
     Parameters
     ----------
-    between : (M, 2) from the middle of the first to that of the second, in mm.
+    between : (M, 2) from the middle of the first line to that of the second, in mm.
     axes : (M, 2, 2) unit vectors along both.
     """
     sine = cross(axes[:, 0], axes[:, 1])
@@ -210,7 +223,10 @@ def cross_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array
 def cross_line_and_circle(
     between: Array, axis: Array, radius: Array, off: float
 ) -> tuple[IntArray, Array, Array]:
-    """Which pairs (M,) of a line and a circle cross, at which branch, and the place (K, 2) in mm.
+    """Return the crossings of M pairs of an infinite line and a circle.
+
+    They are: indices (K,) of pairs, each twice; branches (K,), -1 and 1 along the line; places (K, 2) in mm
+    from the line's middle.
 
     The place is from the line's middle.
 
@@ -222,35 +238,41 @@ def cross_line_and_circle(
     off : by how many mm distances may be off.
     """
     away, foot = cross(axis, between), (axis * between).sum(axis=1)
-    return both_of((radius - away) * (radius + away), radius, off, foot, axis)
+    return solve_both_branches((radius - away) * (radius + away), radius, off, foot, axis)
 
 
 def cross_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
-    """Which pairs (M,) of circles cross, at which branch, and the place (K, 2) from the middle of the first.
+    """Return the crossings of M pairs of circles.
+
+    They are: indices (K,) of pairs, each twice; branches (K,), -1 and 1; places (K, 2) in mm from the first
+    circle's centre.
 
     Parameters
     ----------
-    between : (M, 2) from the middle of the first to that of the second, in mm.
+    between : (M, 2) from the centre of the first to that of the second, in mm.
     radius : (M, 2) of both.
-    off : by how many mm distances may be off.
+    off : error bound of distances, in mm.
     """
     apart = np.hypot(between[:, 0], between[:, 1])
     one, other = radius.T
     away = ((one - other) * (one + other) / apart + apart) / 2.0
     square = np.where(apart > SAME_PLACE, (one - away) * (one + away), -inf)
     unit = between / apart[:, None]
-    which, branch, beside = both_of(
-        square, np.maximum(one, apart), off * (1.0 + one / apart), 0.0, perpendicular(unit)
+    which, branch, beside = solve_both_branches(
+        square, np.maximum(one, apart), off * (1.0 + one / apart), 0.0, turn_by_quarter(unit)
     )
     return which, branch, beside + away[which, None] * unit[which]
 
 
-def both_of(
+def solve_both_branches(
     square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array
 ) -> tuple[IntArray, Array, Array]:
-    """The pairs (M,) whose half chord has a square (M,) that may be positive.
+    """Return both ends of half chords: indices (K,), branches
+    (K,) and places (K, 2) of ``(foot ± half) axis``.
 
-    Each comes twice, with its branch and its place (K, 2).
+    ``square`` (M,) is the squared half chord in mm²; pairs for which it is negative beyond rounding are left
+    out, others taken as at least 0. ``size`` and ``off`` in mm bound its error. Branch -1 comes first for
+    all, then 1.
     """
     met = np.flatnonzero(square > -16.0 * off * size)
     half = np.sqrt(np.maximum(square[met], 0.0))
@@ -260,10 +282,13 @@ def both_of(
     return which, branch, along[:, None] * axis[which]
 
 
-def touching(
+def make_touching_pairs(
     lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array, point: Array
 ) -> LatticePairs:
-    """Pairs of pegs with centres (N, 2, 2), which touch features (N, 2), as far as these reach."""
+    """Return pairs of pegs at centres (N, 2, 2) on features (N, 2), with normals, slack and error bounds.
+
+    Forces are not known yet (0). Bounds are inf where both normals are nearly parallel.
+    """
     rows = lying.rows[feature]
     is_arc, radius, half = (rows[:, :, k] for k in (IS_ARC, RADIUS, HALF_EXTENT))
     is_arc = is_arc != 0.0
@@ -277,7 +302,7 @@ def touching(
         )
         slack[is_arc & (half >= np.pi)] = np.inf
         normal = np.where(
-            is_arc[:, :, None], rows[:, :, [SIGN]] * ray / radius[:, :, None], -perpendicular(axis)
+            is_arc[:, :, None], rows[:, :, [SIGN]] * ray / radius[:, :, None], -turn_by_quarter(axis)
         )
         sine = np.abs(cross(normal[:, 0], normal[:, 1]))
         reach = 16.0 * (lying.off + lying.turn * np.abs(ray).max(axis=(1, 2))) / sine
@@ -288,19 +313,20 @@ def touching(
 
 
 def cross(one: Array, other: Array) -> Array:
-    """Cross products of vectors (..., 2)."""
+    """Return the cross products (...) of vectors (..., 2)."""
     return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
 
 
-def perpendicular(vectors: Array) -> Array:
-    """Vectors (..., 2) turned by a quarter turn, counter-clockwise."""
+def turn_by_quarter(vectors: Array) -> Array:
+    """Return vectors (..., 2) turned by a quarter turn counter-clockwise."""
     return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
 
 
 def compute_pair_closure(
     pairs: LatticePairs, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, BoolArray, BoolArray]:
-    """Pairs with the forces of wall and pegs, which (N,) press the part on the wall, and of which it is open.
+    """Return pairs with their forces; which (N,) press the
+    part on the wall; and which (N,) doubles leave open.
 
     Let a, b be the normals of the part at the pegs, and m, M their moments about the start of the hull edge
     of length l. Let p = -b_u sign a_u, q = |a_u| and t = p m + q M. The null vector of the four wrenches is
@@ -323,7 +349,7 @@ def compute_pair_closure(
         ends = (pairs.slack - problem.contact_margin) / np.maximum(1.2 * pairs.reach, 1e-300)
         worst = np.nan_to_num(np.minimum(least / band, ends), nan=0.0)
     held = worst > 1.1
-    # Contacts far beyond an end, or forces far from closing, need no balls whatever is not known of the rest.
+    # Contacts far beyond an end, or forces far from closing, are surely rejected, whatever else is unknown.
     hopeless = (worst < -1.1) | (pairs.slack < problem.contact_margin - 1.0)
     return evolve(pairs, null=null), held, ~held & ~hopeless
 
@@ -331,15 +357,16 @@ def compute_pair_closure(
 def select_pressed_pairs(
     pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, IntArray, int]:
-    """Pairs that press the part on a hull edge, the numbers of those left open, and how many needed balls.
+    """Return the pairs that press the part on a hull edge, indices
+    of undecided pairs, and how many ball arithmetic looked at.
 
-    Pairs whose doubles are too coarse are decided in balls, and their places and forces taken from there.
+    Places and forces of pairs whose doubles are too coarse are taken from ball arithmetic.
     """
     pairs, held, open_ = compute_pair_closure(pairs, lying, problem)
     point, null, undecided = pairs.point.copy(), pairs.null.copy(), []
     sharpened = np.flatnonzero(open_ | (held & (pairs.reach > SAME_PLACE / 2)))
     for k in sharpened.tolist():
-        verdict, sharp = decide_pair(pairs.candidate(k, edge), problem)
+        verdict, sharp = decide_pair(pairs.make_candidate(k, edge), problem)
         held[k] = verdict is True
         if verdict is None:
             undecided.append(k)

@@ -21,24 +21,29 @@ from workhold.errors import InputError
 from workhold.fixels.plate import Plate
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.kernels.contact.quality import figures
+from workhold.kernels.contact.quality import write_figures
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import MOST_WAYS
 from workhold.listing.canonical_form import mark_changes, split_into_clusters
-from workhold.listing.results import Work, make_proof, make_stage_progress
+from workhold.listing.results import SearchWork, make_proof, make_stage_progress
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, LOCATION_ERROR, SMALLEST_FACE, TILT
 from workhold.model.query import Query
 from workhold.model.requirements import lie_in_angle_ranges
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 from workhold.proof.locator_seats import LOCATORS, SeatContacts, decide_seats
 from workhold.search.cells import estimate_cost, run_blocks
 from workhold.search.toolkit_search import ToolkitSearch
-from workhold.statics.contact_matrix import Touched
-from workhold.statics.quality import extremes, main_direction, measure_faces, tilts
+from workhold.statics.contact_matrix import TouchableFeatures
+from workhold.statics.quality import (
+    compute_tilts,
+    find_main_direction,
+    find_silhouette_extremes,
+    measure_faces,
+)
 
-__all__ = ["FoundSeats", "find_seats", "half_turn_seats", "make_locating_query"]
+__all__ = ["FoundSeats", "find_seats", "turn_seats_by_half", "make_locating_query"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -60,7 +65,7 @@ class FoundSeats:
     """
 
     table: FixtureTable
-    proof: Proof
+    proof: ProofReport
     statistics: dict[str, int]
     is_complete: bool
 
@@ -75,10 +80,10 @@ def find_seats(
     InputError
         As ``Problem.of``, and for a part that has more of them than can be looked at.
     """
-    problem = Problem.of(make_locating_query(query), pairing=True)
-    search = ToolkitSearch.of(problem, threads=threads, cancel=cancel)
+    problem = Problem.from_query(make_locating_query(query), pairing=True)
+    search = ToolkitSearch.from_problem(problem, threads=threads, cancel=cancel)
     search.problem = evolve(problem, moving=(0, 0))
-    blocks = search.blocks(problem.query.types)
+    blocks = search.make_blocks(problem.query.types)
     x0, y0, x1, y1 = query.workpiece.bounds
     if estimate_cost(blocks) > MOST_WAYS:
         pitch = query.toolkit.plates[0].pitch
@@ -95,8 +100,8 @@ def find_seats(
         problem,
         query.toolkit.arrangements[0].title,
     )
-    table = seat_table(contacts, problem, query)
-    work = Work(
+    table = make_seat_table(contacts, problem, query)
+    work = SearchWork(
         len(done) == len(blocks),
         search.statistics,
         sum(block.cells for block in done),
@@ -121,8 +126,8 @@ def make_locating_query(query: Query) -> Query:
     )
 
 
-def seat_table(contacts: SeatContacts, problem: Problem, query: Query) -> FixtureTable:
-    """The table of contacts that are seats as asked for, each once."""
+def make_seat_table(contacts: SeatContacts, problem: Problem, query: Query) -> FixtureTable:
+    """Return the table of contacts that are seats as asked for, each once."""
     toolkit, plate = query.toolkit, query.toolkit.plates[0]
     lowest = [numbers.min(axis=1, keepdims=True, initial=0) for numbers in (contacts.column, contacts.row)]
     column, row = contacts.column - lowest[0], contacts.row - lowest[1]
@@ -149,19 +154,19 @@ def seat_table(contacts: SeatContacts, problem: Problem, query: Query) -> Fixtur
         fits &= True if most is None else numbers.max(axis=1, initial=0) < most
     for face in query.restrictions.touch:
         fits &= (table.face == face).any(axis=1)
-    return listed_once(table.take(fits), toolkit, query)
+    return list_seats_once(table.take(fits), toolkit, query)
 
 
-def listed_once(table: FixtureTable, toolkit: Toolkit, query: Query) -> FixtureTable:
-    """Seats at angles that are asked for, each once, in the order of angles, holes and faces."""
+def list_seats_once(table: FixtureTable, toolkit: Toolkit, query: Query) -> FixtureTable:
+    """Return seats at angles that are asked for, each once, in the order of angles, holes and faces."""
     angles = query.restrictions.angles
     if toolkit.half_turned is not None:
         # The half below half a turn is kept, or else the one that is asked for.
-        other = half_turn_seats(table, toolkit)
+        other = turn_seats_by_half(table, toolkit)
         is_upper = table.theta >= pi - SAME_POSE
         swaps = is_upper & lies_at(other.theta, angles)
         chosen = np.where(swaps, len(table), 0) + np.arange(len(table))
-        table = FixtureTable.joined([table, other]).take(chosen)
+        table = FixtureTable.concatenate([table, other]).take(chosen)
     table = table.take(lies_at(table.theta, angles))
     if len(table) == 0:
         return table
@@ -186,8 +191,8 @@ def lies_at(theta: Array, angles: tuple[tuple[float, float], ...]) -> NDArray[np
     return np.asarray(lie_in_angle_ranges(np.degrees(theta), angles))
 
 
-def half_turn_seats(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
-    """Seats after half a turn of the plate, whose lowest column and row are 0 again."""
+def turn_seats_by_half(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
+    """Return seats after half a turn of the plate, whose lowest column and row are 0 again."""
     plate = toolkit.plates[0]
     column, row = (
         numbers.max(axis=1, keepdims=True, initial=0) - numbers for numbers in (table.column, table.row)
@@ -212,17 +217,17 @@ def measure_seats(table: FixtureTable, query: Query, problem: Problem) -> Array:
     if len(table) == 0:
         return quality
     part, plate = query.workpiece, query.toolkit.plates[0]
-    touched = Touched.of(part, query.toolkit, length=problem.wrench_length)
+    touched = TouchableFeatures.from_workpiece(part, query.toolkit, length=problem.wrench_length)
     at = np.stack([table.column, table.row], axis=2) * np.array(plate.pitch) + np.array(plate.offset)
     away = at - table.position[:, None]
     back = np.stack(rotate_vectors(away[..., 0], away[..., 1], -table.theta[:, None]), axis=2)
-    found = touched.locators(np.ascontiguousarray(back - touched.center), table.face.astype(np.int64))
+    found = touched.compute_locators(np.ascontiguousarray(back - touched.center), table.face.astype(np.int64))
     inverses = np.array(found.inverses)
     inverses[:, LOCATORS] = 1.0
     out, work = np.empty((len(table), 7)), np.empty((10, 3))
     tolerance = query.tolerance
-    corners, arcs = extremes(part)
-    figures(
+    corners, arcs = find_silhouette_extremes(part)
+    write_figures(
         np.ascontiguousarray(found.points),
         np.ascontiguousarray(found.normals),
         np.ascontiguousarray(found.ends),
@@ -239,6 +244,6 @@ def measure_seats(table: FixtureTable, query: Query, problem: Problem) -> Array:
     )
     quality[:, LOCATION_ERROR] = out[:, 3]
     quality[:, END_DISTANCE], quality[:, EDGE_DISTANCE] = out[:, 4], out[:, 6]
-    quality[:, TILT] = tilts(table.theta, main_direction(part))
+    quality[:, TILT] = compute_tilts(table.theta, find_main_direction(part))
     quality[:, SMALLEST_FACE] = measure_faces(part)[table.face].min(axis=1)
     return np.round(quality, FIGURE_DECIMALS + 3)

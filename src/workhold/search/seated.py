@@ -1,9 +1,9 @@
 """The first fixtures of a list with their seating, ordered anew by it.
 
-A search finds and ranks fixtures by figures that do without seating. The seating of the first of them, as
-many as a query asks for, is worked out, each pattern of pegs once. Then they are ordered by the query's
-ranking, in which the warnings of the seating count as those of quality do. Equal fixtures keep their order.
-Those whose seating is not as asked are left out, and so are then all whose seating was not worked out.
+A search finds and ranks fixtures by figures that do not need the seating. Then the seating of the first of
+them, as many as the query says, is computed, once for each pattern of pegs, and they are ranked again;
+warnings of the seating count as those of quality. Equal fixtures keep their order. Fixtures whose seating
+breaks the query's rules are left out; with such rules so are all fixtures whose seating was not computed.
 """
 
 from __future__ import annotations
@@ -32,42 +32,42 @@ from workhold.seating.part_features import refuse_own_outlines
 from workhold.seating.pattern import refuse_unseated
 from workhold.statics.effective_error import classify_angles
 
-__all__ = ["Sink", "refuse_unasked", "answer_with_seating"]
+__all__ = ["ResultSink", "refuse_unasked", "answer_with_seating"]
 
 # The share of the work, as progress reports it, that is the search.
 SEARCHED = 0.3
 
 
-class Sink(Protocol):
-    """A sink for results too large for memory.
+class ResultSink(Protocol):
+    """A receiver of results too large for memory.
 
     Attributes
     ----------
-    folder : where there is room for what is being sorted.
+    folder : for temporary files of sorting.
     """
 
     @property
     def folder(self) -> Path: ...
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Takes a result and its fixtures, best first, in tables one after the other.
+        """Take a result and its fixtures, best first, in tables one after the other.
 
         Parameters
         ----------
-        listed : how many fixtures there are; fewer come when somebody cancels.
+        listed : how many fixtures the tables have together; fewer come if the search is cancelled.
         """
 
 
 @frozen
 class SeatingWork:
-    """A query whose seating is worked out, and how.
+    """A query whose seating is computed, with the means to do so.
 
     Parameters
     ----------
     query : what is asked, with seating.
     threads : how many share the work.
     progress : called as ``progress(fraction done, fixtures)``.
-    cancel : when set, no further pattern is begun.
+    cancel : when set, no further pattern of pegs is begun.
     """
 
     query: Query
@@ -83,9 +83,9 @@ def answer_with_seating(
     threads: int = 1,
     progress: Progress | None = None,
     cancel: Event | None = None,
-    sink: Sink | None = None,
+    sink: ResultSink | None = None,
 ) -> Result:
-    """Answers a query, and finds the seating of the first fixtures if it asks for that.
+    """Return the answer to a query, with the seating of the first fixtures if it asks for that.
 
     Parameters
     ----------
@@ -105,31 +105,29 @@ def answer_with_seating(
     by_hand, rest = is_put_in_by_hand(query), None
     if not by_hand:
         # A sink takes fixtures while the search still reports its end.
-        whole = progress if sink is None or progress is None else rising(progress)
+        whole = progress if sink is None or progress is None else make_rising_progress(progress)
         progress, rest = make_stage_progress(whole, 0.0, SEARCHED), make_stage_progress(whole, SEARCHED, 1.0)
     work = SeatingWork(query, threads, rest, cancel)
     taker = {} if sink is None else {"sink": SeatedSink(sink, work)}
     result = search(query.without_seating, progress=progress, cancel=cancel, **taker)
     if by_hand:
         return explain_putting_in_by_hand(result, query)
-    return seated(result, work) if sink is None else evolve(result, query=query)
+    return add_seatings(result, work) if sink is None else evolve(result, query=query)
 
 
 def is_put_in_by_hand(query: Query) -> bool:
-    """Whether the part is pushed against its locators by hand.
-
-    So it is with two clamps, of which none brings it home.
-    """
+    """Return whether the part is pushed against its locators by hand, as with two clamps."""
     return not query.toolkit.closes_at_once
 
 
 def refuse_unasked(query: Query) -> None:
-    """Refuses what cannot be asked of seating.
+    """Refuse what cannot be asked of seating.
 
     Raises
     ------
     InputError
-        As ``refuse_unseated``, but that with two clamps only figures of seating cannot be asked for.
+        With one movement that closes, as ``refuse_unseated`` and ``refuse_own_outlines``; with two clamps, if
+        rules or rankings use figures of seating.
     """
     if not is_put_in_by_hand(query):
         refuse_own_outlines(query.workpiece)
@@ -142,16 +140,19 @@ def refuse_unasked(query: Query) -> None:
 
 
 def explain_putting_in_by_hand(result: Result, query: Query) -> Result:
-    """The result of a query with seating for two clamps: the same fixtures, and how the part is put in."""
+    """Return a result with two clamps as the answer to the query
+    with seating: same fixtures, and a note on pushing by hand.
+    """
     notes = (*result.reasons, PushedByHand()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
 
 
-def rising(progress: Progress) -> Progress:
-    """A progress that never goes back."""
+def make_rising_progress(progress: Progress) -> Progress:
+    """Return a progress callback whose reported fraction never decreases."""
     highest = 0.0
 
     def report(fraction: float, found: int) -> None:
+        """Report the largest fraction so far."""
         nonlocal highest
         highest = max(highest, fraction)
         progress(highest, found)
@@ -159,18 +160,21 @@ def rising(progress: Progress) -> Progress:
     return report
 
 
-def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Result:
-    """A result of a query without seating as that of the query with it.
+def add_seatings(result: Result, work: SeatingWork, listed: int | None = None) -> Result:
+    """Return the result of a query without seating as the
+    result of the query with it: seatings added, order anew.
+
+    Fixtures that break rules of seating are left out; with such rules, so are all without a seating.
 
     Parameters
     ----------
-    listed : how many fixtures it lists, where it does not have all of them.
+    listed : not used.
     """
     query, count = work.query, min(work.query.seating or 0, len(result))
-    seatings = seatings_of(result.part(slice(0, count)), work)
+    seatings = find_seatings(result.slice_rows(slice(0, count)), work)
     looked_at = np.flatnonzero([one is not None for one in seatings])
     known = [one for one in seatings if one is not None]
-    order = order_of(result.table.take(looked_at), known, query, result.least_effective_error)
+    order = order_by_seating(result.table.take(looked_at), known, query, result.least_effective_error)
     kept = [place for place in order.tolist() if is_as_asked(known[place], query)]
     notes: list[Note] = [
         BestOnly(query.best) if isinstance(note, BestOnly) and query.best else note for note in result.reasons
@@ -193,17 +197,19 @@ def seated(result: Result, work: SeatingWork, listed: int | None = None) -> Resu
 
 
 def is_as_asked(seating: Seating, query: Query) -> bool:
-    """Whether a seating keeps the rules of a query."""
-    catches = query.opening is None or seating.catches(query.opening)
+    """Return whether a seating keeps the query's opening and foolproof rules."""
+    catches = query.opening is None or seating.is_caught_from(query.opening)
     return catches and (seating.is_foolproof or not query.foolproof)
 
 
-def order_of(
+def order_by_seating(
     table: FixtureTable, seatings: Sequence[Seating], query: Query, least_effective_error: float | None
 ) -> NDArray[np.intp]:
-    """The order of fixtures with their seating, best first; equal ones as they are.
+    """Return the indices (N,) that order fixtures with
+    their seatings best first; equal ones keep their order.
 
-    Steps count from the least effective error in mm of all fixtures, with a seating or not.
+    ``least_effective_error`` is that in mm of all fixtures, with a seating or not; steps of the ranking count
+    from it.
     """
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
     seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
@@ -212,22 +218,22 @@ def order_of(
     quality = np.hstack([whole[:, : len(FIGURES)], seating, whole[:, len(FIGURES) :]])
     quality[:, WARNINGS] += [one.warning_count for one in seatings]
     effective = find_usual_errors(query)
-    error = None if effective is None else effective.errors(table)
+    error = None if effective is None else effective.compute_errors(table)
     keys = make_order_keys(quality, query, error, classify_angles(table.theta))
-    return keys.order(
+    return keys.sort(
         None
         if least_effective_error is None
         else int(convert_to_billionths(np.array([least_effective_error]))[0])
     )
 
 
-def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
-    """The seatings of all fixtures of a result; None for fixtures that were left."""
+def find_seatings(result: Result, work: SeatingWork) -> list[Seating | None]:
+    """Return the seatings of a result's fixtures in order; None for those not reached before ``cancel``."""
     progress, count = work.progress, sum(result.found.values())
     # Loading it takes longer than many a search.
-    from workhold.seating.solver import Solver
+    from workhold.seating.solver import SeatingSolver
 
-    made = Solver(result.workpiece, result.toolkit).as_many(
+    made = SeatingSolver(result.workpiece, result.toolkit).solve_until_cancelled(
         result,
         threads=work.threads,
         progress=None if progress is None else lambda done: progress(done, count),
@@ -238,37 +244,37 @@ def seatings_of(result: Result, work: SeatingWork) -> list[Seating | None]:
 
 @frozen
 class SeatedSink:
-    """Hands over results with the seating of their first fixtures.
+    """A sink that adds the seating of the first fixtures to results, and passes them on.
 
     Parameters
     ----------
-    sink : takes them.
+    sink : receives the results with seating.
     work : how the seating is worked out.
     """
 
-    sink: Sink
+    sink: ResultSink
     work: SeatingWork
 
     @property
     def folder(self) -> Path:
-        """Where there is room for what is being sorted."""
+        """Folder for temporary files of sorting."""
         return self.sink.folder
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Takes a result and its fixtures, best first, in tables one after the other."""
+        """Pass on a result with the seating of its first fixtures; see :meth:`ResultSink.receive`."""
         if is_put_in_by_hand(self.work.query):
             self.sink.receive(explain_putting_in_by_hand(result, self.work.query), listed, tables)
             return
         rest = iter(tables)
-        held = list(taken(rest, self.work.query.seating or 0)) or [result.table]
-        made = seated(evolve(result, table=FixtureTable.joined(held)), self.work, listed)
+        held = list(take_tables(rest, self.work.query.seating or 0)) or [result.table]
+        made = add_seatings(evolve(result, table=FixtureTable.concatenate(held)), self.work, listed)
         further = () if self.work.query.has_seating_rules else rest
         count = len(made) + (0 if self.work.query.has_seating_rules else listed - sum(map(len, held)))
         self.sink.receive(made, count, chain([made.table], further))
 
 
-def taken(tables: Iterator[FixtureTable], count: int) -> Iterator[FixtureTable]:
-    """Tables, until they have so many fixtures or there are no more."""
+def take_tables(tables: Iterator[FixtureTable], count: int) -> Iterator[FixtureTable]:
+    """Yield tables until they have at least ``count`` fixtures together, or there are no more."""
     while count > 0 and (table := next(tables, None)) is not None:
         count -= len(table)
         yield table

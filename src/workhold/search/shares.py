@@ -1,14 +1,14 @@
 """A search in shares, each looked at whole before the next, and the first fixtures while a search runs.
 
-Locators fix the pose in one of two ways. On a lattice of holes they are sought by ranges of orientation
+Locators fix the pose in one of two ways. On a lattice of holes they are searched by ranges of orientation
 (``search.lattice_shares``), beside a wall by the hull edges that may lie on it (``search.wall_shares``). In
-each share the contacts of locators with one clamp are found. With one clamp they are the fixtures; of two
-clamps they make seats, whose clamps are paired (``listing.seats``). A preview shows a part of what was found,
-decided ahead of the rest.
+each share the contacts of locators with one clamp are found. With one clamp these are the fixtures; with two
+they make seats, whose clamps are paired (``listing.seats``). A preview shows part of what was found, decided
+ahead of the rest.
 
 Where only the best are asked for and tilt counts, a bound of all tilted fixtures is known beforehand
-(``listing.bounds``). So what lies square is one share, and all else the other. If the last of the best square
-ones ranks before the bound, no other orientation is searched.
+(``listing.bounds``). Then square orientations are the first share. If the last of the best square fixtures
+ranks before the bound, no other orientation is searched.
 """
 
 from __future__ import annotations
@@ -28,48 +28,48 @@ from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.listing.bounds import bound_keys_when_tilted, list_preferred_angles
-from workhold.listing.canonical_form import Candidates, list_each_once
+from workhold.listing.canonical_form import CandidateFixtures, list_each_once
 from workhold.listing.collector import BestFixtures, finish
 from workhold.listing.ranking import OrderKeys
-from workhold.listing.results import Work, make_result, make_stage_progress, sum_counts
+from workhold.listing.results import SearchWork, make_result, make_stage_progress, sum_counts
 from workhold.model.notes import Note
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.proof.deciding import Account
-from workhold.search.cells import Block, estimate_cost, run_blocks
+from workhold.proof.deciding import SearchReport
+from workhold.search.cells import SearchBlock, estimate_cost, run_blocks
 from workhold.search.error_limits import ErrorLimit
 from workhold.search.toolkit_search import LEAST_BLOCKS, ToolkitSearch
 
 __all__ = [
     "Collector",
-    "Locating",
+    "ShareSearch",
     "Preview",
     "Previews",
     "answer_by_shares",
-    "best_first",
+    "search_best_first",
     "has_body_to_pass",
-    "limited_work",
+    "search_within_error",
     "select_one_clamp",
     "bound_tilted_keys",
-    "work_of",
+    "summarize_work",
 ]
 
 Preview = Callable[[Result], None]
 
-# Seconds between previews, and how many times longer the search must have run than its previews took.
+# Seconds between previews, and the least ratio of the search's time to that of its previews.
 PAUSE = 0.3
 SHARE = 25.0
-# Records decided for one preview, and fixtures after which there are no more of them.
+# Records decided for one preview, and the number of shown fixtures after which previews end.
 MOST_RECORDS = 300
 ENOUGH = 1_000
 
 
 @define(eq=False)
 class Previews:
-    """Shows fixtures while the search goes on; each preview holds those of the ones before it.
+    """Previews of a running search: results of the fixtures
+    known so far, each with those of the previews before it.
 
-    Only what is decided quickly is shown. The results are marked incomplete, and their counts are of what
-    they list.
+    Only what is decided quickly is shown. The results are marked incomplete, and count what they list.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Previews:
     problem: Problem
     show: Preview
     newest: NDArray[np.float64] | None = field(default=None, init=False)
-    shown: Candidates | None = field(default=None, init=False)
+    shown: CandidateFixtures | None = field(default=None, init=False)
     began: float = field(factory=perf_counter, init=False)
     next_time: float = field(init=False)
     spent: float = field(default=0.0, init=False)
@@ -91,7 +91,10 @@ class Previews:
         self.hurry.set()
 
     def add(self, records: NDArray[np.float64]) -> None:
-        """Takes records (N, 19) that the search found, and shows some if it is time."""
+        """Take new records (N, 19), and show the fixtures known so far if the next preview is due.
+
+        Only the newest records are decided. Nothing more is shown after :data:`ENOUGH` fixtures.
+        """
         if self.shown is not None and len(self.shown.standing) >= ENOUGH:
             return
         if len(records):
@@ -103,115 +106,134 @@ class Previews:
         fresh, account = finish([self.newest], self.problem, self.hurry)
         self.newest = None
         together = (
-            fresh if self.shown is None else list_each_once(Candidates.concatenate([self.shown, fresh]))
+            fresh
+            if self.shown is None
+            else list_each_once(CandidateFixtures.concatenate([self.shown, fresh]))
         )
         if len(fresh.standing):
             self.shown = together
-            work = Work(complete=False, statistics={})
+            work = SearchWork(complete=False, statistics={})
             self.show(make_result(self.problem, together, account, work))
         end = perf_counter()
         self.spent += end - start
         self.next_time = max(end + PAUSE, self.began + SHARE * self.spent)
 
 
-# Shares after which what has been found so far is shown.
+# Number of shares after which a preview is shown.
 MOST_PREVIEWS = 8
 
 
 class Collector(Protocol):
-    """What takes the findings of shares and makes a result of them; its length is how many fixtures there are
-    so far."""
+    """A receiver of the findings of shares that makes a result
+    of them; its length is the number of fixtures so far.
+    """
 
     def __len__(self) -> int: ...
 
     def add(self, found: Any) -> None:
-        """Takes the findings of a share."""
+        """Add one batch of the findings of a share."""
 
-    def make_result(self, account: Account, work: Work) -> Result:
-        """The result of all."""
+    def make_result(self, account: SearchReport, work: SearchWork) -> Result:
+        """Return the result of everything added so far."""
 
 
-class Locating(Protocol):
-    """How locators fix the part, share by share."""
+class ShareSearch(Protocol):
+    """A search that goes on share by share."""
 
     @property
     def shares(self) -> int:
-        """How many shares there are."""
+        """Number of shares."""
 
     @property
     def collector(self) -> Collector:
-        """What takes the findings."""
+        """Receiver of the findings."""
 
-    def look(self, share: int, progress: Progress | None) -> tuple[Iterable[Any], bool]:
-        """What is found in a share, in parts as the collector takes them, each taken before the next is made;
-        and whether the share was looked at to its end."""
+    def search_share(self, share: int, progress: Progress | None) -> tuple[Iterable[Any], bool]:
+        """Search one share; return its findings, and whether it was searched to its end.
 
-    def account(self) -> Account:
-        """What became of all contacts so far."""
+        The findings are batches for the collector; take each before asking for the next.
+        """
 
-    def work(self, done: int, complete: bool) -> Work:
-        """How the search went, when so many shares were looked at to their end."""
+    def make_account(self) -> SearchReport:
+        """Return the report on all contacts decided so far."""
 
-    def why_none(self) -> Note:
-        """Why a search that came to its end has no fixture."""
+    def describe_work(self, done: int, complete: bool) -> SearchWork:
+        """Return the statistics of the search, given how many shares were searched to their end."""
+
+    def explain_no_fixture(self) -> Note:
+        """Return the note why a search that came to its end has no fixture."""
 
 
 def answer_by_shares(
-    locating: Locating, progress: Progress | None, cancel: Event | None, preview: Preview | None = None
+    locating: ShareSearch, progress: Progress | None, cancel: Event | None, preview: Preview | None = None
 ) -> Result:
-    """The fixtures that a search finds share by share, see ``search.design.answer``."""
+    """Run a search share by share; return its fixtures as a result, with the reason if it has none.
+
+    See ``search.design.answer``.
+    """
     kept, done = locating.collector, 0
     for number in range(locating.shares):
         if cancel is not None and cancel.is_set():
             break
         end = (number + 1) / locating.shares
-        found, is_whole = locating.look(number, make_stage_progress(progress, number / locating.shares, end))
+        found, is_whole = locating.search_share(
+            number, make_stage_progress(progress, number / locating.shares, end)
+        )
         for part in found:
             kept.add(part)
         done += is_whole
         if progress is not None and is_whole:
             progress(end, len(kept))
         if preview is not None and number < MOST_PREVIEWS:
-            preview(kept.make_result(Account(0, 0, 0, 0, ()), Work(False, {})))
-    result = kept.make_result(locating.account(), locating.work(done, done == locating.shares))
+            preview(kept.make_result(SearchReport(0, 0, 0, 0, ()), SearchWork(False, {})))
+    result = kept.make_result(locating.make_account(), locating.describe_work(done, done == locating.shares))
     if not result.complete or any(result.found.values()) or result.reasons:
         return result
-    return evolve(result, notes=(locating.why_none(),))
+    return evolve(result, notes=(locating.explain_no_fixture(),))
 
 
 def select_one_clamp(query: Query, way: Toolkit) -> Query:
-    """A query with one clamp of those that are needed together, in one direction."""
+    """Return a query with the toolkit of one direction with one clamp, for all types and without ranking."""
     return evolve(query, toolkit=way, types=None, rank_by=None, best=None, listing=None)
 
 
 def has_body_to_pass(query: Query) -> bool:
-    """Whether a clamp has a body, which its stroke gives it, that a program's tools may come too near to."""
+    """Return whether a query has a program whose tools may come too near the body of a bolted clamp."""
     return query.program is not None and query.toolkit.moving.on is not None
 
 
 Array = NDArray[np.float64]
 
-# Searches that cost more begin with what lies square, see ``cells.Block``: those of a tenth of a second.
+# Searches with a larger cost, see ``cells.SearchBlock``, begin with square orientations; it is that of a
+# tenth of a second.
 SQUARE_FIRST = 1e6
-# Searches that cost more look at one chord curve in so many beforehand, to know which error is to be reached.
+# Searches with a larger cost first use one in SCOUTED chord curves, to learn which error must be reached.
 SCOUTED_FROM, SCOUTED = 1.5e7, 8
-# Searches that cost more limit errors; those of two clamps, where seats are paired besides, from this part
-# of it.
+# Searches with a larger cost are done within limits of the error; with two clamps, where seats are paired
+# besides, already from this part of it.
 LIMITED_FROM, OF_TWO = 1.5e7, 0.5
 
 
-def best_first(
+def search_best_first(
     search: ToolkitSearch,
     kept: BestFixtures,
     threads: int,
     progress: Progress | None,
     cancel: Event | None,
     look: Callable[[Array], None] | None,
-) -> Work:
-    """Hands what may be among the best to those kept, see ``search.design.answer``."""
+) -> SearchWork:
+    """Search for the best fixtures, and give what may be among them to ``kept``; return the statistics.
+
+    Preferred angles come first; others are left out where a bound shows that none can be among the best.
+
+    Parameters
+    ----------
+    kept : collects the best; also says what further fixtures must reach.
+    look : called with the records (N, 19) of each block; None for no previews.
+    """
     query, problem = search.problem.query, search.problem
     # Smaller blocks learn earlier what margin is to be reached.
-    blocks_in = partial(ToolkitSearch.blocks, types=query.types, least=4 * LEAST_BLOCKS)
+    blocks_in = partial(ToolkitSearch.make_blocks, types=query.types, least=4 * LEAST_BLOCKS)
     total = estimate_cost(blocks_in(search))
     bound = bound_tilted_keys(query, problem, total)
     first = () if bound is None else list_preferred_angles(query)
@@ -220,10 +242,10 @@ def best_first(
         run_blocks(blocks_in(scout, first=first), threads, None, cancel, known.add, stop=scout.stop)
         known.decide()
         if known.needed.error < inf:
-            # So many are known that nothing beyond this error is among the best.
+            # Enough fixtures are known that none with a larger error is among the best.
             kept.needed, kept.has_dropped = known.needed, True
     parts = [blocks_in(search, first=first, rest=rest) for rest in ((False, True) if first else (False,))]
-    begun, done = list[Block](), list[Block]()
+    begun, done = list[SearchBlock](), list[SearchBlock]()
     for part in parts:
         if begun and bound is not None and kept.rules_out(bound):
             break
@@ -232,10 +254,10 @@ def best_first(
             progress, before, 1.0 if part is parts[-1] else estimate_cost(begun) / total
         )
         done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop, needed=kept.needed)[1]
-    return work_of(search, begun, done)
+    return summarize_work(search, begun, done)
 
 
-def limited_work(
+def search_within_error(
     limit: ErrorLimit,
     problem: Problem,
     kept: BestFixtures,
@@ -243,13 +265,17 @@ def limited_work(
     progress: Progress | None,
     cancel: Event | None,
     look: Callable[[Array], None] | None,
-) -> Work:
-    """Hands all fixtures up to a limit of the location error to those kept, and perhaps some beyond."""
-    query, works = problem.query, list[Work]()
+) -> SearchWork:
+    """Search for all fixtures within a limit of the location
+    error, add them to ``kept``, and return the statistics.
+
+    Some fixtures beyond the limit may be added, too.
+    """
+    query, works = problem.query, list[SearchWork]()
     first = list_preferred_angles(query)
     for number, near in enumerate((limit.square, limit.aslant)):
         share = make_stage_progress(progress, number / 2, (number + 1) / 2)
-        search = ToolkitSearch.of(
+        search = ToolkitSearch.from_problem(
             problem,
             threads=threads,
             cancel=cancel,
@@ -257,11 +283,11 @@ def limited_work(
             precision=limit.precision,
             only=first if number == 0 else (),
         )
-        blocks = search.blocks(query.types, 4 * LEAST_BLOCKS, first=first, rest=number > 0)
+        blocks = search.make_blocks(query.types, 4 * LEAST_BLOCKS, first=first, rest=number > 0)
         done = run_blocks(blocks, threads, share, cancel, kept.add, look, search.stop)[1]
-        works.append(work_of(search, blocks, done))
+        works.append(summarize_work(search, blocks, done))
     statistics = sum_counts([work.statistics for work in works])
-    return Work(
+    return SearchWork(
         all(work.complete for work in works),
         {**statistics, "features": len(problem.rows), **limit.statistics},
         sum(work.cells for work in works),
@@ -270,16 +296,19 @@ def limited_work(
 
 
 def bound_tilted_keys(query: Query, problem: Problem, cost: float) -> OrderKeys | None:
-    """The least keys of fixtures at other than preferred angles, where a search of a cost begins with these.
+    """Return lower bounds of the ranking keys of fixtures at other than preferred angles.
 
-    None where it does not.
+    None where preferred angles are not searched first: without ``best``, or at a cost so small that it does
+    not pay.
     """
     return bound_keys_when_tilted(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
 
 
-def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block]) -> Work:
-    """How a search went."""
-    return Work(
+def summarize_work(
+    search: ToolkitSearch, blocks: Sequence[SearchBlock], done: Sequence[SearchBlock]
+) -> SearchWork:
+    """Return the statistics of a search, complete if as many blocks are done as there are."""
+    return SearchWork(
         complete=len(done) == len(blocks),
         statistics=search.statistics,
         cells=sum(block.cells for block in done),

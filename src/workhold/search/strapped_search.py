@@ -34,10 +34,10 @@ from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.straps import USUAL_SEATS, HandPush, Strap, StrappedHold
 from workhold.search.seat_search import FoundSeats, find_seats
-from workhold.supports.straps import StrapSearch, question_of
+from workhold.supports.straps import StrapSearch, make_question
 from workhold.supports.words_of_straps import describe_missing_places
 
-__all__ = ["find_strapped_fixtures", "within_error"]
+__all__ = ["find_strapped_fixtures", "select_within_error"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -63,13 +63,13 @@ def find_strapped_fixtures(
 ) -> Result:
     """Finds every seat of a part on the plate of a query, and the straps of the best of them."""
     found = find_seats(query, threads, make_stage_progress(progress, 0.0, SEATS), cancel)
-    table = placed_on_plate(within_error(found.table, query), query)
-    table = table.take(seat_order(table, query))
-    whole = result_of(table, found, query)
-    holds, is_whole = strapped_holds(whole, make_stage_progress(progress, SEATS, 1.0), cancel)
-    order = final_order(holds, table, query)
+    table = place_on_plate(select_within_error(found.table, query), query)
+    table = table.take(order_seats(table, query))
+    whole = make_result(table, found, query)
+    holds, is_whole = find_strapped_holds(whole, make_stage_progress(progress, SEATS, 1.0), cancel)
+    order = rank_seats(holds, table, query)
     chosen = order[: query.best]
-    table, holds = moved_into_view(table.take(np.array(order, np.int64)), [holds[k] for k in order], query)
+    table, holds = move_into_view(table.take(np.array(order, np.int64)), [holds[k] for k in order], query)
     return evolve(
         whole,
         table=table.take(slice(0, len(chosen))),
@@ -86,26 +86,26 @@ def remarks_on(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
         return []
     why = "no force of the straps holds everything there: take more straps, or ask for more of the seats."
     if not any(hold.straps for hold in seen):
-        why = describe_missing_places(question_of(query))
+        why = describe_missing_places(make_question(query))
     none = "The best seat is not" if len(seen) == 1 else f"None of the {len(seen)} best seats is"
     return [Remark(f"{none} held: {why}")]
 
 
-def within_error(table: FixtureTable, query: Query) -> FixtureTable:
+def select_within_error(table: FixtureTable, query: Query) -> FixtureTable:
     """The seats with no larger location error than asked."""
     most = query.max_location_error
     return table if most is None else table.take(table.quality[:, LOCATION_ERROR] <= most)
 
 
-def result_of(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
-    """The result of seats, without any straps."""
+def make_result(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
+    """Return the result of seats, without any straps."""
     name = query.toolkit.arrangements[0].name
     notes = list[Note]()
     undecided = len(found.proof.undecided)
     if undecided:
         notes.append(LeftUndecided(undecided))
     if found.is_complete and len(table) == 0 and not undecided:
-        notes.append(no_fixture(found, query))
+        notes.append(explain_no_seat(found, query))
     if len(table) and not query.is_loaded:
         notes.append(Remark(NOT_LOADED))
     return Result(
@@ -120,8 +120,8 @@ def result_of(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
     )
 
 
-def no_fixture(found: FoundSeats, query: Query) -> Note:
-    """Why there is no seat."""
+def explain_no_seat(found: FoundSeats, query: Query) -> Note:
+    """Return why there is no seat."""
     wording = query.toolkit.wording
     if found.proof.verified:
         return NoPlace(found.proof.verified, wording)
@@ -172,8 +172,8 @@ def count_sets(table: FixtureTable, query: Query) -> int:
     return len(seen)
 
 
-def placed_on_plate(table: FixtureTable, query: Query) -> FixtureTable:
-    """Seats in the holes of a plate with ends: those in which the part's middle is nearest to the plate's."""
+def place_on_plate(table: FixtureTable, query: Query) -> FixtureTable:
+    """Return seats in the holes of a plate with ends: those in which the part's middle is nearest to the plate's."""
     plate = query.toolkit.plates[0]
     cx, cy = query.workpiece.center
     middle = table.position + np.stack(rotate_vectors(cx, cy, table.theta), axis=1)
@@ -184,11 +184,11 @@ def placed_on_plate(table: FixtureTable, query: Query) -> FixtureTable:
         spare = count - 1 - numbers.max(axis=1, initial=0)
         wanted = plate.offset[axis] + (count - 1) * plate.pitch[axis] / 2 - middle[:, axis]
         moves[:, axis] = np.clip(np.ceil(wanted / plate.pitch[axis] - 0.5 - 1e-9).astype(np.int64), 0, spare)
-    return moved(table, moves, plate)
+    return move_seats(table, moves, plate)
 
 
-def moved(table: FixtureTable, moves: IntArray, plate: Carrier) -> FixtureTable:
-    """Seats moved by whole columns and rows (N, 2)."""
+def move_seats(table: FixtureTable, moves: IntArray, plate: Carrier) -> FixtureTable:
+    """Return seats moved by whole columns and rows (N, 2)."""
     return evolve(
         table,
         column=(table.column + moves[:, :1]).astype(np.int32),
@@ -197,14 +197,14 @@ def moved(table: FixtureTable, moves: IntArray, plate: Carrier) -> FixtureTable:
     )
 
 
-def seat_order(table: FixtureTable, query: Query) -> IntArray:
-    """The order of seats by their own figures, best first; equal ones by angle, holes and faces."""
-    keys = [one for name in query.rank_by if name in COLUMNS for one in [seat_key(table, name)]]
+def order_seats(table: FixtureTable, query: Query) -> IntArray:
+    """Return the order of seats by their own figures, best first; equal ones by angle, holes and faces."""
+    keys = [one for name in query.rank_by if name in COLUMNS for one in [compute_seat_key(table, name)]]
     return np.asarray(np.lexsort([np.arange(len(table)), *keys[::-1]]), np.int64)
 
 
-def seat_key(table: FixtureTable, name: str) -> Array:
-    """What a figure of seats (N,) counts as: smaller comes first."""
+def compute_seat_key(table: FixtureTable, name: str) -> Array:
+    """Return the keys (N,) of seats by a figure: smaller comes first."""
     values = table.quality[:, COLUMNS[name]]
     if name == "square":
         return np.asarray(values >= SQUARE_TILT, np.float64)
@@ -212,10 +212,10 @@ def seat_key(table: FixtureTable, name: str) -> Array:
     return rounded if name in LESS_IS_BETTER else -rounded
 
 
-def strapped_holds(
+def find_strapped_holds(
     result: Result, progress: Progress | None, cancel: Event | None
 ) -> tuple[list[StrappedHold], bool]:
-    """How straps hold the part at each seat; of those after the first only that nobody looked at them.
+    """Return the straps at each seat; seats after the first are marked as not looked at.
 
     The second is whether all that are to be looked at were.
     """
@@ -231,16 +231,16 @@ def strapped_holds(
         if cancel is not None and cancel.is_set():
             return holds, False
         fixture = result[place]
-        search = StrapSearch(fixture, query, question_of(query))
-        holds[place] = search.best(cancel) if query.is_loaded else search.unloaded()
+        search = StrapSearch(fixture, query, make_question(query))
+        holds[place] = search.find_best(cancel) if query.is_loaded else search.find_unloaded_hold()
         seated += holds[place].push is not None
         if progress is not None:
             progress(seated / wanted, len(result))
     return holds, True
 
 
-def final_order(holds: Sequence[StrappedHold], table: FixtureTable, query: Query) -> list[int]:
-    """The places of seats in the order of the list, given them in the order of their own figures."""
+def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query) -> list[int]:
+    """Return the places of seats in the order of the list, given them in the order of their own figures."""
 
     def key(place: int) -> tuple[float, ...]:
         hold = holds[place]
@@ -256,17 +256,17 @@ def final_order(holds: Sequence[StrappedHold], table: FixtureTable, query: Query
                 need = hold.clamp_needed
                 numbers.append(0.0 if need is None else round_number_coarsely(need))
             elif name in COLUMNS:
-                numbers.append(float(seat_key(table.take(slice(place, place + 1)), name)[0]))
+                numbers.append(float(compute_seat_key(table.take(slice(place, place + 1)), name)[0]))
         return (0.0, float(hold.is_beyond_rating), *numbers)
 
     # What is looked at comes before what is not; equal ones stay as they are.
     return sorted(range(len(holds)), key=key)
 
 
-def moved_into_view(
+def move_into_view(
     table: FixtureTable, holds: Sequence[StrappedHold], query: Query
 ) -> tuple[FixtureTable, list[StrappedHold]]:
-    """Seats and straps moved by whole columns and rows so that none is below 0 on a plate without ends."""
+    """Return seats and straps moved by whole columns and rows so that none is below 0 on a plate without ends."""
     plate, straps = query.toolkit.plates[0], query.toolkit.strap_set
     assert straps is not None
     ratio = np.round(np.array(plate.pitch) / np.array(straps.bolts.pitch)).astype(np.int64)
@@ -285,7 +285,7 @@ def moved_into_view(
         hold if not move.any() else move_hold(hold, move, plate, move * ratio)
         for hold, move in zip(holds, moves, strict=True)
     ]
-    return moved(table, moves, plate), out
+    return move_seats(table, moves, plate), out
 
 
 def move_hold(hold: StrappedHold, pegs: IntArray, plate: Carrier, holes: IntArray) -> StrappedHold:

@@ -23,12 +23,12 @@ from workhold.contact.curves import (
     EVERYWHERE,
     CurveTable,
     LatticeSteps,
-    curve_table,
-    joined,
-    loosened,
+    join_curve_tables,
+    loosen_rows,
+    make_curve_table,
     number_centers,
 )
-from workhold.contact.problem import Frame, Problem
+from workhold.contact.problem import Problem, SearchFrame
 from workhold.conventions import ANGLE_HAIR, GAP_SLACK, MARGIN_SLACK, PARALLEL, WEAK_CLOSURE
 from workhold.fixels.toolkit import Arrangement, Carrier, Toolkit
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, SEGMENT_LENGTH
@@ -45,56 +45,56 @@ from workhold.kernels.base.tables import (
 )
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATISTICS, STOPPED
-from workhold.kernels.curves.sliding_pairs import sliding_fixtures
-from workhold.kernels.curves.three_and_one import three_and_one_cells
-from workhold.kernels.curves.two_and_two import two_and_two_cells
+from workhold.kernels.curves.sliding_pairs import write_sliding_fixtures
+from workhold.kernels.curves.three_and_one import write_three_and_one
+from workhold.kernels.curves.two_and_two import write_two_and_two
 from workhold.limits import choose_thread_count
-from workhold.listing.collector import Needed
+from workhold.listing.collector import InterestLimits
 from workhold.model.first_choice import FACTORS
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 from workhold.search.block_memory import BlockMemory
 from workhold.search.cells import (
     FIRST_ORIENTATION,
-    Block,
+    SearchBlock,
     count_curves_in_cells,
     divide_into_cells,
     find_curves_in_cell,
     run_blocks,
 )
 
-__all__ = ["LEAST_BLOCKS", "ToolkitSearch", "contacts_of", "count_contacts", "lattice_steps"]
+__all__ = ["LEAST_BLOCKS", "ToolkitSearch", "count_problem_contacts", "count_contacts", "list_lattice_steps"]
 
 Array = NDArray[np.float64]
 
 # The kernel of crossings for each arrangement of pegs, and how long it takes, relative to others.
 KERNELS: dict[tuple[int, ...], tuple[Callable[..., int], float]] = {
-    (2, 2): (two_and_two_cells, 1.0),
-    (3, 1): (three_and_one_cells, 0.5),
+    (2, 2): (write_two_and_two, 1.0),
+    (3, 1): (write_three_and_one, 0.5),
 }
-# What slides finds about so many times as many records for the same cost as what crosses.
+# Sliding pairs give about this many times the records of crossings at equal cost.
 SLIDING_DENSE = 25.0
-# Cells of a half turn: so many for each pitch that L of the wrenches holds, within limits.
+# Cells of a half turn for each pitch that L of the wrenches holds, and limits of their number.
 CELLS_PER_PITCH = 10.0
 FEWEST_CELLS, MOST_CELLS = 96, 1024
-# Cells are worked on together until they hold so many pairs of curves, but in no fewer blocks than this for a
-# half turn.
+# Neighbouring cells make a block until they hold this many pairs of curves; a half turn has at least so many
+# blocks.
 PAIRS_PER_BLOCK = 2e6
 LEAST_BLOCKS = 8
-# Radians: sliding pairs that may be off by more are vague. Lengths that make one are off by less, in mm.
+# Sliding pairs whose orientation may be off by more radians than VAGUE are vague. Lengths that determine one
+# are off by less than APART mm.
 VAGUE, APART = 1e-5, 1e-8
-# What an angle that is not the drawing's, by quarters, costs.
+# Factor on the error for an angle that is no quarter turn of the drawing.
 ASLANT = next(one.times for one in FACTORS if one.key == "other_angle")
 # Location errors of any size are of interest.
 ANY_ERROR = Precision(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), np.zeros((0, 3)), 0.0, 0.0, inf, inf)
 
 
-def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
-    """Differences between two holes of one of some carriers of one pitch, up to a length in mm, both
-    directions of each.
+def list_lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
+    """Return the differences between two holes of one carrier, up to ``longest`` mm, both directions of each.
 
-    Left out are those between pegs whose bodies would overlap, and those that two holes free of blocks never
-    have.
+    The carriers have one pitch; a difference counts if one of them has it. Left out are differences at which
+    pegs' bodies overlap, and those that no two unblocked holes have. They are ordered by length.
     """
     pitch_x, pitch_y = carriers[0].pitch
     most_columns = min(max(carrier.column_count for carrier in carriers) - 1, int(longest / pitch_x))
@@ -122,10 +122,9 @@ def lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
 
 
 def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which differences (S, 2) of columns and rows two free holes of a carrier have.
+    """Return which differences (S, 2) of columns and rows exist between two unblocked holes of a carrier.
 
-    Where rows have no end, only whole blocked columns are looked at: any pattern can be shifted up past a
-    blocked hole.
+    Where rows are unlimited, only wholly blocked columns count.
     """
     rows = 1 if carrier.rows is None else carrier.rows
     free = np.ones((carrier.column_count, rows), np.bool_)
@@ -134,7 +133,7 @@ def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray
             free[holes.column] = False
         elif carrier.rows is not None:
             free[holes.column, holes.row] = False
-    # So many pairs of free holes have a difference: the correlation of the free holes with themselves.
+    # Number of pairs of free holes for each difference: the autocorrelation of the mask of free holes.
     shape = 2 * carrier.column_count, 2 * rows
     pairs = np.fft.irfft2(np.abs(np.fft.rfft2(free, shape)) ** 2, shape)
     column, row = steps[:, 0], steps[:, 1] * (carrier.rows is not None)
@@ -150,30 +149,34 @@ def make_curve_tables(
     near: NearSpots = EVERYWHERE,
     within: Array = ANY_TURN,
 ) -> CurveTable:
-    """The chord curves of a problem's loose features, those of each carrier apart unless its pegs touch the
-    same."""
-    share = partial(curve_table, threads=threads, cancel=cancel, near=near, within=within)
+    """Return the chord curves of a problem's loose features (F, 10).
+
+    If standing and moving pegs touch the same features, both carriers share curves; else each has its own.
+    """
+    share = partial(make_curve_table, threads=threads, cancel=cancel, near=near, within=within)
     longest, (standing, moving) = problem.diameter + 1e-6, problem.frame.carriers
     if all(arrangement.pegs[-1] == 1 for arrangement in problem.toolkit.arrangements):
         # No two pegs move.
         moving = evolve(moving, columns=1, rows=1, blocked=())
     if problem.standing == problem.moving:
-        return share(loose, lattice_steps((standing, moving), longest))
+        return share(loose, list_lattice_steps((standing, moving), longest))
     (first, end), (begin, last) = problem.standing, problem.moving
     one, other = (
-        share(rows, lattice_steps([carrier], longest))
+        share(rows, list_lattice_steps([carrier], longest))
         for rows, carrier in zip((loose[first:end], loose[begin:last]), (standing, moving), strict=True)
     )
-    return joined(one, other, begin)
+    return join_curve_tables(one, other, begin)
 
 
 def may_lie_at(
     edges: Array, angles: Collection[Sequence[float]], half_turns: int, turned: float = 0.0
 ) -> NDArray[np.bool_]:
-    """Which cells (K,) between edges (K + 1,) of psi hold orientations of the part in some ranges in degrees.
+    """Return which cells (K,) between edges (K + 1,) of psi
+    in radians hold part angles in some ranges of degrees.
 
-    The part's angle is -psi, and ``turned`` degrees more in the toolkit than in the frame of the search. Over
-    one half turn of cells an angle stands for its opposite as well.
+    All cells where there are no ranges. The part's angle is -psi, plus ``turned`` degrees by which the
+    toolkit's frame is turned against that of the search. With ``half_turns`` 1 an angle stands for its
+    opposite as well.
     """
     wanted = np.full(len(edges) - 1, not angles)
     low, turn = turned - np.degrees(edges[1:]), 180.0 * half_turns
@@ -185,16 +188,17 @@ def may_lie_at(
 
 
 def count_half_turn_cells(problem: Problem) -> int:
-    """How many cells there are in a half turn of orientations.
+    """Return how many cells a half turn of orientations is divided into.
 
-    In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot cross.
+    In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
+    cross.
     """
     most = CELLS_PER_PITCH * problem.wrench_length / problem.frame.lattice.pitch_y
     return int(min(max(most, FEWEST_CELLS), MOST_CELLS))
 
 
-def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, int]]:
-    """First and past-the-last numbers of runs of wanted cells, none longer than ``together``."""
+def iterate_cell_runs(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, int]]:
+    """Yield (first, past-the-last) indices of runs of wanted cells, none longer than ``together``."""
     first = 0
     while first < len(wanted):
         if not wanted[first]:
@@ -208,36 +212,36 @@ def neighbours(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, 
 
 
 def limit_precision(precision: Precision, most: float) -> Precision:
-    """Bounds of location errors with a largest effective one of interest, in mm."""
+    """Return the precision with ``most`` mm as the largest effective location error of interest."""
     return precision._replace(most=most, most_aslant=most / ASLANT)
 
 
 def sample_numbers(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
-    """Which numbers (N,) are among one in so many, as if drawn, and always the same."""
+    """Return which numbers (N,) a fixed hash chooses, about one in ``many``."""
     mixed = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     return np.asarray((mixed >> np.uint64(33)) % np.uint64(many) == 0)
 
 
 def is_round(problem: Problem) -> bool:
-    """Whether every face that a peg could touch is an arc about one centre."""
+    """Return whether every feature that pegs can touch is an arc about one common centre."""
     arcs = problem.rows[:, IS_ARC] != 0.0
     return bool(arcs.all()) and len(set(number_centers(problem.rows).tolist())) == 1
 
 
 @define(eq=False)
 class ToolkitSearch:
-    """Everything the kernels of a toolkit need, and the blocks of work made of it.
+    """What the kernels of a toolkit need, and the blocks of work made of it.
 
     Parameters
     ----------
     problem : what is searched.
-    loose : (F, 10) rows of the features with their ends moved out by a hair.
+    loose : (F, 10) rows of the features with their ends moved out a little.
     table : chord curves and sliding pairs between the loose features.
-    precision, near : bound location errors, and places of locators, of what is of interest.
+    precision, near : which location errors, and which spots of locators, are of interest.
     counting : count all simultaneous contacts instead of looking for fixtures only.
-    most_listed : of these so many are listed by each block, whatever the rules say of them.
-    every : of chord curves one in so many is looked at, for an estimate.
-    stats : (blocks, 5) statistics the kernels add to, one row for each block so that threads never share one.
+    most_listed : how many contacts each block lists regardless of the rules, when counting.
+    every : only one in ``every`` chord curves is used, for an estimate.
+    stats : (5,) statistics for each block; blocks do not share them, as they run in different threads.
     """
 
     problem: Problem
@@ -252,7 +256,7 @@ class ToolkitSearch:
     memory: BlockMemory = field(factory=BlockMemory, init=False)
 
     @classmethod
-    def of(
+    def from_problem(
         cls,
         problem: Problem,
         counting: bool = False,
@@ -263,15 +267,15 @@ class ToolkitSearch:
         precision: Precision = ANY_ERROR,
         only: Collection[tuple[float, float]] = (),
     ) -> ToolkitSearch:
-        """The search of a problem, with its chord curves, or some of them once ``cancel`` is set.
+        """Return the search of a problem with its chord curves; only some of these once ``cancel`` is set.
 
-        ``counting`` leaves the contact margin out. What ``near`` and ``precision`` rule out is not searched.
-        Where blocks are asked for with nothing but some ranges of the part's angle in degrees ``first``, these
-        are ``only`` what curves are made for.
+        ``counting`` sets the contact margin to 0. What ``near`` and ``precision`` rule out has no curves.
+        ``only`` are ranges of the part's angle in degrees to make curves for; empty for all. Blocks may then
+        be asked for only with these ranges as ``first``.
         """
         if counting:
-            problem = Problem.of(evolve(problem.query, contact_margin=0.0), problem.pairing)
-        loose = loosened(problem.rows[:, :SEGMENT_LENGTH])
+            problem = Problem.from_query(evolve(problem.query, contact_margin=0.0), problem.pairing)
+        loose = loosen_rows(problem.rows[:, :SEGMENT_LENGTH])
         within = ANY_TURN
         if only:
             edges = divide_into_cells(2, 2 * count_half_turn_cells(problem))
@@ -281,24 +285,24 @@ class ToolkitSearch:
         return cls(problem, loose, table, precision, near, counting, most_listed)
 
     @property
-    def frame(self) -> Frame:
-        """The toolkit as the kernels see it."""
+    def frame(self) -> SearchFrame:
+        """Toolkit in the frame of the search."""
         return self.problem.frame
 
     @property
     def features(self) -> Features:
-        """The features for the kernels."""
+        """Features as the kernels take them."""
         problem = self.problem
         return Features(self.loose, problem.rows, problem.standing, problem.moving, self.precision, self.near)
 
     @property
     def totals(self) -> NDArray[np.int64]:
-        """Statistics (5,) of all blocks together."""
+        """Statistics (5,) summed over all blocks."""
         return np.asarray(np.array(self.stats, np.int64).reshape(-1, STATISTICS).sum(axis=0))
 
     @property
     def statistics(self) -> dict[str, int]:
-        """Counts that show how much work the search was (see ``Result.statistics``)."""
+        """Counts by name that show how much work the search was, see ``Result.statistics``."""
         totals = self.totals
         return {
             "features": len(self.problem.rows),
@@ -311,43 +315,49 @@ class ToolkitSearch:
 
     @property
     def alive(self) -> float:
-        """How many chord curves exist at an orientation, on average."""
+        """Average number of chord curves that exist at an orientation."""
         first, last = self.table.spans
         return float((last - first).sum()) / tau
 
-    def blocks(
+    def make_blocks(
         self,
         types: Collection[str],
         least: int = LEAST_BLOCKS,
         within: Collection[tuple[float, float]] = (),
         first: Collection[tuple[float, float]] = (),
         rest: bool = False,
-    ) -> list[Block]:
-        """Blocks of work that together find all fixtures of the arrangements of given names.
+    ) -> list[SearchBlock]:
+        """Return blocks of work that together find all fixtures of the arrangements with given names.
 
-        There are about ``least`` or more for a half turn. With ``within``, ranges of orientation of the
-        workpiece in degrees, they find all fixtures in these, and some near them. So they do with ``first``,
-        and all others with ``rest`` as well.
+        Parameters
+        ----------
+        least : smallest number of blocks in a half turn, about.
+        within : ranges of the part's angle in degrees; the blocks find all fixtures in these and some beside.
+            Empty for all.
+        first : ranges to search first; the blocks find all fixtures in these, or with ``rest`` all others.
+            Empty for no split.
         """
         # All lines of action pass a round part's centre, so nothing keeps it from turning.
         is_idle = not self.counting and is_round(self.problem)
         cells = count_half_turn_cells(self.problem)
         most = max(cells // least, 1)
         together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), most))
-        blocks: list[Block] = []
+        blocks: list[SearchBlock] = []
         frame = self.frame
         for arrangement in frame.toolkit.arrangements:
             if arrangement.name not in types:
                 continue
-            half_turns = 1 if arrangement.pegs[0] == frame.swapped else 2
+            half_turns = 1 if arrangement.pegs[0] == frame.swapped_peg_count else 2
             edges = divide_into_cells(half_turns, half_turns * cells)
             wanted = may_lie_at(edges, self.problem.restrictions.angles, half_turns, 90.0 * frame.quarters)
             if within:
                 wanted &= may_lie_at(edges, within, half_turns, 90.0 * frame.quarters)
             if is_idle:
-                blocks.append(Block(lambda needed: np.zeros((0, RECORD_LENGTH)), 1.0, int(wanted.sum())))
+                blocks.append(
+                    SearchBlock(lambda needed: np.zeros((0, RECORD_LENGTH)), 1.0, int(wanted.sum()))
+                )
                 continue
-            sliding_pairs, crossing = self.sliding_pair_cells(half_turns, edges), wanted
+            sliding_pairs, crossing = self.sort_sliding_pairs_into_cells(half_turns, edges), wanted
             if first:
                 is_first = may_lie_at(edges, first, half_turns, 90.0 * frame.quarters)
                 crossing, vague = wanted & (is_first != rest), self.vague_sliding_pairs
@@ -355,20 +365,21 @@ class ToolkitSearch:
                     pairs[(vague[pairs] | here) != rest]
                     for pairs, here in zip(sliding_pairs, is_first, strict=True)
                 ]
-            ranges = np.array(list(neighbours(crossing, together)), np.int64).reshape(-1, 2)
+            ranges = np.array(list(iterate_cell_runs(crossing, together)), np.int64).reshape(-1, 2)
             counts = count_curves_in_cells(self.table, edges[ranges[:, 0]], edges[ranges[:, 1]])
             for (begin, end), count in zip(ranges.tolist(), counts.tolist(), strict=True):
-                blocks.append(self.crossing_block(arrangement, edges[begin : end + 1], count))
-            for begin, end in neighbours(wanted, together):
+                blocks.append(self.make_crossing_block(arrangement, edges[begin : end + 1], count))
+            for begin, end in iterate_cell_runs(wanted, together):
                 some = [cell for cell in range(begin, end) if len(sliding_pairs[cell])]
                 if some:
-                    blocks.append(self.sliding_pair_block(arrangement, edges, some, sliding_pairs))
+                    blocks.append(self.make_sliding_pair_block(arrangement, edges, some, sliding_pairs))
         return blocks
 
     @property
     def vague_sliding_pairs(self) -> NDArray[np.bool_]:
-        """Which sliding pairs (P,) may have another orientation than is known, see
-        ``sliding_pairs.sliding_pair_reach``."""
+        """Mask (P,) of sliding pairs whose orientation is known
+        too roughly, see ``sliding_pairs.bound_orientation_error``.
+        """
         whole, reals = self.table.sliding_pairs
         tail, head = self.loose[whole[:, TAIL]], self.loose[whole[:, HEAD]]
         direction, d = reals[:, DIRECTION], reals[:, STEP_LENGTH]
@@ -377,8 +388,11 @@ class ToolkitSearch:
         off = APART + PARALLEL * (tail[:, HALF_EXTENT] + head[:, HALF_EXTENT] + d)
         return np.asarray(off > VAGUE * d * along)
 
-    def sliding_pair_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
-        """Sliding pairs by the cell their orientation falls into."""
+    def sort_sliding_pairs_into_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
+        """Return, for each cell, the indices of the sliding pairs whose orientation is in it.
+
+        Orientations in the table are reduced to one turn in place. Pairs outside all cells are left out.
+        """
         reals = self.table.sliding_pairs.reals
         psi = reals[:, ORIENTATION]
         psi = FIRST_ORIENTATION + (psi - FIRST_ORIENTATION) % tau
@@ -389,21 +403,32 @@ class ToolkitSearch:
         starts = np.searchsorted(cells[order], np.arange(len(edges)))
         return [order[first:last] for first, last in pairwise(starts)]
 
-    def crossing_block(self, arrangement: Arrangement, edges: Array, members: int) -> Block:
-        """The crossings of some neighbouring cells, in which there are about so many curves."""
-        kernel, weight = KERNELS[arrangement.pegs]
-        work = partial(self.run, partial(kernel, edges), float(edges[0]), float(edges[-1]), self.tally())
-        return Block(work, 1.0 + weight * members**2, len(edges) - 1, float(edges[0]))
+    def make_crossing_block(self, arrangement: Arrangement, edges: Array, members: int) -> SearchBlock:
+        """Return the block that searches crossings of curves in neighbouring cells with these edges.
 
-    def sliding_pair_block(
+        ``members`` is about the number of curves there, for the cost.
+        """
+        kernel, weight = KERNELS[arrangement.pegs]
+        work = partial(
+            self.run_kernel,
+            partial(kernel, edges),
+            float(edges[0]),
+            float(edges[-1]),
+            self.add_statistics_row(),
+        )
+        return SearchBlock(work, 1.0 + weight * members**2, len(edges) - 1, float(edges[0]))
+
+    def make_sliding_pair_block(
         self, arrangement: Arrangement, edges: Array, cells: list[int], sliding_pairs: list[NDArray[np.int64]]
-    ) -> Block:
-        """The sliding pairs of some cells, given those of all."""
-        standing, stats = arrangement.pegs[0], self.tally()
+    ) -> SearchBlock:
+        """Return the block that searches the sliding pairs of
+        some cells; ``sliding_pairs`` are those of every cell.
+        """
+        standing, stats = arrangement.pegs[0], self.add_statistics_row()
         parts = [
             partial(
-                self.run,
-                partial(sliding_fixtures, standing, sliding_pairs[cell], self.table.sliding_pairs),
+                self.run_kernel,
+                partial(write_sliding_fixtures, standing, sliding_pairs[cell], self.table.sliding_pairs),
                 float(edges[cell]),
                 float(edges[cell + 1]),
                 stats,
@@ -412,7 +437,7 @@ class ToolkitSearch:
         ]
         members = count_curves_in_cells(self.table, edges[cells], edges[np.add(cells, 1)])
         cost = float(members @ np.array([len(sliding_pairs[cell]) for cell in cells]))
-        return Block(
+        return SearchBlock(
             lambda needed: np.concatenate([part(needed) for part in parts]),
             len(cells) + cost,
             len(cells),
@@ -420,35 +445,47 @@ class ToolkitSearch:
             SLIDING_DENSE,
         )
 
-    def tally(self) -> NDArray[np.int64]:
-        """A new row of statistics for a kernel to add to."""
+    def add_statistics_row(self) -> NDArray[np.int64]:
+        """Append a row (5,) of zeros to ``stats`` for a kernel to add to, and return it."""
         self.stats.append(np.zeros(STATISTICS, np.int64))
         return self.stats[-1]
 
     def stop(self) -> None:
-        """Makes the kernels that run in other threads return soon with what they have found."""
+        """Make running kernels in other threads return soon with what they have found."""
         for counts in self.stats:
             counts[STOPPED] = 1
 
-    def run(
-        self, kernel: Callable[..., int], low: float, high: float, stats: NDArray[np.int64], needed: Needed
+    def run_kernel(
+        self,
+        kernel: Callable[..., int],
+        low: float,
+        high: float,
+        stats: NDArray[np.int64],
+        needed: InterestLimits,
     ) -> Array:
-        """Runs a kernel with the curves of some orientations, for fixtures that reach what is needed."""
+        """Run a kernel on the curves between two orientations in radians; return its records (N, 19).
+
+        ``needed`` is what fixtures must reach to be of interest, ``stats`` the row that the kernel adds to.
+        """
         most = min(self.precision.most, needed.error)
         features = self.features
         if most < self.precision.most and len(self.precision.probes):
             features = features._replace(precision=limit_precision(features.precision, most))
-        limits = self.limits_from(needed.margin, features.precision.most)
+        limits = self.make_limits(needed.margin, features.precision.most)
         members = find_curves_in_cell(self.table, low, high)
         if self.every > 1:
             members = members[sample_numbers(members, self.every)]
         curves, lattice = self.table.curves, self.frame.lattice
-        return self.memory.run(kernel, members, stats, features, curves, lattice, limits, self.counting)
+        return self.memory.run_kernel(
+            kernel, members, stats, features, curves, lattice, limits, self.counting
+        )
 
-    def limits_from(self, margin: float, most: float) -> Limits:
-        """The limits with a closure margin to reach, and a largest effective error.
+    def make_limits(self, margin: float, most: float) -> Limits:
+        """Return the kernels' limits with a least closure
+        margin, given the largest effective error ``most`` in mm.
 
-        Where errors are limited nothing with a warning is of interest, and a weak closure is one.
+        With a finite error limit the margin is at least that of a weak closure, as nothing with a warning is
+        of interest.
         """
         if most < inf:
             margin = max(margin, WEAK_CLOSURE - MARGIN_SLACK)
@@ -456,12 +493,11 @@ class ToolkitSearch:
 
 
 def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | None = None) -> int:
-    """How many sets of four pegs of the two jaws touch a workpiece at the same time, each contact inside its
-    feature.
+    """Return how many sets of four pegs of the two jaws touch a
+    workpiece at the same time, each contact inside its feature.
 
-    Nothing else is asked of them: neither the gap between the jaws nor closure nor clamping. Sets that rest
-    on a chord of parallel faces and right pegs on faces square to the jaws' motion count only where they can
-    be distinguished.
+    Gap, closure and clamping are not asked. Sets that rest on a chord of parallel faces and right pegs on
+    faces square to the jaws' motion count only where they can be distinguished.
 
     Parameters
     ----------
@@ -473,12 +509,14 @@ def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | Non
     InputError
         For a peg that fits nowhere along the part.
     """
-    return contacts_of(Problem.of(Query(workpiece, toolkit)), threads)
+    return count_problem_contacts(Problem.from_query(Query(workpiece, toolkit)), threads)
 
 
-def contacts_of(problem: Problem, threads: int | None, cancel: Event | None = None) -> int:
-    """Simultaneous contacts of a problem, see :func:`count_contacts`; fewer once ``cancel`` is set."""
+def count_problem_contacts(problem: Problem, threads: int | None, cancel: Event | None = None) -> int:
+    """Return the number of simultaneous contacts of a
+    problem, see :func:`count_contacts`; fewer once cancelled.
+    """
     workers = choose_thread_count(threads)
-    search = ToolkitSearch.of(problem, counting=True, threads=workers, cancel=cancel)
-    run_blocks(search.blocks(problem.query.types), workers, None, cancel, stop=search.stop)
+    search = ToolkitSearch.from_problem(problem, counting=True, threads=workers, cancel=cancel)
+    run_blocks(search.make_blocks(problem.query.types), workers, None, cancel, stop=search.stop)
     return int(search.totals[CONTACTS])

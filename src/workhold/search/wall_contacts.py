@@ -41,41 +41,41 @@ from workhold.kernels.base.feature import (
     Y,
 )
 from workhold.kernels.contact.rules import ROUNDING
-from workhold.listing.canonical_form import Rows
+from workhold.listing.canonical_form import RowArrays
 from workhold.search.flush_search import PartOnWall
 
 __all__ = [
     "ContactPairs",
     "PinContacts",
-    "closure",
+    "judge_closure",
     "may_oppose",
     "find_pin_contacts",
-    "seating",
+    "judge_seating",
 ]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-# mm and radians. What lies further past the end of an arc is no contact, however it is rounded: where a line
-# does not graze the arc, its place is off by less.
+# mm and radians. A place further past the end of an arc is surely no contact: unless a line grazes the arc,
+# its place is off by less.
 PAST_END = 1e-4
 # Pairs of lines and features looked at together.
 TOGETHER = 1 << 19
 
 
 @define(frozen=True, eq=False)
-class PinContacts(Rows):
-    """M contacts of pegs on lines.
+class PinContacts(RowArrays):
+    """M contacts of pegs on lines, in the wall's frame.
 
     Parameters
     ----------
     line : (M,) index of the line.
     feature : (M,) index of the feature touched.
     point : (M, 2) centre of the peg, u and v in mm.
-    normal : (M, 2) outward unit normal there.
-    slack : (M,) how far in mm it is from breaking the rule of ends, infinite on a whole circle.
-    reach, swing : (M,) by how many mm and radians place and normal may be off.
-    branch : (M,) -1 or 1 for the lower or the upper of the two points of an arc, 1 on a straight feature.
+    normal : (M, 2) outward unit normal of the part there.
+    slack : (M,) distance in mm to the nearer end of the feature, negative beyond it; inf on a whole circle.
+    reach, swing : (M,) error bounds of the place in mm and of the normal in radians.
+    branch : (M,) -1 or 1 for the lower or the upper of the two points on an arc; 1 on a straight feature.
     """
 
     line: IntArray
@@ -91,12 +91,14 @@ class PinContacts(Rows):
 def find_pin_contacts(
     lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
 ) -> PinContacts:
-    """Contacts of pegs on lines with some features, at least nearly ``margin`` mm inside their ends; at a
-    tangent joint with both features that meet there.
+    """Return the contacts of pegs on parallel lines with some
+    features, within error bounds ``margin`` inside their ends.
+
+    At a tangent joint there is a contact with either feature.
 
     Parameters
     ----------
-    chosen : first and past-the-last number of the features.
+    chosen : first and past-the-last index of the features.
     levels : (K,) v of rows, or u of columns if ``upright``, in mm.
     margin : smallest distance in mm from the end of a feature.
     """
@@ -107,22 +109,30 @@ def find_pin_contacts(
     parts = []
     for start in range(0, max(len(levels), 1), together):
         some = levels[start : start + together]
-        for part in (on_lines(lying, rows, some, along, across), on_arcs(lying, rows, some, along, across)):
+        for part in (
+            find_line_contacts(lying, rows, some, along, across),
+            find_arc_contacts(lying, rows, some, along, across),
+        ):
             inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
             kept = part if inside.all() else part.take(inside)
-            parts.append(PinContacts(kept.line + start, kept.feature + first, *tail(kept)))
+            parts.append(PinContacts(kept.line + start, kept.feature + first, *list_shared_columns(kept)))
     return PinContacts.concatenate(parts)
 
 
-def tail(places: PinContacts) -> tuple[Array, ...]:
-    """All but the lines and features of contacts."""
+def list_shared_columns(places: PinContacts) -> tuple[Array, ...]:
+    """Return all columns of contacts except ``line`` and ``feature``, in order."""
     return tuple(getattr(places, one.name) for one in fields(PinContacts))[2:]
 
 
-def on_lines(
+def find_line_contacts(
     lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
 ) -> PinContacts:
-    """Contacts with straight features; those parallel to the lines have none."""
+    """Return the contacts of lines at ``levels`` with straight
+    features; features parallel to the lines have none.
+
+    ``along`` and ``across`` are the columns (of position, of axis) for the coordinate along the lines first,
+    then across them.
+    """
     straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
     some = rows[straight]
     rises = np.abs(some[:, across[1]])
@@ -142,18 +152,21 @@ def on_lines(
     return PinContacts(line, straight[which], point, normal, slack, reach, turned, np.ones(len(s)))
 
 
-def on_arcs(
+def find_arc_contacts(
     lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
 ) -> PinContacts:
-    """Contacts with arcs."""
+    """Return the contacts of lines at ``levels`` with arcs, up to two for each line and arc.
+
+    Those beyond the ends of arcs are left out where that is sure.
+    """
     round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     some = rows[round_]
     radius, place = some[:, RADIUS], some[:, along[1]]
-    # Beside a grazing line the square root below is of what rounding leaves: the place is off by no more than
-    # both roots. Its normal is across the line to within its swing, so only balls decide that a contact there
-    # presses.
+    # For a grazing line the square root below is of rounding errors: the place is off by at most both roots.
+    # Its normal is across the line to within its error bound, so only ball arithmetic decides that such a
+    # contact presses.
     least = 16.0 * lying.off * radius
-    low, high = heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
+    low, high = bound_heights(some, across, 3.0 * np.sqrt(least) + PAST_END)
     line, which = np.nonzero(np.abs(levels[:, None] - (place + (low + high) / 2.0)) <= (high - low) / 2.0)
     up = levels[line] - place[which]
     met = np.abs(up) <= radius[which] + 2.0 * lying.off
@@ -163,7 +176,7 @@ def on_arcs(
     grazing = ~(half * half > least[which])
     one, other = part[across[0]] * half, part[across[1]] * up
     ahead = np.stack([other - one, other + one], axis=1)
-    chosen, side = np.nonzero(grazing[:, None] | (ahead >= least_ahead(some)[which][:, None]))
+    chosen, side = np.nonzero(grazing[:, None] | (ahead >= compute_least_ahead(some)[which][:, None]))
     line, which = line[chosen], which[chosen]
     up, half, grazing = up[chosen], half[chosen], grazing[chosen]
     part, branch = part[:, chosen], np.array([-1.0, 1.0])[side]
@@ -188,26 +201,32 @@ def on_arcs(
     return PinContacts(line, round_[which], point, normal, slack, reach, swing, branch)
 
 
-def half_angles(rows: Array) -> Array:
-    """Half angles (F,) in radians of arcs (F, 12), and of what lies not far past their ends."""
+def compute_half_angles(rows: Array) -> Array:
+    """Return half angles (F,) in radians of arcs (F, 12),
+    enlarged by a little past their ends, at most pi.
+    """
     past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
     return np.asarray(np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi))
 
 
-def least_ahead(rows: Array) -> Array:
-    """The least mm (F,) that contacts lie along the axes of arcs (F, 12), of those that are not far past the
-    ends."""
-    angle = half_angles(rows)
+def compute_least_ahead(rows: Array) -> Array:
+    """Return (F,) the smallest coordinate in mm along an arc's
+    axis, from its centre, of contacts not far past its ends.
+
+    -inf for whole circles.
+    """
+    angle = compute_half_angles(rows)
     return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))
 
 
-def heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
-    """Least and largest coordinates (F,) in mm of contacts with arcs (F, 12), from the arcs' centres.
+def bound_heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
+    """Return the least and the largest coordinate (F,) in mm,
+    from the centre, of contacts not far past the ends of arcs.
 
-    The contacts are not far past the ends, and the range is ``spare`` (F,) mm wider on both sides. ``across``
-    are the columns of the axes' parts across the coordinate and along it.
+    The range is wider by ``spare`` (F,) mm on both sides. ``across`` are the two columns of ``rows`` (F, 12)
+    with the axis's component along the lines and across them; the coordinate is that across.
     """
-    turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), half_angles(rows)
+    turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), compute_half_angles(rows)
     low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
     return rows[:, RADIUS] * low - spare, rows[:, RADIUS] * np.cos(np.maximum(turn - half, 0.0)) + spare
 
@@ -221,8 +240,8 @@ class ContactPairs:
 
     Parameters
     ----------
-    places : contacts of the tip; their lines are rows, or columns counted from the locator's.
-    which : (M,) index of the tip's contact.
+    places : contacts of the clamp's tip; their ``line`` is a row, or a column relative to the locator's.
+    which : (M,) index of the tip's contact in ``places``.
     locator : (M,) index of the locator's contact.
     """
 
@@ -234,15 +253,14 @@ class ContactPairs:
         return len(self.locator)
 
     def take(self, order: IntArray | BoolArray) -> ContactPairs:
-        """The pairs of an index array or mask, in its order."""
+        """Return the pairs that an index array or a mask selects."""
         return ContactPairs(self.places, self.which[order], self.locator[order])
 
 
 def may_oppose(lying: PartOnWall, one: PinContacts, clamps: ContactPairs, problem: Problem) -> BoolArray:
-    """Which pairs (M,) :func:`closure` may find to press the part, about half of all.
+    """Return a mask (M,) that is False only for pairs that :func:`closure` is sure to reject.
 
-    Of their normals a, b the parts along the wall are opposed, for the locator's force is -b_u sign a_u times
-    the length of the hull edge.
+    The locator and the clamp must push against each other along the wall. ``one`` are the locator's contacts.
     """
     length, two = problem.wrench_length, clamps.places
     reach, swing = (
@@ -254,7 +272,7 @@ def may_oppose(lying: PartOnWall, one: PinContacts, clamps: ContactPairs, proble
     return np.asarray(~(ahead * (lying.length / length) < -1.2 * band))
 
 
-def seating(
+def judge_seating(
     lying: PartOnWall,
     one: PinContacts,
     two: PinContacts,
@@ -262,11 +280,12 @@ def seating(
     push: tuple[float, float],
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Null vectors, pushes and verdicts as of :func:`closure`, of one of two clamps: wall and locator must
-    fix the part, and the clamp must push.
+    """Return null vectors, pushes, verdicts and doubts of pairs
+    with one of two clamps: wall and locator must fix the part.
 
-    The null vectors (M, 4) are the forces of the wall's two ends and the locator per unit of that on the
-    clamp's face. With the notation there the locator's is -b_u / a_u, and the determinant of the three
+    As :func:`closure`, except that the three locating contacts need not press; the clamp must push. The null
+    vectors (M, 4) are the forces of the wall's two ends and the locator, divided by that at the clamp's face.
+    With the notation of :func:`closure` the locator's force is -b_u / a_u, and the determinant of the three
     wrenches is |a_u| l.
     """
     length = problem.wrench_length
@@ -292,7 +311,7 @@ def seating(
     return null, pushes, held, ~held & ~(worst < -1.0)
 
 
-def closure(
+def judge_closure(
     lying: PartOnWall,
     one: PinContacts,
     two: PinContacts,
@@ -300,10 +319,12 @@ def closure(
     push: tuple[float, float],
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Null vectors (M, 4) of the wall's two ends, locator and clamp, not scaled, and what follows from them.
+    """Return (null, pushes, held, open) of pairs of a locator's and a clamp's contact.
 
-    From them follow how much (M,) of its force the clamp passes on in its direction ``push``, which pairs
-    (M,) press the part, and of which that is open.
+    ``null`` (M, 4) are unscaled forces of the wall's two ends, locator and clamp; ``pushes`` (M,) the share
+    of the clamp's force along its direction ``push`` that its face passes on; ``held`` (M,) whether the pair
+    surely presses the part; ``open`` (M,) whether doubles leave that undecided. ``locator`` (M,) indexes
+    ``one``.
 
     Let a, b be the normals and m, M the moments of locator and clamp about the start of the hull edge of
     length l, lengths in parts of L. With p = -b_u sign a_u, q = |a_u| and t = p m + q M, the null vector is

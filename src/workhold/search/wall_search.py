@@ -1,10 +1,10 @@
 """The search beside a wall: part flush on it, a locator in a row of holes, and a clamp on a row or a column.
 
-There is one orientation for each hull edge. Every row then meets every feature in closed form, which are the
-locator's places, and the clamp's lines do likewise. The null vector of the four wrenches decides whether a
-pair presses the part against the wall. In words (Overmars et al. 1995): the line of the joint force of
-locator and clamp meets the hull edge strictly between its ends. What the bounds of its error leave open is
-decided in balls.
+There is one orientation for each hull edge. Every row of holes then meets every feature in closed form, which
+gives the locator's places, and so do the clamp's lines. The null vector of the four wrenches decides whether
+a pair presses the part against the wall: geometrically (Overmars et al. 1995), the line of the joint force of
+locator and clamp must meet the hull edge strictly between its ends. What the error bounds leave undecided is
+decided in ball arithmetic.
 """
 
 from __future__ import annotations
@@ -30,31 +30,31 @@ from workhold.listing.clamp_placement import find_axis
 from workhold.listing.wall_fixtures import WallFixtures, make_wall_table, place_on_wall
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
-from workhold.model.search_report import AT_AN_EDGE, Undecided
+from workhold.model.search_report import AT_AN_EDGE, UndecidedCandidate
 from workhold.proof.flush import (
-    Candidate,
+    WallCandidate,
     compute_fence_reactions,
+    is_pressing,
     locate_contact_exactly,
     locate_contacts_exactly,
-    pressing,
 )
 from workhold.search.flush_search import FlushSearch, PartOnWall
 from workhold.search.wall_contacts import (
     ContactPairs,
     PinContacts,
-    closure,
     find_pin_contacts,
+    judge_closure,
+    judge_seating,
     may_oppose,
-    seating,
 )
 
-__all__ = ["WallSearch", "find_fixtures_on_edge", "searches_of"]
+__all__ = ["WallSearch", "find_fixtures_on_edge", "make_searches"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Forces that may be off by more are computed in balls: whether two clamps close is often a matter of an exact
+# Forces with a larger error bound are computed in ball arithmetic, as two clamps often close by an exact
 # zero.
 DOUBTFUL = 1e-10
 # Pairs of locator and clamp looked at together.
@@ -63,44 +63,52 @@ TOGETHER = 1 << 17
 
 @define(eq=False)
 class WallSearch(FlushSearch):
-    """The pairs of locator and clamp that press a part against a wall, with one direction of the clamp."""
+    """The search for pairs of locator and clamp that press
+    a part against a wall, for one direction of the clamp.
+    """
 
     @property
     def plate(self) -> Carrier:
-        """The plate in whose holes the locator stands."""
+        """Plate in whose holes the locator stands."""
         return self.problem.toolkit.carriers[0]
 
     @property
     def clamp(self) -> Carrier:
-        """The clamp, which moves."""
+        """Moving clamp."""
         return self.problem.toolkit.moving
 
     @property
     def push(self) -> tuple[float, float]:
-        """Unit vector along which the clamp moves as it clamps."""
+        """Unit vector of the clamp's movement as it clamps."""
         x, y = self.problem.toolkit.moving_axis
         return 0.0 - x, 0.0 - y
 
     @property
-    def alone(self) -> Toolkit:
-        """The toolkit with a clamp that is its tip alone."""
-        return self.problem.toolkit.changed({"travel": None})
+    def pair_toolkit(self) -> Toolkit:
+        """Toolkit whose clamp is its tip alone, without travel."""
+        return self.problem.toolkit.with_fields({"travel": None})
 
     @property
-    def touches(self) -> bool:
-        """Whether the locator can touch the part."""
+    def can_touch(self) -> bool:
+        """Whether the locator can touch the part on an edge searched so far."""
         return self.locators > 0
 
-    def fixtures(self, edge: int) -> Iterator[WallFixtures]:
-        """The pairs that press the part as it lies on a hull edge, some at a time."""
+    def iterate_fixtures(self, edge: int) -> Iterator[WallFixtures]:
+        """Yield, in batches, the pairs that press the part as it lies on a hull edge."""
         return (part for _, part in find_fixtures_on_edge([self], edge))
 
-    def placed(self, parts: list[WallFixtures], edge: int) -> FixtureTable:
-        """The table of those pairs whose clamps have a place, each once."""
+    def place_fixtures(self, parts: list[WallFixtures], edge: int) -> FixtureTable:
+        """Return the table of those pairs whose clamps have a place, each once."""
         return place_on_wall(WallFixtures.concatenate(parts), self.problem)
 
-    def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
-        """Contacts of pegs in rows of holes; balls decide those where a row grazes an arc."""
+    def find_contacts_on_rows(
+        self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array
+    ) -> PinContacts:
+        """Return contacts of pegs in rows of holes at ``rows`` (K,) v
+        in mm, with features from ``chosen[0]`` to before ``chosen[1]``.
+
+        Contacts of rows that graze an arc are computed in ball arithmetic, and left out where there is none.
+        """
         problem = self.problem
         places = find_pin_contacts(lying, chosen, rows, False, problem.contact_margin)
         near = np.flatnonzero(places.reach > SAME_PLACE / 2)
@@ -114,27 +122,30 @@ class WallSearch(FlushSearch):
                 places.reach[k], places.swing[k] = 4.0 * lying.off, 4.0 * lying.turn
         return places.take(kept)
 
-    def rows_of(self, lying: PartOnWall, chosen: tuple[int, int]) -> Array:
-        """v of the rows of holes, from the first one on, that some features reach."""
+    def list_row_heights(self, lying: PartOnWall, chosen: tuple[int, int]) -> Array:
+        """Return v (K,) in mm of the rows of holes, from the first row up, as far as some features reach."""
         first, pitch = self.plate.offset[1], self.plate.pitch[1]
-        _, high = reach_of(lying.rows[slice(*chosen)], upward=True)
+        _, high = bound_reach(lying.rows[slice(*chosen)], upward=True)
         count = max(floor((high - first) / pitch + 1e-9) + 1, 0)
         rows = np.arange(count if self.plate.rows is None else min(count, self.plate.rows), dtype=np.float64)
         return np.asarray(first + pitch * rows)
 
-    def of_rows(self, places: PinContacts, locators: PinContacts) -> Iterator[ContactPairs]:
-        """Contacts of the clamp on rows, each with every locator, some at a time."""
-        chosen = np.flatnonzero(self.may_press(places))
+    def pair_contacts_on_rows(self, places: PinContacts, locators: PinContacts) -> Iterator[ContactPairs]:
+        """Yield, in batches, every pair of a pushing clamp contact in ``places`` and a locator contact."""
+        chosen = np.flatnonzero(self.find_pressing_tips(places))
         together = max(TOGETHER // max(len(chosen), 1), 1)
         for start in range(0, len(locators), together):
             numbers = np.arange(start, min(start + together, len(locators)))
             yield ContactPairs(places, np.tile(chosen, len(numbers)), np.repeat(numbers, len(chosen)))
 
-    def on_columns(self, lying: PartOnWall, locators: PinContacts) -> Iterator[ContactPairs]:
-        """Contacts of pegs on columns of holes, some at a time, with the locators that these are counted
-        from."""
+    def pair_contacts_on_columns(self, lying: PartOnWall, locators: PinContacts) -> Iterator[ContactPairs]:
+        """Yield, in batches, pairs of a locator contact and
+        a clamp contact a whole number of columns from it.
+
+        The clamp's tip moves along a column of holes.
+        """
         problem = self.problem
-        low, high = reach_of(lying.rows[slice(*problem.moving)], upward=False)
+        low, high = bound_reach(lying.rows[slice(*problem.moving)], upward=False)
         pitch, columns = self.plate.pitch[0], self.plate.columns
         most = inf if columns is None else columns - 1
         u = locators.point[:, 0]
@@ -154,33 +165,40 @@ class WallSearch(FlushSearch):
             )
             yield ContactPairs(evolve(places, line=steps[step], reach=grown), np.arange(len(places)), locator)
 
-    def may_press(self, places: PinContacts) -> BoolArray:
-        """Which contacts (M,) of the tip are clear of the wall, and push the part."""
+    def find_pressing_tips(self, places: PinContacts) -> BoolArray:
+        """Return which contacts (M,) of the clamp's tip are clear of the wall and may push the part."""
         x, y = self.push
         push = -(places.normal[:, 0] * x + places.normal[:, 1] * y)
         above = places.point[:, 1] >= self.clamp.peg_radius - GAP_SLACK
         return np.asarray(above & (push > -2.0 * places.swing))
 
-    def closing(self, edge: int, lying: PartOnWall, one: PinContacts, clamps: ContactPairs) -> WallFixtures:
-        """The pairs of locators and clamps that press the part against the wall."""
+    def find_closing_pairs(
+        self, edge: int, lying: PartOnWall, one: PinContacts, clamps: ContactPairs
+    ) -> WallFixtures:
+        """Return the pairs that press the part against the
+        wall, with ball arithmetic where doubles do not decide.
+
+        ``one`` are the locator's contacts. Updates the counts, and with ``explains`` the nearest pair.
+        """
         self.examined += len(clamps)
         pairing = self.problem.pairing
         if not (pairing or self.explains):
             clamps = clamps.take(may_oppose(lying, one, clamps, self.problem))
         two, locator = clamps.places.take(clamps.which), clamps.locator
-        null, push, held, doubtful = (seating if pairing else closure)(
+        null, push, held, doubtful = (judge_seating if pairing else judge_closure)(
             lying, one, two, locator, self.push, self.problem
         )
         open_ = np.flatnonzero(doubtful)
         for k in open_.tolist():
-            candidate = self.candidate(edge, one, two, locator, k)
-            verdict = pressing(candidate, self.problem, self.plate, self.push)
+            candidate = self.make_candidate(edge, one, two, locator, k)
+            verdict = is_pressing(candidate, self.problem, self.plate, self.push)
             held[k] = verdict is True
             if verdict is None:
-                self.undecided.append(self.entry(candidate))
+                self.undecided.append(self.make_undecided(candidate))
         self.escalated += len(open_)
 
         def pairs(chosen: IntArray) -> WallFixtures:
+            """Return the pairs with these indices."""
             behind = locator[chosen]
             return WallFixtures(
                 edge=np.full(len(chosen), edge),
@@ -194,7 +212,10 @@ class WallSearch(FlushSearch):
             )
 
         def alone(chosen: IntArray) -> FixtureTable:
-            query = evolve(self.problem.query, toolkit=self.alone)
+            """Return the table of the pairs with these indices,
+            in the toolkit whose clamp is its tip alone.
+            """
+            query = evolve(self.problem.query, toolkit=self.pair_toolkit)
             return make_wall_table(pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query))
 
         good = np.flatnonzero(held)
@@ -202,10 +223,10 @@ class WallSearch(FlushSearch):
         if self.explains:
             # Forces are given per clamp force, which there has to be.
             least = np.minimum(np.abs(null.sum(axis=1)), np.abs(null[:, 3] * push))
-            self.look_nearer(null, least < LEAST_CLAMPING * np.abs(null).sum(axis=1), alone)
-        return self.sharpened(pairs(good), edge, lying, one, two.take(good), locator[good])
+            self.keep_nearest(null, least < LEAST_CLAMPING * np.abs(null).sum(axis=1), alone)
+        return self.sharpen_pairs(pairs(good), edge, lying, one, two.take(good), locator[good])
 
-    def sharpened(
+    def sharpen_pairs(
         self,
         pressed: WallFixtures,
         edge: int,
@@ -214,28 +235,31 @@ class WallSearch(FlushSearch):
         two: PinContacts,
         locator: IntArray,
     ) -> WallFixtures:
-        """Pairs computed in balls where doubles are too coarse.
+        """Return pairs with places, and with two clamps forces,
+        computed in ball arithmetic where doubles are too coarse.
 
-        Of two clamps this gives how far their forces may be off, too.
+        With two clamps the error bounds of the forces are added (``doubt``). ``two`` and ``locator`` are
+        matched to the pairs.
         """
-        places = self.sharp_places(pressed, edge, one, two, locator)
+        places = self.sharpen_places(pressed, edge, one, two, locator)
         if not self.problem.pairing:
             return places
         null, push = places.null.copy(), places.push.copy()
         doubt = bound_reaction_errors(places, lying, one, two, locator, self.problem)
         grazes = two.swing > FORCES_OFF * push
         for k in np.flatnonzero((doubt > DOUBTFUL) | grazes).tolist():
-            candidate = self.candidate(edge, one, two, locator, k)
+            candidate = self.make_candidate(edge, one, two, locator, k)
             sharp = compute_fence_reactions(candidate, self.problem, self.plate, self.push)
             if sharp is not None:
                 null[k, :3], doubt[k] = sharp.taken, sharp.doubt
                 push[k] = sharp.push if grazes[k] else push[k]
         return evolve(places, null=null, doubt=doubt, push=push)
 
-    def sharp_places(
+    def sharpen_places(
         self, pressed: WallFixtures, edge: int, one: PinContacts, two: PinContacts, locator: IntArray
     ) -> WallFixtures:
-        """Contacts computed in balls where doubles may not say well enough where they are, or how they press.
+        """Return pairs with contacts, and with one clamp forces,
+        from ball arithmetic where doubles are too coarse.
 
         Such contacts are near a row or a column that grazes an arc.
         """
@@ -243,19 +267,19 @@ class WallSearch(FlushSearch):
         places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
         for k in far.tolist():
             sharp = locate_contacts_exactly(
-                self.candidate(edge, one, two, locator, k), self.problem, self.plate
+                self.make_candidate(edge, one, two, locator, k), self.problem, self.plate
             )
             if sharp is not None:
                 places[k], tip[k] = sharp.points
                 null[k] = null[k] if self.problem.pairing else sharp.null
         return evolve(pressed, locator=places, tip=tip, null=null) if len(far) else pressed
 
-    def candidate(
+    def make_candidate(
         self, edge: int, one: PinContacts, two: PinContacts, locator: IntArray, k: int
-    ) -> Candidate:
-        """A pair as balls decide it."""
+    ) -> WallCandidate:
+        """Return pair ``k`` in the form that ball arithmetic decides."""
         behind = int(locator[k])
-        return Candidate(
+        return WallCandidate(
             edge=edge,
             row=int(one.line[behind]),
             line=int(two.line[k]),
@@ -264,12 +288,12 @@ class WallSearch(FlushSearch):
             branches=(float(one.branch[behind]), float(two.branch[k])),
         )
 
-    def entry(self, candidate: Candidate) -> Undecided:
-        """A candidate that is not decided, for the account."""
+    def make_undecided(self, candidate: WallCandidate) -> UndecidedCandidate:
+        """Return the entry of the search report for an undecided pair."""
         flush, faces = self.problem.workpiece.flush, self.problem.faces[list(candidate.features)].tolist()
         one, other = flush.face[candidate.edge].tolist()
         line = (candidate.line, 0) if candidate.is_upright else (0, candidate.line)
-        return Undecided(
+        return UndecidedCandidate(
             self.problem.toolkit.arrangements[0].title,
             (faces[0], one, other, faces[1]),
             (0, 0, 0, line[0]),
@@ -288,7 +312,9 @@ def bound_reaction_errors(
     locator: IntArray,
     problem: Problem,
 ) -> Array:
-    """How far the forces of wall and locator (M,) may be off, from how far places and normals may be."""
+    """Return error bounds (M,) of the forces of wall and
+    locator, from those of places and normals; inf where unknown.
+    """
     reach = np.maximum(one.reach[locator], two.reach)
     swing = np.maximum(one.swing[locator], two.swing)
     across = np.abs(one.normal[locator, 0])
@@ -299,26 +325,30 @@ def bound_reaction_errors(
         return np.asarray(np.nan_to_num(doubt / (across * min(wall, 1.0)), nan=inf))
 
 
-def searches_of(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
-    """The searches of a query in the ways of a toolkit with a wall, which differ in the clamp's direction
-    alone."""
+def make_searches(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
+    """Return one search for each direction of the clamp; ``ways`` differ in that direction alone.
+
+    With ``pairing`` contacts need not close, as for two clamps.
+    """
     one, *others = (evolve(query, toolkit=way) for way in ways)
-    problem = Problem.of(one, pairing=pairing)
+    problem = Problem.from_query(one, pairing=pairing)
     return [WallSearch(problem), *(WallSearch(evolve(problem, query=other)) for other in others)]
 
 
 def find_fixtures_on_edge(
     searches: Sequence[WallSearch], edge: int
 ) -> Iterator[tuple[WallSearch, WallFixtures]]:
-    """The pairs that press the part as it lies on a hull edge, some at a time, each with its search.
+    """Yield (search, pairs) in batches: the pairs that press the part as it lies on a hull edge.
 
-    What does not depend on the clamp's direction is looked at once for all searches (``searches_of``). This
-    is where the part lies, the locators, and what pegs touch on rows and on columns.
+    The lie of the part, locator contacts, and contacts on rows and columns are computed once for all
+    searches, which come from :func:`make_searches`.
     """
     one = searches[0]
     problem = one.problem
-    lying = one.lying_on(edge)
-    locators = one.on_rows(edge, lying, problem.standing, one.rows_of(lying, problem.standing))
+    lying = one.lay_on_edge(edge)
+    locators = one.find_contacts_on_rows(
+        edge, lying, problem.standing, one.list_row_heights(lying, problem.standing)
+    )
     for search in searches:
         search.locators += len(locators)
     if len(locators) == 0:
@@ -327,20 +357,24 @@ def find_fixtures_on_edge(
     if along:
         places = locators
         if problem.moving != problem.standing:
-            places = one.on_rows(edge, lying, problem.moving, one.rows_of(lying, problem.moving))
+            places = one.find_contacts_on_rows(
+                edge, lying, problem.moving, one.list_row_heights(lying, problem.moving)
+            )
         for search in along:
-            for part in search.of_rows(places, locators):
+            for part in search.pair_contacts_on_rows(places, locators):
                 if len(part):
-                    yield search, search.closing(edge, lying, locators, part)
-    for part in one.on_columns(lying, locators) if upright else ():
+                    yield search, search.find_closing_pairs(edge, lying, locators, part)
+    for part in one.pair_contacts_on_columns(lying, locators) if upright else ():
         for search in upright:
-            pushing = part.take(search.may_press(part.places))
+            pushing = part.take(search.find_pressing_tips(part.places))
             if len(pushing):
-                yield search, search.closing(edge, lying, locators, pushing)
+                yield search, search.find_closing_pairs(edge, lying, locators, pushing)
 
 
-def reach_of(rows: Array, upward: bool) -> tuple[float, float]:
-    """Least and largest v, or u, of features (F, 12)."""
+def bound_reach(rows: Array, upward: bool) -> tuple[float, float]:
+    """Return the least and the largest v (``upward``) or u in
+    mm of features (F, 12); of arcs those of the whole circle.
+    """
     place = rows[:, 2 if upward else 1]
     extent = np.where(
         rows[:, IS_ARC] != 0.0, rows[:, 6], rows[:, 5] * np.abs(rows[:, AXIS_Y if upward else AXIS_X])

@@ -21,15 +21,15 @@ from workhold.conventions import GAP_SLACK, LEAST_SPAN, SAME_PLACE
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.listing.clamp_contacts import make_contacts_on_wall
 from workhold.listing.clamp_placement import find_last_holes
-from workhold.listing.results import RankedTable, Work
+from workhold.listing.results import RankedTable, SearchWork
 from workhold.listing.seats import ClampedSeats, Seats, make_seats
 from workhold.listing.wall_fixtures import WallFixtures, find_first_of_each, turn_points
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.notes import NoFixture, NoPair, NoPlace, Note
 from workhold.model.query import Query
-from workhold.model.search_report import AT_AN_EDGE, Undecided
-from workhold.model.wall_ends import find_common_stretch, list_hull_touches, wall_ends
-from workhold.proof.deciding import Account
+from workhold.model.search_report import AT_AN_EDGE, UndecidedCandidate
+from workhold.model.wall_ends import find_common_stretch, find_wall_ends, list_hull_touches
+from workhold.proof.deciding import SearchReport
 from workhold.search.broken_rules import find_program_line_in_the_way
 from workhold.search.flush_search import FlushSearch
 from workhold.search.lattice_pairs import (
@@ -39,7 +39,7 @@ from workhold.search.lattice_pairs import (
     select_pressed_pairs,
 )
 from workhold.search.shares import has_body_to_pass, select_one_clamp
-from workhold.search.wall_search import find_fixtures_on_edge, searches_of
+from workhold.search.wall_search import find_fixtures_on_edge, make_searches
 
 __all__ = ["LatticePairSearch", "WallShares"]
 
@@ -51,27 +51,29 @@ TOGETHER = 1 << 20
 
 @define(eq=False)
 class LatticePairSearch(FlushSearch):
-    """The pairs of pegs of a sliding lattice that press a part against a wall."""
+    """The search for pairs of pegs of a sliding lattice that press a part against a wall."""
 
     @property
-    def alone(self) -> Toolkit:
-        """The toolkit with an endless wall."""
+    def pair_toolkit(self) -> Toolkit:
+        """Toolkit with a wall without ends."""
         toolkit = self.problem.toolkit
-        return toolkit.without([limit for limit in toolkit.limits if limit.bounds == "reach"])
+        return toolkit.without_limits([limit for limit in toolkit.limits if limit.bounds == "reach"])
 
     @property
-    def touches(self) -> bool:
-        """Whether two pegs can touch the part: where all faces are square, that is not what is missing."""
+    def can_touch(self) -> bool:
+        """Whether two pegs can touch the part; also True where all
+        faces are square, since then closure is what is missing.
+        """
         return self.is_square or self.examined > 0
 
     @property
     def lattice(self) -> Carrier:
-        """The lattice that slides."""
+        """Sliding lattice."""
         return self.problem.toolkit.moving
 
-    def fixtures(self, edge: int) -> Iterator[LatticePairs]:
-        """The pairs that press the part as it lies on a hull edge, some at a time."""
-        problem, lying = self.problem, self.lying_on(edge)
+    def iterate_fixtures(self, edge: int) -> Iterator[LatticePairs]:
+        """Yield, in batches, the pairs of pegs that press the part as it lies on a hull edge."""
+        problem, lying = self.problem, self.lay_on_edge(edge)
         for pairs in find_pairs_on_edge(
             lying, self.lattice.pitch, find_last_holes(self.lattice), problem.contact_margin
         ):
@@ -79,26 +81,28 @@ class LatticePairSearch(FlushSearch):
             self.examined += len(pairs)
             self.verified += len(good)
             self.escalated += sharpened
-            self.undecided += [self.entry(pairs, k, edge) for k in open_.tolist()]
+            self.undecided += [self.make_undecided(pairs, k, edge) for k in open_.tolist()]
             if self.explains:
-                self.look_at(compute_pair_closure(pairs, lying, problem)[0], edge)
+                self.keep_nearest_of(compute_pair_closure(pairs, lying, problem)[0], edge)
             yield good
 
-    def look_at(self, pairs: LatticePairs, edge: int) -> None:
-        """Keeps the nearest of pairs on a hull edge, given with their forces."""
+    def keep_nearest_of(self, pairs: LatticePairs, edge: int) -> None:
+        """Keep the nearest of pairs on a hull edge, given with
+        their forces, see :meth:`FlushSearch.keep_nearest`.
+        """
         # Forces are given per unit of the lattice's, which there has to be.
         is_none = np.abs(pairs.null[:, :2].sum(axis=1)) < LEAST_SPAN
         first = np.zeros(1, np.int64)
-        self.look_nearer(
-            pairs.null, is_none, lambda chosen: self.table(pairs.take(chosen), edge, first, first)
+        self.keep_nearest(
+            pairs.null, is_none, lambda chosen: self.make_table(pairs.take(chosen), edge, first, first)
         )
 
-    def placed(self, parts: list[LatticePairs], edge: int) -> FixtureTable:
-        """Pairs as the lattice holds them, each once.
+    def place_fixtures(self, parts: list[LatticePairs], edge: int) -> FixtureTable:
+        """Return the table of the pairs that the lattice can hold within its travel and rows, each once.
 
-        Its lowest peg is in row 0, or farther back where it opens no wider.
+        The lower peg is in row 0, or in a later row where the lattice cannot open so wide.
         """
-        pairs = listed_once(LatticePairs.concatenate(parts))
+        pairs = list_pairs_once(LatticePairs.concatenate(parts))
         travel, rows = self.lattice.travel, find_last_holes(self.lattice)[1]
         assert travel is not None
         pitch = self.lattice.pitch[1]
@@ -110,20 +114,22 @@ class LatticePairSearch(FlushSearch):
             np.abs(pairs.step[:, 1]) + back <= rows
         )
         pairs, back, first = pairs.take(fits), back[fits], np.zeros(int(fits.sum()), np.int64)
-        wall = self.problem.toolkit.reaching
+        wall = self.problem.toolkit.wall_with_ends
         if wall is not None and wall.reach is not None:
-            first, pairs = self.on_jaw(pairs, edge, wall.reach)
+            first, pairs = self.choose_jaw_columns(pairs, edge, wall.reach)
             holds = first >= 0
             pairs, back, first = pairs.take(holds), back[holds], first[holds]
-        return self.table(pairs, edge, back, first)
+        return self.make_table(pairs, edge, back, first)
 
-    def on_jaw(
+    def choose_jaw_columns(
         self, pairs: LatticePairs, edge: int, reach: tuple[float, float]
     ) -> tuple[NDArray[np.int64], LatticePairs]:
-        """The column of each pair's first peg in which a jaw with ends holds the part best, -1 where in none.
+        """Return the column (N,) of each pair's first peg in
+        which a wall with ends holds the part best, and the pairs.
 
-        With it come the pairs with the forces at the ends of the common stretch. Where the wall's force acts
-        does not depend on how far it reaches, so a column holds whose stretch has that place inside.
+        -1 where no column holds it: the point where the wall's force acts must be inside the common stretch
+        of wall and part. The best column has the longest common stretch, nearest to the wall's middle. The
+        pairs get the forces at the ends of that stretch. ``reach`` is from where to where the wall is, in mm.
         """
         flush, pitch = self.problem.workpiece.flush, self.lattice.pitch[0]
         columns, first = self.lattice.column_count, np.full(len(pairs), -1, np.int64)
@@ -154,12 +160,13 @@ class LatticePairSearch(FlushSearch):
             null[some, :2] = both[some, None] * np.stack([1.0 - share, share], axis=1)
         return first, evolve(pairs, null=null)
 
-    def table(
+    def make_table(
         self, pairs: LatticePairs, edge: int, back: NDArray[np.int64], first: NDArray[np.int64]
     ) -> FixtureTable:
-        """The table of pairs on a hull edge, their lowest rows so far (N,) back, first pegs in columns (N,).
+        """Return the table of pairs on a hull edge, with lower pegs in
+        rows ``back`` (N,) and first pegs in columns ``first`` (N,).
 
-        Only the closure margin is known.
+        Of the figures of quality only the closure margin is known, the others are NaN.
         """
         flush, problem, count = self.problem.workpiece.flush, self.problem, len(pairs)
         column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
@@ -167,10 +174,10 @@ class LatticePairSearch(FlushSearch):
         row[:, 2], row[:, 3] = np.maximum(-pairs.step[:, 1], 0) + back, np.maximum(pairs.step[:, 1], 0) + back
         theta = np.full(count, flush.theta[edge])
         start = turn_points(np.tile(flush.ends[edge, 0], (count, 1)), theta)
-        across, level = self.lattice.place(first, 0)
+        across, level = self.lattice.compute_hole_center(first, 0)
         share = pairs.null / pairs.null.sum(axis=1, keepdims=True)
         position = np.stack([across - pairs.point[:, 0, 0], np.zeros(count)], axis=1) - start
-        wall = wall_ends(problem.workpiece, problem.toolkit, theta, position).face
+        wall = find_wall_ends(problem.workpiece, problem.toolkit, theta, position).face
         return FixtureTable(
             arrangement=np.zeros(count, np.int8),
             column=column,
@@ -183,33 +190,32 @@ class LatticePairSearch(FlushSearch):
             quality=make_unknown_quality(share.min(axis=1, initial=1.0)),
         )
 
-    def entry(self, pairs: LatticePairs, number: int, edge: int) -> Undecided:
-        """A pair that is not decided, for the account."""
+    def make_undecided(self, pairs: LatticePairs, number: int, edge: int) -> UndecidedCandidate:
+        """Return the entry of the search report for undecided pair ``number``."""
         flush, step = self.problem.workpiece.flush, pairs.step[number].tolist()
         one, other = self.problem.faces[pairs.feature[number]].tolist()
         title, rows = self.problem.toolkit.arrangements[0].title, (0, 0, max(-step[1], 0), max(step[1], 0))
         faces, columns = (*flush.face[edge].tolist(), one, other), (0, 0, 0, step[0])
-        return Undecided(title, faces, columns, rows, float(np.degrees(flush.theta[edge])), AT_AN_EDGE, 0.0)
+        return UndecidedCandidate(
+            title, faces, columns, rows, float(np.degrees(flush.theta[edge])), AT_AN_EDGE, 0.0
+        )
 
 
-def listed_once(pairs: LatticePairs) -> LatticePairs:
-    """One of the pairs that are the same.
-
-    Contacts at a tangent joint are found on both features that meet there.
-    """
+def list_pairs_once(pairs: LatticePairs) -> LatticePairs:
+    """Return the pairs, each once: contacts at a tangent joint are found on both features that meet there."""
     place = pairs.point.reshape(-1, 4) @ np.array([1.0, 0.7548776662, 0.5698402910, 0.4301597090])
     return pairs.take(find_first_of_each((*pairs.step.T,), place, pairs.feature))
 
 
 @define(eq=False)
 class WallShares:
-    """Hull edges on the wall, see ``search.shares.Locating``.
+    """The search beside a wall by hull edges, a ``search.shares.ShareSearch``.
 
     Parameters
     ----------
-    searches : of a locator with each direction of the clamp, or of the pegs of a lattice.
-    fixtures : the pairs that press the part on a hull edge, some at a time, each with its search.
-    collector : takes the fixtures, or the seats that they make with two clamps.
+    searches : one for each direction of the clamp, or that of a sliding lattice.
+    fixtures : yields, for a hull edge, (search, batch of pairs that press the part).
+    collector : takes the fixtures, or with two clamps the seats.
     cancel : when set, no further pairs of contacts are looked at.
     edges : numbers of the hull edges.
     """
@@ -224,14 +230,16 @@ class WallShares:
         self.edges = self.searches[0].edges
 
     @classmethod
-    def of(cls, query: Query, cancel: Event | None) -> WallShares:
-        """The shares of a query, with a sliding lattice, one clamp or two."""
+    def from_query(cls, query: Query, cancel: Event | None) -> WallShares:
+        """Return the shares of a query, with a sliding lattice, with one clamp, or with two."""
         toolkit, pairing = query.toolkit, query.toolkit.travels > 1
         if toolkit.moving.on is None:
-            search = LatticePairSearch(Problem.of(query))
+            search = LatticePairSearch(Problem.from_query(query))
             ranked = RankedTable(query, search.problem)
-            return cls([search], lambda edge: zip(repeat(search), search.fixtures(edge)), ranked, cancel)
-        searches = searches_of(
+            return cls(
+                [search], lambda edge: zip(repeat(search), search.iterate_fixtures(edge)), ranked, cancel
+            )
+        searches = make_searches(
             select_one_clamp(query, toolkit.ways[0]) if pairing else query, toolkit.ways, pairing
         )
         collector = (ClampedSeats if pairing else RankedTable)(query, searches[0].problem)
@@ -239,11 +247,13 @@ class WallShares:
 
     @property
     def shares(self) -> int:
-        """How many hull edges there are."""
+        """Number of hull edges."""
         return len(self.edges)
 
-    def look(self, share: int, progress: Progress | None) -> tuple[list[FixtureTable | Seats], bool]:
-        """The fixtures of each search, or the seats, on a hull edge."""
+    def search_share(self, share: int, progress: Progress | None) -> tuple[list[FixtureTable | Seats], bool]:
+        """Search one hull edge; return its fixtures as a table for
+        each search, or its seats, and whether it came to its end.
+        """
         edge, is_whole = self.edges[share], True
         found: dict[FlushSearch, list[Any]] = {search: [] for search in self.searches}
         for search, part in self.fixtures(edge):
@@ -261,39 +271,47 @@ class WallShares:
         tables: list[FixtureTable | Seats] = []
         for number, (search, parts) in enumerate(found.items()):
             if parts:
-                table = search.placed(parts, edge)
+                table = search.place_fixtures(parts, edge)
                 tables.append(evolve(table, arrangement=table.arrangement + np.int8(number)))
         return tables, is_whole
 
-    def account(self) -> Account:
-        """What became of all pairs of contacts so far."""
+    def make_account(self) -> SearchReport:
+        """Return the report on all pairs of contacts so far."""
         undecided = tuple(one for search in self.searches for one in search.undecided)
-        return Account(self.total("examined"), self.total("verified"), self.total("escalated"), 0, undecided)
+        return SearchReport(
+            self.sum_statistic("examined"),
+            self.sum_statistic("verified"),
+            self.sum_statistic("escalated"),
+            0,
+            undecided,
+        )
 
-    def total(self, name: str) -> int:
-        """A number of all searches together."""
+    def sum_statistic(self, name: str) -> int:
+        """Return the sum over all searches of a count, by the name of its attribute."""
         return sum(getattr(search, name) for search in self.searches)
 
-    def work(self, done: int, complete: bool) -> Work:
-        """How the search went; with one clamp each direction counts as a search of its own."""
+    def describe_work(self, done: int, complete: bool) -> SearchWork:
+        """Return the statistics of the search after ``done`` hull
+        edges; shared counts are multiplied by the number of directions.
+        """
         times = 1 if self.searches[0].problem.pairing else len(self.searches)
         statistics = {
             "features": times * len(self.searches[0].problem.rows),
             "hull_edges": times * done,
             "locator_places": times * self.searches[0].locators,
-            "contacts_examined": self.total("examined"),
+            "contacts_examined": self.sum_statistic("examined"),
         }
-        return Work(complete, statistics, cells=times * done)
+        return SearchWork(complete, statistics, cells=times * done)
 
-    def why_none(self) -> Note:
-        """Why a search that came to its end has no fixture."""
-        query, search, verified = self.collector.query, self.searches[0], self.total("verified")
+    def explain_no_fixture(self) -> Note:
+        """Return the note why a search that came to its end has no fixture."""
+        query, search, verified = self.collector.query, self.searches[0], self.sum_statistic("verified")
         wording, line = query.toolkit.wording, find_program_line_in_the_way(query)
         if isinstance(self.collector, RankedTable) and verified:
             return NoPlace(verified, wording, has_body_to_pass(query))
         if not self.edges:
             return NoFixture("shape", wording, line)
-        if not search.touches:
+        if not search.can_touch:
             return NoFixture("pair", wording, line)
         if isinstance(self.collector, ClampedSeats):
             return NoPair(self.collector.looked_at, verified)

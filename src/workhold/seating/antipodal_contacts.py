@@ -33,14 +33,19 @@ from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     MOTION,
     SECOND,
-    Given,
+    HeldPart,
 )
-from workhold.kernels.seating.parallel_and_concentric import ALPHA, at_tangencies, tangent_chords
-from workhold.seating.closing import filled, make_candidate
+from workhold.kernels.seating.parallel_and_concentric import ALPHA, write_at_tangencies, write_tangent_chords
+from workhold.seating.closing import fill_rows, make_candidate
 from workhold.seating.obstacle_boundary import ObstacleBoundary, contains
 from workhold.seating.pattern import Pattern
 
-__all__ = ["AntipodalContacts", "find_antipodal_candidates", "antipodal_contacts", "find_parallel_candidates"]
+__all__ = [
+    "AntipodalContacts",
+    "find_antipodal_candidates",
+    "find_antipodal_contacts",
+    "find_parallel_candidates",
+]
 
 Array = NDArray[np.float64]
 # mm. Shorter distances are none.
@@ -57,11 +62,12 @@ class AntipodalContacts:
 
     Parameters
     ----------
-    pieces : of each place what a peg there touches: one piece, or the two of a pocket.
-    one, two : places about the centre, in mm.
-    length : their distance along the outward normal of the second, below 0 where the normals point at each
-        other.
-    curvatures : of the pieces, in 1 / mm; None of a pocket.
+    pieces : for each place the numbers of the pieces that a peg there touches: one piece, or the two of a
+        pocket.
+    one, two : places about the part's centre, in mm.
+    length : distance d from the first place to the second along the second's outward normal in mm, negative
+        where the normals point at each other.
+    curvatures : of the pieces in 1 / mm, positive where convex; None for a pocket.
     """
 
     pieces: tuple[tuple[int, ...], tuple[int, ...]]
@@ -72,9 +78,9 @@ class AntipodalContacts:
 
     @cached_property
     def descent_direction(self) -> tuple[float, float, float]:
-        """The least second derivative of d in 1 / mm, and the direction along both pieces that has it.
+        """The least second derivative of d in 1 / mm, and the components of its direction along both pieces.
 
-        The derivative is NaN where both principal ones are below 0.
+        The derivative is NaN where both principal ones are negative.
         """
         d, (one, two) = self.length, self.curvatures
         if one is None or two is None:
@@ -86,12 +92,13 @@ class AntipodalContacts:
 
     @property
     def turned(self) -> AntipodalContacts:
-        """The contacts with the places exchanged."""
+        """The contacts with the two places exchanged."""
         return AntipodalContacts(self.pieces[::-1], self.two, self.one, self.length, self.curvatures[::-1])
 
 
-def antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
-    """All antipodal contacts of a part, from pegs that stand still to pegs that move.
+def find_antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
+    """Return all antipodal contacts of a part, the first place for a
+    peg that stands still, the second for one that moves.
 
     Those on parallel lines and on concentric arcs, which are whole families, are left out.
     """
@@ -112,17 +119,18 @@ def antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
         for signed in (d, -d) if d > SHORTEST else ():
             ux, uy = (wx - vx) / signed, (wy - vy) / signed
             if holds(boundary.pockets[v], -ux, -uy) and holds(boundary.pockets[w], ux, uy):
-                pieces = pocket_pieces(boundary, v), pocket_pieces(boundary, w)
+                pieces = list_pocket_pieces(boundary, v), list_pocket_pieces(boundary, w)
                 found.append(AntipodalContacts(pieces, (vx, vy), (wx, wy), signed, (None, None)))
     return found
 
 
-def pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ...]:
+def list_pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ...]:
+    """Return the numbers of the two pieces of a pocket."""
     return tuple(boundary.pocket_pieces[pocket].tolist())
 
 
 def holds(pocket: Array, x: float, y: float) -> bool:
-    """Whether a direction lies between the two normals of a pocket."""
+    """Return whether the direction (x, y) lies strictly between the two normals of a pocket, a row (6,)."""
     ax, ay, bx, by = pocket[2:6].tolist()
     cross = ax * by - ay * bx
     if abs(cross) < LEAST_SHARE:
@@ -131,12 +139,14 @@ def holds(pocket: Array, x: float, y: float) -> bool:
 
 
 def bend(row: Array) -> float:
-    """Curvature of a piece in 1 / mm, above 0 where it is convex."""
+    """Return the curvature of a piece in 1 / mm, positive where it is convex."""
     return 0.0 if row[IS_ARC] == 0.0 else float(row[SIGN] / row[RADIUS])
 
 
-def reached(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float, float]:
-    """The place of a piece's carrier with normal u; on a line it is the foot of a point."""
+def find_place_with_normal(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float, float]:
+    """Return the point of a piece's line or circle with outward
+    normal u; on a line it is the foot of the point (x, y).
+    """
     if row[IS_ARC] != 0.0:
         return row[X] + row[SIGN] * row[RADIUS] * ux, row[Y] + row[SIGN] * row[RADIUS] * uy
     d = (row[X] - x) * ux + (row[Y] - y) * uy
@@ -144,6 +154,7 @@ def reached(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float
 
 
 def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
+    """Return the antipodal contacts of the pieces a and b; none for two lines."""
     one, two = rows[a], rows[b]
     if one[IS_ARC] == 0.0 and two[IS_ARC] == 0.0:
         return []
@@ -152,15 +163,15 @@ def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts
     elif two[IS_ARC] == 0.0:
         ways = [(two[AXIS_Y], -two[AXIS_X])]
     else:
-        ways = between(two[X] - one[X], two[Y] - one[Y])
+        ways = list_directions_between(two[X] - one[X], two[Y] - one[Y])
     found = []
     for ux, uy in ways:
         if one[IS_ARC] != 0.0:
-            p = reached(one, -ux, -uy, 0.0, 0.0)
-            q = reached(two, ux, uy, *p)
+            p = find_place_with_normal(one, -ux, -uy, 0.0, 0.0)
+            q = find_place_with_normal(two, ux, uy, *p)
         else:
-            q = reached(two, ux, uy, 0.0, 0.0)
-            p = reached(one, ux, uy, *q)
+            q = find_place_with_normal(two, ux, uy, 0.0, 0.0)
+            p = find_place_with_normal(one, ux, uy, *q)
         d = (q[0] - p[0]) * ux + (q[1] - p[1]) * uy
         if abs(d) > SHORTEST and contains(one, *p) and contains(two, *q):
             found.append(AntipodalContacts(((a,), (b,)), p, q, d, (bend(one), bend(two))))
@@ -168,30 +179,40 @@ def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts
 
 
 def find_antipodal_in_pocket(boundary: ObstacleBoundary, pocket: int, b: int) -> list[AntipodalContacts]:
-    """The antipodal contacts of a pocket and piece b: normals of b that press a peg into the pocket."""
+    """Return the antipodal contacts of a pocket and piece b: normals of b that press a peg into the
+    pocket.
+    """
     row, (x, y) = boundary.rows[b], boundary.pockets[pocket, :2].tolist()
-    ways = [(row[AXIS_Y], -row[AXIS_X])] if row[IS_ARC] == 0.0 else between(row[X] - x, row[Y] - y)
+    ways = (
+        [(row[AXIS_Y], -row[AXIS_X])]
+        if row[IS_ARC] == 0.0
+        else list_directions_between(row[X] - x, row[Y] - y)
+    )
     found = []
     for ux, uy in ways:
-        q = reached(row, ux, uy, x, y)
+        q = find_place_with_normal(row, ux, uy, x, y)
         d = (q[0] - x) * ux + (q[1] - y) * uy
         if abs(d) > SHORTEST and contains(row, *q) and holds(boundary.pockets[pocket], -ux, -uy):
             found.append(
-                AntipodalContacts((pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, bend(row)))
+                AntipodalContacts(
+                    (list_pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, bend(row))
+                )
             )
     return found
 
 
-def between(x: float, y: float) -> list[tuple[float, float]]:
-    """Both directions of a line between two points, none of one point."""
+def list_directions_between(x: float, y: float) -> list[tuple[float, float]]:
+    """Return the unit vectors along (x, y) and against it; an empty list where its length is about 0."""
     size = hypot(x, y)
     return [] if size < SHORTEST / 10.0 else [(x / size, y / size), (-x / size, -y / size)]
 
 
 def find_antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
-    """Candidates (N, 24) of a peg of each jaw on antipodal contacts, with the direction in which S falls.
+    """Return candidates (N, 24) of one peg of each jaw on antipodal
+    contacts, with the direction in which S falls.
 
-    Where it falls in two directions, the second derivative is NaN.
+    Where S falls in two directions, the second derivative is NaN. S is the jaw separation in mm. See
+    ``kernels.seating.columns`` for the layout of candidates.
     """
     out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in product(range(len(pegs)), repeat=2):
@@ -199,19 +220,24 @@ def find_antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> A
             continue
         run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
         least = abs(rise) * (1.0 + 1e-12)
-        for normal in boundary.once(antipodal_contacts):
+        for normal in boundary.find_once(find_antipodal_contacts):
             if abs(normal.length) <= least:
                 continue
             omega = asin(rise / normal.length)
             separation = normal.length * cos(omega) - run
-            if pattern.reaches(separation):
-                out.append(pressed(pattern, normal, i, j, omega, separation))
+            if pattern.is_reachable(separation):
+                out.append(make_pressed_candidate(pattern, normal, i, j, omega, separation))
     return np.array(out).reshape(-1, CANDIDATE_LENGTH)
 
 
-def pressed(
+def make_pressed_candidate(
     pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: float, separation: float
 ) -> Array:
+    """Return the candidate (24,) of pegs i and j on antipodal contacts.
+
+    ``omega`` is the angle in radians of the line of contacts in the closing frame, ``separation`` S in mm.
+    See ``kernels.seating.columns`` for the layout of candidates.
+    """
     (px, py), (qx, qy), d = normal.one, normal.two, normal.length
     theta = omega - atan2((qy - py) / d, (qx - px) / d)
     c, s = cos(theta), sin(theta)
@@ -228,10 +254,12 @@ def pressed(
     return row
 
 
-def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: Given) -> list[Array]:
-    """Candidates (N, 24) of pegs of a jaw on a line and an arc, with a third peg on a parallel line.
+def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: HeldPart) -> list[Array]:
+    """Return arrays of candidates (N, 24) of two pegs of a jaw on a
+    line and an arc, with a third peg on a parallel line.
 
-    The third line may be the first line itself.
+    There is an array for each ordered pair of pegs with such candidates. The third line may be the first line
+    itself. See ``kernels.seating.columns`` for the layout of candidates.
     """
     out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in permutations(range(len(pegs)), 2):
@@ -242,22 +270,22 @@ def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given
         )
         if len(chords):
             reach = chords, pattern.stop, pattern.widest, given
-            out.append(filled(CANDIDATE_LENGTH, 256, at_tangencies, i, j, *reach))
+            out.append(fill_rows(CANDIDATE_LENGTH, 256, write_at_tangencies, i, j, *reach))
     return out
 
 
 def find_chord_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Array:
-    """Tangencies (C, 5) of the chords of a length, for pegs of a jaw.
+    """Return the tangencies (C, 5) of chords of length d mm, for pegs of a jaw; kept with the boundary.
 
-    See ``kernels.seating.parallel_and_concentric``.
+    See ``kernels.seating.parallel_and_concentric`` for the columns.
     """
-    known, key = boundary.once(tangencies), (round(d, 9), jaw)
+    known, key = boundary.find_once(make_tangency_cache), (round(d, 9), jaw)
     if key not in known:
         first, end = boundary.parts[jaw].tolist()
-        known[key] = filled(ALPHA + 1, 256, tangent_chords, boundary.pieces, first, end, d)
+        known[key] = fill_rows(ALPHA + 1, 256, write_tangent_chords, boundary.pieces, first, end, d)
     return known[key]
 
 
-def tangencies(_: ObstacleBoundary) -> dict[tuple[float, int], Array]:
-    """Room for the tangencies on a part, by the length of the chord and the jaw."""
+def make_tangency_cache(_: ObstacleBoundary) -> dict[tuple[float, int], Array]:
+    """Return an empty cache of the tangencies on a part, by length of the chord and jaw."""
     return {}

@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 
 from workhold.kernels.seating.closing import AT_REST
 from workhold.kernels.seating.descent_paths import AT_SEAT, SAME_LEVEL
-from workhold.kernels.seating.free_space import MOST_CROSSINGS, MOST_INTERVALS, free_poses
-from workhold.seating.closing import LONGEST_STEP, Closing
-from workhold.seating.join_tree import distances
+from workhold.kernels.seating.free_space import MOST_CROSSINGS, MOST_INTERVALS, write_free_poses
+from workhold.seating.closing import LONGEST_STEP, ClosingMotion
+from workhold.seating.join_tree import measure_distances
 
-__all__ = ["CagingSet", "Extents"]
+__all__ = ["CagingSet", "PoseExtents"]
 
 Array = NDArray[np.float64]
 # mm. How long the first steps of paths are.
@@ -44,7 +44,7 @@ FARTHEST = np.array([pi, 100.0, 100.0, 0.0])
 
 
 @define(eq=False)
-class Extents:
+class PoseExtents:
     """The extremes of the poses of a cage that were found so far.
 
     Parameters
@@ -52,12 +52,12 @@ class Extents:
     closing : the jaws about the part.
     seat : (4,) configuration.
     most : the largest S in mm.
-    come_home : whether closing leads home from configurations (N, 4).
-    reach : (3, 2) least and largest turn in radians, and shifts in mm.
+    come_home : returns, for configurations (N, 4), whether closing leads home from each.
+    reach : (3, 2) least and largest turn in radians, and shifts in x and y in mm, from the seat.
     ends : (N, 4) configurations in which paths ended, all in the cage.
     """
 
-    closing: Closing
+    closing: ClosingMotion
     seat: Array
     most: float
     come_home: Callable[[Array], NDArray[np.bool_]]
@@ -66,17 +66,19 @@ class Extents:
 
     @property
     def farthest(self) -> Array:
-        """(6, 4) the ends that lie farthest each way."""
+        """The ends (6, 4) with the least theta, x and y, then with the largest."""
         return np.array(
             self.ends[np.append(self.ends[:, :3].argmin(axis=0), self.ends[:, :3].argmax(axis=0))]
         )
 
     def widen(self, starts: Array) -> None:
-        """Follows paths from configurations (N, 4) in the cage, and widens the extremes by their ends."""
+        """Follow paths from configurations (N, 4) in the cage along all
+        aims; add their ends, and widen ``reach`` by these.
+        """
         configs, aims = np.repeat(starts, len(AIMS), axis=0), np.tile(AIMS, (len(starts), 1))
         longest = LONGEST_STEP * min(self.closing.pattern.radii)
         for _ in range(TRIES):
-            ends, left = self.along(configs, aims, longest)
+            ends, left = self.follow_aims(configs, aims, longest)
             self.ends = np.vstack([self.ends, ends])
             off = ends[:, :3] - self.seat[:3]
             self.reach[:, 0] = np.minimum(self.reach[:, 0], off.min(axis=0))
@@ -86,12 +88,15 @@ class Extents:
             if not left.any():
                 return
 
-    def along(self, configs: Array, aims: Array, longest: float) -> tuple[Array, NDArray[np.bool_]]:
-        """The last configurations on paths along aims (N, 4) from which closing leads home.
+    def follow_aims(self, configs: Array, aims: Array, longest: float) -> tuple[Array, NDArray[np.bool_]]:
+        """Return, for each path along an aim, the last configuration from which closing leads home.
+
+        S is the jaw separation in mm.
 
         Parameters
         ----------
-        longest : how long steps are at most, in mm.
+        configs, aims : (N, 4) starts, and unit vectors of (theta size, x, y, S).
+        longest : greatest length of a step, in mm.
 
         Returns
         -------
@@ -100,7 +105,9 @@ class Extents:
         """
         size = self.closing.size
         far = aims @ (self.seat * [size, 1.0, 1.0, 0.0]) + np.abs(aims) @ (size * FARTHEST)
-        nodes, begins = self.closing.reached(configs, aims, far, min(FIRST_STEP, longest), longest, self.most)
+        nodes, begins = self.closing.move_along_aims(
+            configs, aims, far, min(FIRST_STEP, longest), longest, self.most
+        )
         inside, outside = np.array(begins[:-1]), begins[1:] - 1
         left = ~self.come_home(nodes[outside, :4])
         inside[~left] = outside[~left]
@@ -132,27 +139,30 @@ class CagingSet:
     closing : the jaws about the part.
     seat : (4,) configuration.
     seats : (M, 4) configurations of all seats.
-    opening : in mm, a hair less than to the pass.
-    to_pass : (3,) from the seat to the pass, which belongs to the cage's edge.
+    opening : in mm, slightly less than to the pass.
+    to_pass : (3,) turn in radians and shifts in mm from the seat to the pass, which is at the cage's edge.
     arm : R, largest distance in mm of a point of the silhouette from the centre of its box.
     """
 
-    closing: Closing
+    closing: ClosingMotion
     seat: Array
     seats: Array
     opening: float
     to_pass: Array
     arm: float
 
-    def poses(self, half: Array, lean: float, middle: Array | None = None) -> Array:
-        """Free poses (N, 5) on a grid of half sizes (2,), nearest first: distance, theta, x, y, S.
+    def list_free_poses(self, half: Array, lean: float, middle: Array | None = None) -> Array:
+        """Return free poses (N, 5) on a grid of half sizes (2,), nearest
+        first: distance in mm, theta, x, y, S.
 
-        The grid lies about the seat, or about a configuration with the seat's x and S.
+        The grid lies about the seat, or about ``middle``, a configuration with the seat's x and S. Its middle
+        height rises by ``lean`` mm per radian. See ``kernels.seating.free_space.write_free_poses`` for the
+        distance. S is the jaw separation in mm.
         """
         out = np.empty((12 * CELLS * CELLS, 5))
         work = np.empty((MOST_CROSSINGS, 2)), np.empty((2, MOST_INTERVALS, 2))
         step, obstacles = 2.0 * half / CELLS, self.closing.obstacles
-        count = free_poses(
+        count = write_free_poses(
             self.seat if middle is None else middle,
             self.opening,
             CELLS,
@@ -165,38 +175,38 @@ class CagingSet:
         )
         return out[:count][np.argsort(out[:count, 0], kind="stable")]
 
-    def come_home(self, configs: Array) -> NDArray[np.bool_]:
-        """Whether closing the jaws from configurations (N, 4) ends in the seat."""
-        ended, how = self.closing.run(configs, FIRST_STEP, self.seats)
-        near = distances(ended, self.seat, self.closing.size) < AT_SEAT
+    def find_homecoming(self, configs: Array) -> NDArray[np.bool_]:
+        """Return, for each configuration (N, 4), whether closing the jaws from it ends in the seat."""
+        ended, how = self.closing.close_from(configs, FIRST_STEP, self.seats)
+        near = measure_distances(ended, self.seat, self.closing.size) < AT_SEAT
         return np.asarray(near & (how == AT_REST) & (np.abs(ended[:, 3] - self.seat[3]) < SAME_LEVEL))
 
     @property
-    def extents(self) -> Extents:
-        """The extremes of the poses of the cage, as far as paths lead to them."""
+    def extents(self) -> PoseExtents:
+        """The extremes of the poses of the cage, as far as paths lead to them; computed at each access."""
         reach = np.stack([np.minimum(self.to_pass, 0.0), np.maximum(self.to_pass, 0.0)], axis=1)
-        found = Extents(self.closing, self.seat, self.seat[3] + self.opening, self.come_home, reach)
+        found = PoseExtents(self.closing, self.seat, self.seat[3] + self.opening, self.find_homecoming, reach)
         found.widen(self.seat[None])
         for _ in range(FITS):
             before = np.array(found.reach)
-            found.widen(self.starts(found))
+            found.widen(self.list_path_starts(found))
             if (np.abs(found.reach - before).max(axis=1) <= SETTLED * np.ptp(found.reach, axis=1)).all():
                 break
         return found
 
-    def starts(self, found: Extents) -> Array:
-        """Configurations (N, 4) in the cage from which paths begin.
+    def list_path_starts(self, found: PoseExtents) -> Array:
+        """Return configurations (N, 4) in the cage from which further paths begin.
 
-        They are those found that lie farthest and, of poses on a grid about all of them, the ends of x in
-        some cells.
+        They are the farthest ones found and, of free poses on a grid about all of them, those with the least
+        and the largest x in each of some cells.
         """
         middle, half = found.reach.mean(axis=1), np.ptp(found.reach, axis=1) / 2.0
         turn, up = (found.ends[:, k] - self.seat[k] - middle[k] for k in (0, 2))
         lean = float(np.clip((turn @ up) / max(turn @ turn, 1e-12), -STEEPEST, STEEPEST))
         half = np.maximum([half[0], np.abs(up - lean * turn).max()], LEAST)
         config = self.seat + np.array([middle[0], 0.0, middle[2], 0.0])
-        poses = self.poses(np.minimum(ROOM * half, [pi, np.inf]), lean, config)[:, 1:]
-        poses = poses[self.come_home(poses)]
+        poses = self.list_free_poses(np.minimum(ROOM * half, [pi, np.inf]), lean, config)[:, 1:]
+        poses = poses[self.find_homecoming(poses)]
         turn, up = poses[:, 0] - config[0], poses[:, 2] - config[2]
         across, along = np.floor(CHOSEN / half[:, None] * [turn, up - lean * turn])
         order = np.lexsort((poses[:, 1], along, across))
@@ -208,15 +218,15 @@ class CagingSet:
     def placing(self) -> float:
         """The least |shift| + 2 R sin(|turn| / 2) in mm of a free pose from which closing does not lead home.
 
-        It is no more than that of the pass.
+        It is at most that of the pass; computed at each access.
         """
         turn = abs((self.to_pass[0] + pi) % tau - pi)
         own = float(np.hypot(*self.to_pass[1:]) + 2.0 * self.arm * np.sin(turn / 2.0))
-        poses = self.poses(np.array([2.0 * asin(min(own / 2.0 / self.arm, 1.0)), own]), 0.0)
+        poses = self.list_free_poses(np.array([2.0 * asin(min(own / 2.0 / self.arm, 1.0)), own]), 0.0)
         poses = poses[poses[:, 0] < own]
         for start in range(0, len(poses), TOGETHER):
             part = poses[start : start + TOGETHER]
-            home = self.come_home(part[:, 1:])
+            home = self.find_homecoming(part[:, 1:])
             if not home.all():
                 return float(part[np.argmin(home), 0])
         return own

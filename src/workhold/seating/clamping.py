@@ -36,43 +36,43 @@ from numpy.typing import NDArray
 from workhold.conventions import NO_REACTION
 from workhold.errors import join_words
 from workhold.fixels.toolkit import Carrier, Toolkit
-from workhold.kernels.seating.sticking import least_friction
+from workhold.kernels.seating.sticking import find_least_friction
 from workhold.limits import MOST_FRICTION
 from workhold.model.clamps import (
     LOCATORS,
     compute_clamp_force_ratio,
+    describe_tightening_order,
     name_clamps,
     name_first_clamps,
-    order_words,
 )
-from workhold.model.fixture import Fixture, Pair, Peg
-from workhold.model.seating import DRY_STEEL, length
+from workhold.model.fixture import ClampPair, Fixture, Peg
+from workhold.model.seating import DRY_STEEL, round_length
 from workhold.model.setup import LengthSetting, list_length_settings
 from workhold.model.workpiece import Workpiece
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.loads import find_contacts_on_part, make_cone_edges
 from workhold.units import MILLIMETRE
 
 __all__ = [
     "WHY",
-    "ByHand",
+    "HandLoading",
     "Gauge",
     "OpeningWords",
-    "by_hand",
-    "sticking_friction",
+    "plan_hand_loading",
+    "find_sticking_friction",
     "find_sticking_friction_of_two",
 ]
 
 
 @frozen
 class OpeningWords:
-    """Words for opening and closing what moves.
+    """The words for opening and closing a jaw or clamp, as parts of sentences.
 
     Parameters
     ----------
-    open, close : so that the part can be put in, and so that it is held.
+    open, close : imperatives: so that the part can be put in, and so that it is held.
     done, far : that it is open, and how far.
-    hold, whose : how it holds the part, and whose way is meant.
+    hold, whose : that it holds the part, and its possessive.
     """
 
     open: str
@@ -99,7 +99,7 @@ class Gauge:
 
     Parameters
     ----------
-    fixture, toolkit : whose.
+    fixture, toolkit : the fixture, and the toolkit that it is made of.
     """
 
     fixture: Fixture
@@ -107,29 +107,31 @@ class Gauge:
 
     @property
     def carrier(self) -> Carrier:
+        """The carrier that moves."""
         carriers = (self.toolkit.find_carrier(peg.carrier) for peg in self.fixture.pegs)
         return next(carrier for carrier in carriers if carrier.travel is not None)
 
     @property
     def setting(self) -> LengthSetting:
-        """What is read in the fixture's own pose."""
+        """The length that is read in the fixture's own pose."""
         return list_length_settings(self.fixture, self.toolkit)[0]
 
     @property
-    def ways(self) -> OpeningWords:
+    def opening_words(self) -> OpeningWords:
+        """The words for opening and closing this toolkit's jaw or clamp."""
         return VISE[self.toolkit.clamping] if self.carrier.on is None else CLAMP
 
     @property
     def grows(self) -> bool:
-        """Whether more is read as what moves is opened: a stroke gets less."""
-        return self.at(self.fixture.travel + self.toolkit.clamping) > self.setting.length
+        """Whether the reading grows as the jaw or clamp is opened; a stroke becomes smaller."""
+        return self.compute_reading(self.fixture.travel + self.toolkit.clamping) > self.setting.length
 
-    def pegs(self, travelled: float) -> tuple[Peg, ...]:
-        """The pegs, with what moves elsewhere on its way.
+    def place_pegs(self, travelled: float) -> tuple[Peg, ...]:
+        """Return the fixture's pegs with those that move at another travel.
 
         Parameters
         ----------
-        travelled : how far it has gone, in mm, such as the jaw separation.
+        travelled : travel of the moving carrier in mm, such as the jaw separation.
         """
         moving = self.carrier
         assert moving.travel is not None
@@ -139,8 +141,8 @@ class Gauge:
             for peg in self.fixture.pegs
         )
 
-    def at(self, travelled: float) -> float:
-        """What is read there, in mm.
+    def compute_reading(self, travelled: float) -> float:
+        """Return the reading in mm at a travel of the moving carrier in mm.
 
         Examples
         --------
@@ -148,10 +150,10 @@ class Gauge:
         >>> from workhold.model.fixture import Pose
         >>> tip = Peg("clamp -x", 4, 1, 66.0, 20.0, 2, 1.0)
         >>> fixture = Fixture("clamp", (tip,), Pose(0, 0, 0), -14.0, {}, "-x")
-        >>> Gauge(fixture, Plate(pitch=20, peg_radius=3, travel=(10, 30))).at(-12.5)
+        >>> Gauge(fixture, Plate(pitch=20, peg_radius=3, travel=(10, 30))).compute_reading(-12.5)
         12.5
         """
-        moved = evolve(self.fixture, pegs=self.pegs(travelled), travel=travelled)
+        moved = evolve(self.fixture, pegs=self.place_pegs(travelled), travel=travelled)
         return list_length_settings(moved, self.toolkit)[0].length
 
 
@@ -164,10 +166,11 @@ BALANCED = 1e-10
 PRECISION = 1e-9
 
 
-def sticking_friction(points: Array, normals: Array, right: Array) -> float:
-    """The least friction at which three of four contacts, or two, balance the jaw; infinite if there is none.
+def find_sticking_friction(points: Array, normals: Array, right: Array) -> float:
+    """Return the least friction coefficient at which two or three of
+    four contacts balance the jaw; inf if there is none.
 
-    Contact points (4, 2) are in mm in the vise frame, normals (4, 2) outward and of length 1. ``right`` (4,)
+    Contact points (4, 2) are in mm in the vise frame, normals (4, 2) are outward unit vectors. ``right`` (4,)
     is 1 for contacts of the right jaw's pegs, 0 for others.
     """
     size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
@@ -177,23 +180,25 @@ def sticking_friction(points: Array, normals: Array, right: Array) -> float:
         np.asarray(right, dtype=np.int64),
     )
     return float(
-        least_friction(*contacts, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4)))
+        find_least_friction(*contacts, np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 4)), np.empty((4, 4)))
     )
 
 
 def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """The least friction at which two clamps, in their working ratio, balance without one of the locators.
+    """Return the least friction coefficient at which two clamps, in
+    their working ratio, balance without some locator.
 
-    It is infinite where they balance at none up to ``MOST_FRICTION``.
+    Return inf where they balance at none up to ``MOST_FRICTION``.
     """
     ratio = compute_clamp_force_ratio(fixture)
-    touched = Touched.of(workpiece, toolkit)
+    touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
     contacts = find_contacts_on_part(
-        fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit)
+        fixture, workpiece, toolkit, touched, touched.compute_for_fixture(fixture, toolkit)
     )
     low, high = 0.0, MOST_FRICTION
 
     def sticks(friction: float) -> bool:
+        """Return whether the clamps balance without some locator at a friction coefficient."""
         edges, share = make_cone_edges(*contacts, friction, touched.length)
         return balances_without_a_locator(edges, share, ratio)
 
@@ -206,13 +211,13 @@ def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolki
 
 
 def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool:
-    """Whether forces balance two clamps that push in a ratio, without one of three locators.
+    """Return whether two clamps that push in a ratio balance without one, any one, of the three locators.
 
     If there is a solution that is not negative, one has no more entries above zero than there are equations
-    (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of so many entries are tried.
+    (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of that many entries are tried.
 
-    Edges and shares, see ``statics.loads.make_cone_edges``, are of five pegs, the clamps last. The ratio is the
-    second clamp's force over the first's.
+    ``edges`` and ``share``, see ``statics.loads.make_cone_edges``, are of five pegs, the clamps last.
+    ``ratio`` is the second clamp's force over the first's.
     """
     count = len(edges) // 2
     clamps = [np.isin(np.arange(2 * count) % count, [k]) * share for k in (LOCATORS, LOCATORS + 1)]
@@ -243,14 +248,14 @@ SMALL = 0.1
 
 
 @frozen(repr=False)
-class ByHand:
-    """How to put a part into two clamps, and what is known of it there.
+class HandLoading:
+    """Instructions to put a part into two clamps by hand, and what is known of it there.
 
     Parameters
     ----------
-    fixture, toolkit : what holds it.
+    fixture, toolkit : what holds the part.
     sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at
-        their working ratio. It is infinite where the part always does, and None for pegs with a flat.
+        their working ratio. It is inf where the part always does, and None for pegs with a flat.
     """
 
     fixture: Fixture
@@ -263,21 +268,22 @@ class ByHand:
             if self.sticking_friction is None
             else f", sticks from a friction of {self.sticking_friction:.3f}"
         )
-        return f"<ByHand of {self.fixture}{friction}>"
+        return f"<HandLoading of {self.fixture}{friction}>"
 
     @property
-    def pair(self) -> Pair:
+    def pair(self) -> ClampPair:
+        """The fixture's pair of clamps."""
         assert self.fixture.pair is not None
         return self.fixture.pair
 
     @property
     def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
-        """The locators, and ends of the contact with a wall, without force under each clamp alone."""
+        """For each of the two clamps, the locators and wall ends without force under this clamp alone."""
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
-    def as_fields(self, text: Callable[[float], str] = MILLIMETRE.format_length) -> dict[str, Any]:
-        """What is known and what to do, as JSON has it, with clamps and locators by their names.
+    def to_fields(self, text: Callable[[float], str] = MILLIMETRE.format_length) -> dict[str, Any]:
+        """Return all facts and steps as JSON has them, with clamps and locators by their names.
 
         Parameters
         ----------
@@ -287,29 +293,29 @@ class ByHand:
             "clamps": list(name_clamps(self.fixture)),
             "first": list(name_first_clamps(self.fixture)),
             "unpressed": [[peg.hole for peg in pegs] for pegs in self.unpressed],
-            "ratio": [length(end) for end in self.pair.ratio],
-            "working_ratio": length(self.pair.working_ratio),
-            "sticking_friction": length(self.sticking_friction),
+            "ratio": [round_length(end) for end in self.pair.ratio],
+            "working_ratio": round_length(self.pair.working_ratio),
+            "sticking_friction": round_length(self.sticking_friction),
             "why": WHY,
-            "steps": self.steps(text),
+            "steps": self.list_steps(text),
         }
 
-    def steps(
+    def list_steps(
         self, text: Callable[[float], str] = MILLIMETRE.format_length, with_order: bool = True
     ) -> list[str]:
-        """What to do at the machine, and what to look at, one step each.
+        """Return the steps at the machine, each a text of some sentences, in order.
 
         Parameters
         ----------
         text : writes a length in mm with its unit.
-        with_order : whether the order of tightening is among the steps; some papers have it elsewhere.
+        with_order : whether the order of tightening is among the steps; some sheets have it elsewhere.
         """
-        order = [order_words(self.fixture)] if with_order else []
-        steps = [self.push_words(), self.touch_words(), " ".join([*order, self.hold_words()])]
-        return [*steps, *self.friction_words(), self.after_words(text)]
+        order = [describe_tightening_order(self.fixture)] if with_order else []
+        steps = [self.describe_push(), self.describe_touch(), " ".join([*order, self.describe_hold()])]
+        return [*steps, *self.describe_friction(), self.describe_final_check(text)]
 
-    def push_words(self) -> str:
-        """How to put the part in, in one step."""
+    def describe_push(self) -> str:
+        """Return the step that puts the part in."""
         locators = [peg.hole for peg in self.fixture.placed[: -self.toolkit.tips]]
         noun = self.toolkit.carriers[0].peg
         in_holes = f"all three {noun}s, " if len(locators) == LOCATORS else f"the {noun} in "
@@ -317,35 +323,37 @@ class ByHand:
         against = " and against ".join([*flush, in_holes + join_words(locators)])
         ways = (self.fixture.direction or "").split()
         # Of clamps that push against each other neither shows the way.
-        way = "" if len({name[1] for name in ways}) < len(set(ways)) else f" {self.towards}"
+        way = "" if len({name[1] for name in ways}) < len(set(ways)) else f" {self.direction_words}"
         return f"Draw both clamps back and push the part{way} by hand until it lies against {against}."
 
     @property
-    def towards(self) -> str:
+    def direction_words(self) -> str:
         """The direction in which both clamps push, in words."""
-        return self.toolkit.find_arrangement(self.fixture.type, self.fixture.direction).towards
+        return self.toolkit.find_arrangement(self.fixture.type, self.fixture.direction).direction_words
 
-    def touch_words(self) -> str:
-        """How to see that it lies right."""
+    def describe_touch(self) -> str:
+        """Return the step that checks with slips of paper that the part lies against all locators."""
         touched = join_words(
-            [f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]]
+            [f"{peg.touching} at {name_place(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]]
         )
         out = "If no slip comes out, the part lies against all of them."
         return f"Pull at a slip of paper at each of these: {touched}. {out}"
 
-    def hold_words(self) -> str:
-        """Until when to hold the part."""
+    def describe_hold(self) -> str:
+        """Return the sentence that says until when to hold the part, and
+        which locators a clamp alone does not press it on.
+        """
         hold = "Hold the part in its place until both clamps are tight"
         first, names = name_first_clamps(self.fixture), name_clamps(self.fixture)
         loose = [
-            f"{name} alone does not press it on {join_words(places_of(pegs, self.toolkit))}"
+            f"{name} alone does not press it on {join_words(name_places(pegs, self.toolkit))}"
             for name, pegs in zip(names, self.unpressed, strict=True)
             if name in first
         ]
         return f"{hold}: {', and '.join(loose)}." if loose else f"{hold}."
 
-    def friction_words(self) -> list[str]:
-        """What friction does, one sentence or none."""
+    def describe_friction(self) -> list[str]:
+        """Return the sentence about friction in a list, empty where the sticking friction is not known."""
         least, (first, second) = self.sticking_friction, name_clamps(self.fixture)
         if least is None:
             return []
@@ -368,8 +376,8 @@ class ByHand:
             f"under both clamps, {together}; {steel}, so tap it home as you tighten."
         ]
 
-    def after_words(self, text: Callable[[float], str]) -> str:
-        """What to look at in the end."""
+    def describe_final_check(self, text: Callable[[float], str]) -> str:
+        """Return the last step: repeat the paper test, and compare the lengths at the clamps."""
         settings = list_length_settings(self.fixture, self.toolkit)
         names = name_clamps(self.fixture)
         lengths = [
@@ -379,25 +387,27 @@ class ByHand:
         return f"Try the paper again. The right lengths are {join_words(lengths)}; {wrong}."
 
 
-def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
-    """How to put a part into the two clamps of a fixture, and what is known of it there."""
+def plan_hand_loading(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> HandLoading:
+    """Return the hand loading of a fixture with two clamps."""
     friction = None if toolkit.has_flats else find_sticking_friction_of_two(fixture, workpiece, toolkit)
-    return ByHand(fixture, toolkit, friction)
+    return HandLoading(fixture, toolkit, friction)
 
 
-def place_of(peg: Peg, toolkit: Toolkit) -> str:
-    """Where a locator is, or an end of the contact with a wall."""
+def name_place(peg: Peg, toolkit: Toolkit) -> str:
+    """Return the words for the place of a locator (its hole) or of an end of the contact with a wall."""
     carrier = toolkit.find_carrier(peg.carrier)
     if carrier.contact.is_placed:
         return peg.hole
     return f"the {carrier.noun} on the {peg.hole.rpartition(' ')[2]}"
 
 
-def places_of(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
-    """Where some locators are; both ends of the contact with a wall are the wall."""
+def name_places(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
+    """Return the words for the places of some locators; both ends of
+    the contact with a wall together are the wall.
+    """
     carriers = [toolkit.find_carrier(peg.carrier) for peg in pegs]
     walls = [one.noun for one in carriers if not one.contact.is_placed]
     if len(walls) < 2:
-        return [place_of(peg, toolkit) for peg in pegs]
+        return [name_place(peg, toolkit) for peg in pegs]
     placed = [peg.hole for peg, one in zip(pegs, carriers, strict=True) if one.contact.is_placed]
     return [f"the {walls[0]}", *placed]

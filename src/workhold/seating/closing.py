@@ -26,7 +26,7 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.kernels.seating.closing import close_jaws, reach_out
+from workhold.kernels.seating.closing import close_jaws, move_along_aims
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     CONFIG,
@@ -40,24 +40,28 @@ from workhold.kernels.seating.columns import (
     Obstacles,
 )
 from workhold.kernels.seating.descent_paths import begin_descents
-from workhold.kernels.seating.free_space import RANGES, leave
+from workhold.kernels.seating.free_space import RANGES, write_escape_directions
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern
 
 __all__ = [
     "LONGEST_STEP",
-    "Closing",
+    "ClosingMotion",
     "DescentCache",
     "DescentPaths",
     "make_candidate",
     "find_descent_starts",
-    "filled",
-    "with_room",
+    "fill_rows",
+    "ensure_room",
 ]
 
 
-def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
-    """The rows that a kernel writes into its last argument, which is made larger until it has room."""
+def fill_rows(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
+    """Return the rows that a kernel writes into its last argument, an array of shape (rows, ``width``).
+
+    Begin with ``room`` rows, and call the kernel again with four times as many as long as it returns a
+    negative number.
+    """
     while True:
         out = np.empty((room, width))
         count = kernel(*arguments, out)
@@ -66,8 +70,10 @@ def filled(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -
         room *= 4
 
 
-def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
-    """An array with room for more rows: itself, or a copy of twice the length."""
+def ensure_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
+    """Return an array with room for ``more`` rows after its first
+    ``count``: itself, or a larger copy of these.
+    """
     if count + more <= len(rows):
         return rows
     out = np.empty((2 * (count + more), *rows.shape[1:]), rows.dtype)
@@ -78,7 +84,11 @@ def with_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
 def make_candidate(
     config: NDArray[np.float64] | tuple[float, ...], contacts: Sequence[tuple[int, int]]
 ) -> NDArray[np.float64]:
-    """A candidate (24,) without forces: theta, x, y and S, and the pegs that touch, each with its piece."""
+    """Return a candidate (24,) without forces, with configuration
+    (theta, x, y, S) and (peg, piece) of each contact.
+
+    S is the jaw separation in mm. See ``kernels.seating.columns`` for the layout of candidates.
+    """
     row = np.zeros(CANDIDATE_LENGTH)
     row[CONFIG] = config
     row[CONTACTS], row[PEG : PEG + 4], row[PIECE : PIECE + 4] = len(contacts), -1.0, -1.0
@@ -96,13 +106,13 @@ USUAL = 128
 
 
 @define(frozen=True, eq=False, slots=False)
-class Closing:
+class ClosingMotion:
     """The jaws of a pattern about a part.
 
     Parameters
     ----------
     boundary, pattern : of the part and the pegs.
-    size : of the part in mm.
+    size : of the part in mm; a turn in radians times this is compared with shifts.
     """
 
     boundary: ObstacleBoundary
@@ -112,100 +122,115 @@ class Closing:
     @cached_property
     def obstacles(self) -> Obstacles:
         """The part and the pegs, as kernels take them."""
-        return self.boundary.obstacles(self.pattern, self.size, self.pattern.end(2.0 * self.size))
+        return self.boundary.make_obstacles(
+            self.pattern, self.size, self.pattern.find_least_separation(2.0 * self.size)
+        )
 
-    def run(
+    def close_from(
         self, configs: Array, first: float | Array, seats: Array = NO_SEATS, level: float | None = None
     ) -> tuple[Array, NDArray[np.int8]]:
-        """Where configurations (N, 4) of theta, x, y and S end, and how: ``kernels.seating.closing``.
+        """Return where closing leads from configurations (N, 4) of theta,
+        x, y and S, and how each path ends (N,).
+
+        How is GAVE_UP, AT_REST or AT_THE_STOP of ``kernels.seating.closing``. S is the jaw separation in mm.
 
         Parameters
         ----------
-        first : how long the first steps are, in mm, or (N, 2) of each path: of linear programs, and along
-            both faces.
+        first : lengths of the first steps in mm: a number, or (N, 2) for each path: of linear programs, and
+            along both faces.
         seats : (M, 4) configurations at which closing is known to end.
-        level : S in mm down to which the jaws close; the pattern's end if None.
+        level : S in mm down to which the jaws close; None for the pattern's stop.
         """
         obstacles = self.obstacles
         if level is not None:
             obstacles = obstacles._replace(stop=max(level, obstacles.stop))
         out, lengths = np.array(configs, dtype=np.float64), np.empty((len(configs), 2))
         lengths[:] = first
-        ends, _, _ = self.closed(out, lengths, obstacles, seats, 0)
+        ends, _, _ = self.trace_paths_into(out, lengths, obstacles, seats, 0)
         return out, ends
 
-    def followed(
+    def trace_paths(
         self, configs: Array, first: Array, seats: Array
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int8]]:
-        """The descent paths from configurations (N, 4), with first steps (N, 2) in mm; see ``run``.
+        """Return the descent paths from configurations (N, 4), with first
+        steps (N, 2) in mm; see :meth:`close_from`.
+
+        See ``kernels.seating.columns`` for the layout of nodes.
 
         Returns
         -------
         tuple
-            Nodes (M, 10), where those of each path begin and, last, end, and how the paths end.
+            Nodes (M, 10), numbers (N + 1,) of the first node of each path and, last, M, and how the paths end
+            (N,).
         """
         room = USUAL * len(configs)
         while True:
-            ends, begins, nodes = self.closed(np.array(configs), first, self.obstacles, seats, room)
+            ends, begins, nodes = self.trace_paths_into(np.array(configs), first, self.obstacles, seats, room)
             if begins[-1] <= room:
                 return nodes[: begins[-1]], begins, ends
             room = int(begins[-1])
 
-    def closed(
+    def trace_paths_into(
         self, configs: Array, lengths: Array, obstacles: Obstacles, seats: Array, room: int
     ) -> tuple[NDArray[np.int8], NDArray[np.int64], Array]:
-        """How descent paths end, where their nodes begin, and the nodes, as far as there is room.
+        """Follow descent paths; return how they end (N,), numbers
+        (N + 1,) of their first nodes, and nodes (``room``, 10).
 
-        The configurations are moved to the ends of the paths.
+        ``configs`` are replaced by the ends of the paths. Nodes for which there is no room are not written,
+        but counted.
         """
         ends, begins, nodes = (
             np.zeros(len(configs), np.int8),
             np.empty(len(configs) + 1, np.int64),
             np.empty((room, NODE_LENGTH)),
         )
-        work = DescentWorkSpace.for_pieces(len(obstacles.rows))
+        work = DescentWorkSpace.allocate(len(obstacles.rows))
         known = seats[np.argsort(seats[:, 3], kind="stable")]
         most = LONGEST_STEP * min(self.pattern.radii)
         close_jaws(configs, lengths, most, obstacles, known, work, ends, begins, nodes)
         return ends, begins, nodes
 
-    def reached(
+    def move_along_aims(
         self, configs: Array, aims: Array, far: Array, first: float, longest: float, most: float
     ) -> tuple[Array, NDArray[np.int64]]:
-        """Paths along aims on which no peg enters the part, from configurations (N, 4).
+        """Return paths from configurations (N, 4) along aims, on which no peg enters the part.
+
+        S is the jaw separation in mm. See ``kernels.seating.columns`` for the layout of nodes.
 
         Parameters
         ----------
-        aims, far : (N, 4) and (N,), as there.
-        first, longest : how long the first steps and all of them are, in mm.
+        aims, far : (N, 4) and (N,), see ``kernels.seating.closing.move_along_aims``.
+        first, longest : greatest length of the first steps and of all steps, in mm.
         most : the largest S, in mm.
 
         Returns
         -------
         tuple
-            Nodes (M, 10), and where those of each path begin and, last, end.
+            Nodes (M, 10), and numbers (N + 1,) of the first node of each path and, last, M.
         """
         obstacles, begins = self.obstacles._replace(most=most), np.empty(len(configs) + 1, np.int64)
         room = USUAL * len(configs)
-        work = DescentWorkSpace.for_pieces(len(obstacles.rows))
+        work = DescentWorkSpace.allocate(len(obstacles.rows))
         while True:
             nodes = np.empty((room, NODE_LENGTH))
-            reach_out(np.array(configs), aims, far, first, longest, obstacles, work, begins, nodes)
+            move_along_aims(np.array(configs), aims, far, first, longest, obstacles, work, begins, nodes)
             if begins[-1] <= room:
                 return nodes[: begins[-1]], begins
             room = int(begins[-1])
 
-    def escape(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-        """Whether the part can be taken straight away from all pegs in configurations (N, 4), jaws standing.
+    def find_escaping(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+        """Return, for configurations (N, 4), whether the part can be
+        taken straight away from all pegs while the jaws stand.
 
-        It is false of configurations that are not asked for (N,).
+        False for configurations that are not asked for (``asked`` (N,) is False).
         """
-        return ~np.isnan(self.directions_away(configs, asked))
+        return ~np.isnan(self.find_escape_directions(configs, asked))
 
-    def directions_away(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
-        """The directions (N,) in radians, of pegs on the part, in which it can be taken away.
+    def find_escape_directions(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
+        """Return directions (N,) in radians in which the pegs move on the
+        part, in its frame, when it is taken away.
 
-        NaN where there is none, and of configurations that are not asked for (N,).
+        NaN where there is none, and for configurations that are not asked for (``asked`` (N,) is False).
         """
         out, obstacles = np.zeros(len(configs)), self.obstacles
         if asked is not None:
@@ -213,16 +238,20 @@ class Closing:
         if len(out):
             room = RANGES * len(obstacles.pegs) * len(obstacles.rows) + 1
             axes, ranges = np.empty(len(obstacles.rows)), np.empty((room, 2))
-            leave(np.ascontiguousarray(configs), obstacles, axes, ranges, out)
+            write_escape_directions(np.ascontiguousarray(configs), obstacles, axes, ranges, out)
         return out
 
-    def leaves(self, starts: Array, ends: Array, stopped: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Whether a part can be taken away where paths ended that met the stop (N,), or where they began.
+    def find_leaving_at_stop(
+        self, starts: Array, ends: Array, stopped: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """Return, for paths that met the stop, whether the part can be
+        taken away at their ends or at their starts.
 
-        What can be taken away at first can be, wherever closing the jaws leads.
+        ``starts`` and ``ends`` are (N, 4), ``stopped`` (N,); False for other paths. A part that can be taken
+        away at first can be, wherever closing the jaws leads.
         """
-        away = self.escape(ends, stopped)
-        return np.asarray(away | self.escape(starts, stopped & ~away))
+        away = self.find_escaping(ends, stopped)
+        return np.asarray(away | self.find_escaping(starts, stopped & ~away))
 
 
 IntArray = NDArray[np.int64]
@@ -231,9 +260,11 @@ ROOM = 65_536
 
 
 def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
-    """Where descent paths begin, to one and the other side of each of some passes (N, 24).
+    """Return where descent paths begin, at both sides of each of some
+    passes (N, 24): rows 2 n and 2 n + 1 of pass n.
 
-    Configurations (2 N, 4), and how long the first steps are in mm (2 N, 2).
+    They are configurations (2 N, 4), and lengths of the first steps in mm (2 N, 2). ``size`` is the part's in
+    mm. See ``kernels.seating.columns`` for the layout of candidates.
     """
     starts, lengths = np.empty((2 * len(rows), 4)), np.empty((2 * len(rows), 2))
     begin_descents(np.ascontiguousarray(rows), size, starts, lengths)
@@ -244,15 +275,16 @@ def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
 class DescentCache:
     """The descent paths of all subsets of pegs on a part, as far as they were followed.
 
-    What was written stays where it is: whoever has read how much there is reads it while others add to it.
+    Entries that are written stay where they are: a thread that has read the counts can read the entries while
+    others add to them.
 
     Parameters
     ----------
-    numbers : (C, 2) of the paths off both sides of each candidate, -1 as long as they are not known.
+    numbers : (C, 2) numbers of the paths from both sides of each candidate, -1 as long as they are not known.
     nodes : (M, 10) along all paths: ``kernels.seating.columns``.
-    begins : (W + 1,) where the nodes of each path begin and, last, end.
+    begins : (W + 1,) number of the first node of each path and, last, of all nodes.
     how : (W,) how each path ends: ``kernels.seating.closing``.
-    counts : how many candidates, nodes and paths there are: there is room for more.
+    counts : numbers of candidates, nodes and paths; arrays may have more rows.
     """
 
     numbers: IntArray = field(factory=lambda: np.zeros((0, 2), np.int64))
@@ -262,24 +294,26 @@ class DescentCache:
     counts: tuple[int, int, int] = (0, 0, 0)
     lock: Lock = field(factory=Lock)
 
-    def with_candidates(self, count: int) -> int:
-        """Makes room for so many further candidates, and returns the number of the first."""
+    def reserve_candidates(self, count: int) -> int:
+        """Make room for ``count`` further candidates, and return the number of the first."""
         with self.lock:
             first, nodes, paths = self.counts
-            self.numbers = with_room(self.numbers, first, count)
+            self.numbers = ensure_room(self.numbers, first, count)
             self.numbers[first : first + count] = -1
             self.counts = first + count, nodes, paths
         return first
 
-    def add(self, candidates: IntArray, nodes: Array, begins: IntArray, how: NDArray[np.int8]) -> None:
-        """Adds the paths off both sides of some candidates, with where they begin and how they end."""
+    def add_paths(self, candidates: IntArray, nodes: Array, begins: IntArray, how: NDArray[np.int8]) -> None:
+        """Add the paths from both sides of N candidates: their nodes,
+        numbers (2 N + 1,) of first nodes, and how they end.
+        """
         with self.lock:
             every, first, paths = self.counts
             self.nodes, self.how = (
-                with_room(self.nodes, first, len(nodes)),
-                with_room(self.how, paths, len(how)),
+                ensure_room(self.nodes, first, len(nodes)),
+                ensure_room(self.how, paths, len(how)),
             )
-            self.begins = with_room(self.begins, paths + 1, len(how))
+            self.begins = ensure_room(self.begins, paths + 1, len(how))
             self.nodes[first : first + len(nodes)] = nodes
             self.begins[paths + 1 : paths + len(begins)] = first + begins[1:]
             self.how[paths : paths + len(how)] = how
@@ -295,26 +329,29 @@ class DescentPaths:
     ----------
     closing : the jaws with these pegs alone.
     candidates : (N, 24) their equilibria.
-    cache : what was followed so far.
+    cache : holds the paths that were followed so far.
     first : number of the first candidate in the cache.
     """
 
-    closing: Closing
+    closing: ClosingMotion
     candidates: Array
     cache: DescentCache
     first: int = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.first = self.cache.with_candidates(len(self.candidates))
+        self.first = self.cache.reserve_candidates(len(self.candidates))
 
     def follow(self, numbers: IntArray) -> None:
+        """Follow the paths from candidates, given by their numbers in the
+        cache, and add the paths to the cache.
+        """
         # Another thread may follow some at the same time: then both are there, and are the same.
         starts, first = find_descent_starts(self.candidates[numbers - self.first], self.closing.size)
-        self.cache.add(numbers, *self.closing.followed(starts, first, self.seats))
+        self.cache.add_paths(numbers, *self.closing.trace_paths(starts, first, self.seats))
 
     @cached_property
     def seats(self) -> Array:
-        """Configurations (M, 4) of the candidates at which closing ends for certain."""
+        """The configurations (M, 4) of the candidates at which closing certainly ends."""
         every = self.candidates
         is_seat = (every[:, DOUBT] == 0.0) & ((every[:, SECOND] > 0.0) | (every[:, CONTACTS] == 4.0))
         return np.asarray(every[is_seat][:, CONFIG])

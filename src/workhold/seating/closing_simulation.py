@@ -19,16 +19,16 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 from workhold.kernels.seating.closing import AT_THE_STOP, GAVE_UP
 from workhold.kernels.seating.descent_paths import AT_SEAT, SAME_LEVEL
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.seating import Seat
-from workhold.seating.closing import Closing
-from workhold.seating.join_tree import distances
+from workhold.seating.closing import ClosingMotion
+from workhold.seating.join_tree import measure_distances
 from workhold.seating.pattern import ClosingFrame, Pattern
-from workhold.seating.solver import Solver
+from workhold.seating.solver import SeatingSolver
 
 __all__ = ["ENDINGS", "ClosingSimulation", "simulate_closing"]
 
@@ -53,10 +53,10 @@ class ClosingSimulation:
 
     Parameters
     ----------
-    poses, travels : of the part, turned over where that was asked for, and of what moves in mm, such as the
-        jaw separation, one after the other.
+    poses : of the part, or of the part turned over where that was asked for, one after the other.
+    travels : of the jaw or clamp in mm for each pose, such as the jaw separation.
     ending : one of :data:`ENDINGS`.
-    seat : what it ended in, of the seats that were given; None where it ended in none of them.
+    seat : the given seat that it ended in; None where it ended in none of them.
     """
 
     poses: tuple[Pose, ...]
@@ -66,7 +66,7 @@ class ClosingSimulation:
 
 
 def simulate_closing(
-    solver: Solver,
+    solver: SeatingSolver,
     fixture: Fixture,
     seats: Sequence[Seat],
     pose: Pose,
@@ -74,54 +74,54 @@ def simulate_closing(
     turned_over: bool = False,
     is_cancelled: Callable[[], bool] = lambda: False,
 ) -> ClosingSimulation:
-    """Closes the jaws of a fixture from where the part was put.
+    """Return the path of a part while the jaws of a fixture close, from where it was put.
 
     Parameters
     ----------
-    seats : the fixture's, see :class:`workhold.model.seating.Seating`.
-    pose : of the part, of the part turned over (x to -x in its own frame) where that is asked for.
-    opening : how much farther than in the fixture the jaws stand open, or the clamp is drawn back, in mm.
+    seats : of the fixture, see :class:`workhold.model.seating.Seating`.
+    pose : of the part, or of the part turned over (x to -x in its own frame) where that is asked for.
+    opening : by how much more than in the fixture the jaws stand open, or the clamp is drawn back, in mm.
     is_cancelled : asked between steps; when it is true, the path ends where it is.
 
     Raises
     ------
     InputError
-        As ``Pattern.of``, and for a fixture of another part or toolkit. Also for jaws that meet their stop or
-        are opened beyond their end, and a part that a peg stands in.
+        As ``Pattern.from_fixture``, and for a fixture of another part or toolkit. Also for jaws that meet
+        their stop or are opened beyond their end, and a part that a peg stands in.
     """
     fixture.refuse_others(solver.workpiece, solver.toolkit)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    closing = solver.closing(pattern, turned_over)
-    center = Center(solver.workpiece.center, turned_over, pattern.frame)
-    start = center.config(pose, fixture.travel + solver.toolkit.clamping * opening)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    closing = solver.make_closing(pattern, turned_over)
+    center = CenterFrame(solver.workpiece.center, turned_over, pattern.frame)
+    start = center.make_configuration(pose, fixture.travel + solver.toolkit.clamping * opening)
     travel = solver.toolkit.moving.travel
     assert travel is not None
     if pattern.frame.sign > 0.0 and travel.most is not None and start[3] > travel.most + LEVEL:
         raise InputError("the jaw or clamp does not open so far: open it by less.")
     if not pattern.stop <= start[3] <= pattern.widest:
         raise InputError("pegs meet before the jaw or clamp gets there: open it more, or less.")
-    into = entered(solver, fixture, pattern, start, turned_over)
+    into = measure_entered_depth(solver, fixture, pattern, start, turned_over)
     # What is pushed out of a peg may be let go in a tighter place than it was put in; the jaws stand as they
     # stood.
     first = max(FIRST_STEP, into / STEPS_DEEP)
-    configs, how = closing.run(start[None], first, level=start[3])
+    configs, how = closing.close_from(start[None], first, level=start[3])
     if how[0] == GAVE_UP:
         raise InputError(
             "a peg stands in the part there, and there is no room beside it: put the part elsewhere."
         )
     path = follow(closing, configs[0], is_cancelled)
-    end, how = closing.run(path[-1][None], FIRST_STEP)
+    end, how = closing.close_from(path[-1][None], FIRST_STEP)
     path.append(end[0])
-    ending, seat = ended(solver, closing, center, end[0], int(how[0]), seats)
-    poses = tuple(center.pose(config) for config in path)
+    ending, seat = classify_ending(solver, closing, center, end[0], int(how[0]), seats)
+    poses = tuple(center.make_pose(config) for config in path)
     return ClosingSimulation(
         poses, tuple(pattern.frame.sign * float(config[3]) for config in path), ending, seat
     )
 
 
 @frozen
-class Center:
-    """The change between poses of a part and configurations of the middle of its box in a closing frame.
+class CenterFrame:
+    """The map between poses of a part and configurations of the centre of its box in a closing frame.
 
     Parameters
     ----------
@@ -136,34 +136,45 @@ class Center:
 
     @property
     def own(self) -> tuple[float, float]:
-        """The middle of the box of the part as it lies."""
+        """The centre of the box in the coordinates of the part as it lies, turned over or not, in mm."""
         x, y = self.middle
         return (-x, y) if self.turned_over else (x, y)
 
-    def config(self, pose: Pose, travelled: float) -> Array:
-        """(4,) theta in radians, x and y of the middle, and S."""
-        return self.frame.enter(np.array([radians(pose.theta_deg), *pose.apply(*self.own), travelled]))
+    def make_configuration(self, pose: Pose, travelled: float) -> Array:
+        """Return the configuration (4,) of a pose in the toolkit's frame:
+        theta in radians, x and y of the centre, S in mm.
 
-    def pose(self, config: Array) -> Pose:
-        """The pose of a configuration, turned by 0 to 360 degrees."""
-        left, (x, y) = self.frame.leave(config), self.own
+        S is the jaw separation in mm.
+        """
+        return self.frame.map_from_toolkit(
+            np.array([radians(pose.theta_deg), *pose.apply(*self.own), travelled])
+        )
+
+    def make_pose(self, config: Array) -> Pose:
+        """Return the pose of a configuration in the toolkit's frame, with theta from 0 to 360 degrees."""
+        left, (x, y) = self.frame.map_to_toolkit(config), self.own
         theta = float(left[0]) % tau
         c, s = cos(theta), sin(theta)
         return Pose(degrees(theta), float(left[1]) - (c * x - s * y), float(left[2]) - (s * x + c * y))
 
 
-def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool) -> float:
-    """The depth in mm to which a peg, or a wall, stands in the part in a configuration; 0 where none does.
+def measure_entered_depth(
+    solver: SeatingSolver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool
+) -> float:
+    """Return the depth in mm to which a peg or a wall is inside the part in a configuration; 0 where none is.
 
-    Refuses what is deeper than a part that is put by hand may go.
+    Raises
+    ------
+    InputError
+        Where that is deeper than ``ENTERS`` peg radii.
     """
     rows = solver.outline.rows
-    points = pattern.at(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
-    away = outline_distances(np.ascontiguousarray(points), rows)
+    points = pattern.place_pegs(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
+    away = measure_outline_distances(np.ascontiguousarray(points), rows)
     deepest = 0.0
     if pattern.half_plane is not None:
-        hull = solver.closing(pattern, turned_over).boundary.hull
-        deepest = max(-float(hull.clearance(config[None], pattern.half_plane)[0]), 0.0)
+        hull = solver.make_closing(pattern, turned_over).boundary.hull
+        deepest = max(-float(hull.compute_wall_clearance(config[None], pattern.half_plane)[0]), 0.0)
         if deepest > ENTERS * min(pattern.radii):
             raise InputError("the part lies in the fence there: put it clear of the fence.")
     pegs = [fixture.pegs[number] for number in pattern.numbers]
@@ -178,12 +189,16 @@ def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, t
     return deepest
 
 
-def follow(closing: Closing, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
-    """The descent path from a configuration, at levels of S."""
+def follow(closing: ClosingMotion, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
+    """Return the configurations (4,) along the descent path from a
+    configuration, at levels of S, the first included.
+
+    S is the jaw separation in mm.
+    """
     path = [config]
     while not is_cancelled() and len(path) < MOST:
         before = float(path[-1][3])
-        low = float(closing.run(path[-1][None], FIRST_STEP)[0][0, 3])
+        low = float(closing.close_from(path[-1][None], FIRST_STEP)[0][0, 3])
         # A path from level to level may take another turn than one without levels, and end lower.
         if before - low < LEVEL:
             break
@@ -196,33 +211,48 @@ def follow(closing: Closing, config: Array, is_cancelled: Callable[[], bool]) ->
     return path
 
 
-def follow_to_level(closing: Closing, path: list[Array], level: float, halvings: int) -> None:
-    """Follows a path on to a level, with levels between where the part moves far."""
+def follow_to_level(closing: ClosingMotion, path: list[Array], level: float, halvings: int) -> None:
+    """Extend a path in place down to the level of S, with
+    configurations at levels between where the part moves far.
+
+    S is the jaw separation in mm.
+    """
     before = path[-1]
     if level >= before[3]:
         return
-    after = closing.run(before[None], FIRST_STEP, level=level)[0][0]
-    if halvings and len(path) < MOST and distances(after[None], before, closing.size)[0] > FAR * closing.size:
+    after = closing.close_from(before[None], FIRST_STEP, level=level)[0][0]
+    if (
+        halvings
+        and len(path) < MOST
+        and measure_distances(after[None], before, closing.size)[0] > FAR * closing.size
+    ):
         follow_to_level(closing, path, (before[3] + float(after[3])) / 2.0, halvings - 1)
         follow_to_level(closing, path, level, halvings - 1)
     else:
         path.append(after)
 
 
-def ended(
-    solver: Solver, closing: Closing, center: Center, config: Array, how: int, seats: Sequence[Seat]
+def classify_ending(
+    solver: SeatingSolver,
+    closing: ClosingMotion,
+    center: CenterFrame,
+    config: Array,
+    how: int,
+    seats: Sequence[Seat],
 ) -> tuple[str, Seat | None]:
-    """What a path ended in: one of :data:`ENDINGS`, and the seat if it is one of those given."""
+    """Return one of :data:`ENDINGS` for a path that ended at
+    ``config``, and the given seat that it is in, or None.
+    """
     if how == GAVE_UP:
         return "lost", None
     if how == AT_THE_STOP:
-        return ("outside" if closing.escape(config[None])[0] else "stop"), None
+        return ("outside" if closing.find_escaping(config[None])[0] else "stop"), None
     best, found = inf, None
     for seat in seats:
-        there = center.config(seat.pose, seat.jaw_separation)
+        there = center.make_configuration(seat.pose, seat.jaw_separation)
         if seat.mirrored != center.turned_over or abs(there[3] - config[3]) > SAME_LEVEL:
             continue
-        away = float(distances(there[None], config, closing.size)[0])
+        away = float(measure_distances(there[None], config, closing.size)[0])
         # Where nothing locates the part, it may lie anywhere along what the seat is the middle of.
         if away < best and (away < AT_SEAT or seat.kind in ("loose", "unsettled")):
             best, found = away, seat

@@ -41,18 +41,22 @@ from workhold.kernels.seating.columns import (
     PIECE,
     SECOND,
     SEPARATION,
-    Given,
+    HeldPart,
     Manifolds,
     SelfMotions,
 )
-from workhold.kernels.seating.four_contacts import third_of_jaw, two_pairs
-from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, first_of_each, gathered
-from workhold.kernels.seating.parallel_and_concentric import about_one_center
-from workhold.kernels.seating.slides import slides_blocked, slides_held, slides_squared
-from workhold.kernels.seating.three_contacts import ROOT_LENGTH, three_contacts
+from workhold.kernels.seating.four_contacts import write_third_of_jaw, write_two_pairs
+from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, write_first_of_equals, write_gathered
+from workhold.kernels.seating.parallel_and_concentric import write_about_one_center
+from workhold.kernels.seating.slides import (
+    write_blocked_slides,
+    write_held_slides,
+    write_parallel_third_contacts,
+)
+from workhold.kernels.seating.three_contacts import ROOT_LENGTH, write_three_contacts
 from workhold.seating.antipodal_contacts import find_antipodal_candidates, find_parallel_candidates
-from workhold.seating.closing import Closing, DescentCache, DescentPaths, filled, with_room
-from workhold.seating.contact_forces import settle_on_wall, verdicts, with_forces
+from workhold.seating.closing import ClosingMotion, DescentCache, DescentPaths, ensure_room, fill_rows
+from workhold.seating.contact_forces import complete_with_forces, judge_candidates, settle_on_wall
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern, PegSubset, list_subsets
@@ -62,18 +66,18 @@ from workhold.seating.self_motions import (
     SLIDE_STEPS,
     ManifoldFinder,
     SelfMotion,
-    balance,
     find_motions_on_one_center,
     find_motions_on_one_line,
     find_motions_on_parallel_lines,
     find_pattern_motions,
-    joined,
-    turning,
+    is_balanced,
+    join_manifolds,
+    make_turning_motion,
 )
 from workhold.seating.two_contact_curves import TwoContactCurves
 from workhold.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, WallEquilibria, find_wall_candidates
 
-__all__ = ["Equilibria", "SubsetCache", "SubsetEquilibria", "equilibria", "find_subset_equilibria"]
+__all__ = ["Equilibria", "SubsetCache", "SubsetEquilibria", "find_equilibria", "find_subset_equilibria"]
 
 Array = NDArray[np.float64]
 # Subsets of which something is kept, and nodes of their descent paths, of 80 bytes; with more, all are
@@ -90,10 +94,11 @@ class SubsetEquilibria:
 
     Parameters
     ----------
-    first, end : where the subset's candidates stand among all that are kept. In them two or three contacts
-        balance; of pegs of one jaw three contacts fix the part, whose place is that at separation 0.
+    first, end : first and past-the-last number of the subset's candidates among all that are kept. In them
+        two or three contacts balance; for pegs of one jaw, three contacts fix the part, whose place is that
+        at separation 0.
     motions : self-motions of the part between the pegs.
-    descents : paths off the candidates, as far as they were followed.
+    descents : paths from the candidates, as far as they were followed.
     """
 
     first: int
@@ -108,10 +113,10 @@ class SubsetCache:
 
     Parameters
     ----------
-    found : those of each subset, by how its pegs stand.
+    found : those of each subset, by part size and ``PegSubset.key``.
     descents : their descent paths.
-    candidates : (C, 24) of all subsets; there is room for more. What was written stays where it is.
-    count : how many candidates there are.
+    candidates : (C, 24) of all subsets; there is room for more. Rows that are written stay where they are.
+    count : number of candidates.
     """
 
     found: dict[tuple[object, ...], SubsetEquilibria] = field(factory=dict)
@@ -120,31 +125,38 @@ class SubsetCache:
     count: int = 0
     lock: Lock = field(factory=Lock)
 
-    def with_candidates(self, rows: Array) -> int:
-        """Keeps further candidates (N, 24), and returns the number of the first."""
+    def add_candidates(self, rows: Array) -> int:
+        """Append candidates (N, 24), and return the number of the first.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         with self.lock:
             first = self.count
-            self.candidates = with_room(self.candidates, first, len(rows))
+            self.candidates = ensure_room(self.candidates, first, len(rows))
             self.candidates[first : first + len(rows)] = rows
             self.count += len(rows)
         return first
 
     @classmethod
-    def on(cls, boundary: ObstacleBoundary) -> SubsetCache:
-        """The cache of a part, or an empty one if that is full, which whoever has it goes on with."""
-        kept = boundary.once(cls.empty)
+    def find_for_boundary(cls, boundary: ObstacleBoundary) -> SubsetCache:
+        """Return the cache of a part, or a new empty one if that is full.
+
+        Callers that hold the full one go on with it.
+        """
+        kept = boundary.find_once(cls.make_empty)
         is_full = len(kept.found) >= MOST_KEPT or kept.descents.counts[1] > MOST_NODES
-        return boundary.once(cls.empty, anew=True) if is_full else kept
+        return boundary.find_once(cls.make_empty, anew=True) if is_full else kept
 
     @classmethod
-    def empty(cls, _: ObstacleBoundary) -> SubsetCache:
+    def make_empty(cls, _: ObstacleBoundary) -> SubsetCache:
+        """Return an empty cache."""
         return cls()
 
 
 def find_subset_equilibria(
     kept: SubsetCache, boundary: ObstacleBoundary, subset: PegSubset, size: float
 ) -> SubsetEquilibria:
-    """The equilibria of a subset, found now or before; ``size`` is the part's in mm."""
+    """Return the equilibria of a subset, from the cache or newly found; ``size`` is the part's in mm."""
     key = size, subset.key
     found = kept.found.get(key)
     if found is None:
@@ -157,93 +169,129 @@ def find_subset_equilibria(
         )
         candidates, motions = kind(boundary, subset, size)
         passes = NONE if subset.is_of_a_jaw else candidates
-        descents = DescentPaths(Closing(boundary, subset.pattern, size), passes, kept.descents)
-        first = kept.with_candidates(candidates)
+        descents = DescentPaths(ClosingMotion(boundary, subset.pattern, size), passes, kept.descents)
+        first = kept.add_candidates(candidates)
         found = kept.found[key] = SubsetEquilibria(first, first + len(candidates), motions, descents)
     return found
 
 
 def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Equilibria of a peg of each jaw: antipodal contacts, and self-motions along one line."""
-    pattern, given = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset).given
+    """Return the equilibria of one peg of each jaw: antipodal contacts, and self-motions along one line."""
+    pattern, given = subset.pattern, TwoContactCurves.from_one_jaw(boundary, subset).given
     candidates = find_antipodal_candidates(boundary, pattern)
-    return balance_candidates(candidates, given, size), ManifoldFinder(boundary, pattern).free(
+    return balance_candidates(candidates, given, size), ManifoldFinder(boundary, pattern).find_free_motions(
         find_motions_on_one_line(boundary, pattern)
     )
 
 
 def find_triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Equilibria of two pegs of a jaw and one of the other."""
+    """Return the equilibria of two pegs of a jaw and one of the other: candidates (N, 24) and self-motions.
+
+    See ``kernels.seating.columns`` for the layout of candidates.
+    """
     # The only peg of the other jaw has two contacts in pockets alone.
-    pattern, curves = subset.pattern, TwoContactCurves.of_jaw_alone(boundary, subset)
+    pattern, curves = subset.pattern, TwoContactCurves.from_one_jaw(boundary, subset)
     given, slides = curves.given, curves.slides
     [(known, _, _)] = curves.jaws.values()
     work = np.empty((DEPTH, 2)), np.empty((5, len(boundary.discs)))
     sought = known.cells, known.middles, curves.sought, boundary.discs, pattern.stop
-    roots = filled(ROOT_LENGTH, 1024, three_contacts, *sought, *work)
+    roots = fill_rows(ROOT_LENGTH, 1024, write_three_contacts, *sought, *work)
     candidates = [
-        filled(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, boundary.pocket_pieces),
-        *([filled(CANDIDATE_LENGTH, 256, slides_squared, slides, given)] if len(slides) else []),
+        fill_rows(CANDIDATE_LENGTH, len(roots) + 1, complete_three, roots, given, boundary.pocket_pieces),
+        *(
+            [fill_rows(CANDIDATE_LENGTH, 256, write_parallel_third_contacts, slides, given)]
+            if len(slides)
+            else []
+        ),
         *find_parallel_candidates(boundary, pattern, given),
-        filled(CANDIDATE_LENGTH, 64, about_one_center, given, pattern.stop, pattern.widest),
+        fill_rows(CANDIDATE_LENGTH, 64, write_about_one_center, given, pattern.stop, pattern.widest),
     ]
     every = np.concatenate(candidates)
     motions = [
         *find_motions_on_parallel_lines(boundary, pattern, slides, given),
         *find_motions_on_one_center(boundary, pattern),
     ]
-    reached = every[pattern.reaches(every[:, SEPARATION])]
-    return balance_candidates(reached, given, size), ManifoldFinder(boundary, pattern).free(motions)
+    reached = every[pattern.is_reachable(every[:, SEPARATION])]
+    return balance_candidates(reached, given, size), ManifoldFinder(boundary, pattern).find_free_motions(
+        motions
+    )
 
 
 def find_jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> Found:
-    """Poses that pegs of one jaw fix by three contacts: three pegs, or two of which one is in a pocket."""
-    curves, stack = TwoContactCurves.of_jaw_alone(boundary, subset), np.empty((DEPTH, 2))
+    """Return poses that pegs of one jaw fix by three contacts, as candidates (N, 24), and no self-motions.
+
+    The contacts are those of three pegs, or of two pegs with one in a pocket. See ``kernels.seating.columns``
+    for the layout of candidates.
+    """
+    curves, stack = TwoContactCurves.from_one_jaw(boundary, subset), np.empty((DEPTH, 2))
     [(known, _, _)] = curves.jaws.values()
-    roots = filled(
-        ROOT_LENGTH, 1024, third_of_jaw, known.cells, known.middles, curves.sought, boundary.discs, stack
+    roots = fill_rows(
+        ROOT_LENGTH,
+        1024,
+        write_third_of_jaw,
+        known.cells,
+        known.middles,
+        curves.sought,
+        boundary.discs,
+        stack,
     )
     fixed = [
-        filled(CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, curves.given, boundary.pocket_pieces),
-        filled(CANDIDATE_LENGTH, 256, slides_blocked, curves.slides, curves.given),
+        fill_rows(
+            CANDIDATE_LENGTH, len(roots) + 1, complete_third, roots, curves.given, boundary.pocket_pieces
+        ),
+        fill_rows(CANDIDATE_LENGTH, 256, write_blocked_slides, curves.slides, curves.given),
     ]
     return np.concatenate(fixed), NO_MOTIONS
 
 
-def balance_candidates(candidates: Array, given: Given, size: float) -> Array:
-    return np.asarray(candidates[verdicts(with_forces(candidates, given, size), inf, inf) != NO_BALANCE])
+def balance_candidates(candidates: Array, given: HeldPart, size: float) -> Array:
+    """Return the candidates (N, 24) whose contacts balance, or may,
+    with their forces; clearances do not count.
+
+    See ``kernels.seating.columns`` for the layout of candidates.
+    """
+    return np.asarray(
+        candidates[judge_candidates(complete_with_forces(candidates, given, size), inf, inf) != NO_BALANCE]
+    )
 
 
 def find_wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
+    """Return the loose sets of a part on a wall with contacts at the wall, as a list of ``Manifolds``."""
     wall = WallEquilibria(finder.boundary, finder.pattern)
     return find_wall_slides(finder, wall) + find_wall_turns(finder, wall)
 
 
 def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
-    """A hull edge on the wall and the tip on a face parallel to it, between the ends of the edge."""
+    """Return the loose sets with a hull edge on the wall and the tip
+    on a face parallel to it, within the edge's ends.
+
+    There are none where the tip does not push towards the wall.
+    """
     if wall.half_plane[0] <= 0.0:
         return []
     out, (tx, ty) = [], finder.pattern.pegs[TIP].tolist()
     for side, number in product(wall.sides, finder.lines):
-        row, theta = finder.rows[number], wall.outward() - side.angle
+        row, theta = finder.rows[number], wall.compute_outward_direction() - side.angle
         c, s = cos(theta), sin(theta)
         # Its normal is x.
         nx, ny = c * row[AXIS_Y] + s * row[AXIS_X], s * row[AXIS_Y] - c * row[AXIS_X]
-        if nx < 0.0 or abs(ny) > PARALLEL or not finder.boundary.fits(1, number):
+        if nx < 0.0 or abs(ny) > PARALLEL or not finder.boundary.can_touch(1, number):
             continue
-        known = wall.resting(side.pieces[0], theta)
+        known = wall.find_resting_place(side.pieces[0], theta)
         ends = sorted(float(s * x + c * y) for x, y in finder.boundary.hull.rows[list(side.pieces), :2])
         middle = s * row[X] + c * row[Y]
         low = max(ty - ends[1], ty - middle - row[HALF_EXTENT])
         high = min(ty - ends[0], ty - middle + row[HALF_EXTENT])
         separation = known + c * row[X] - s * row[Y] - tx
-        if high - low > SHORTEST and finder.pattern.reaches(separation, SHORTEST):
+        if high - low > SHORTEST and finder.pattern.is_reachable(separation, SHORTEST):
             every = np.ones(SLIDE_STEPS)
             configs = np.stack(
                 [theta * every, known * every, np.linspace(low, high, SLIDE_STEPS), separation * every],
                 axis=1,
             )
-            manifolds = finder.cut(finder.free([SelfMotion(configs, [(TIP, number)], False, None)]))
+            manifolds = finder.cut_into_manifolds(
+                finder.find_free_motions([SelfMotion(configs, [(TIP, number)], False, None)])
+            )
             for candidate in manifolds.rows:
                 name_both_edge_ends(candidate, wall, side)
             out.append(manifolds)
@@ -251,17 +299,22 @@ def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manif
 
 
 def name_both_edge_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
-    """Names both ends of a hull edge on the wall, of which a candidate has one piece, in the candidate."""
+    """Write both ends of a hull edge on the wall as contacts into a
+    candidate, in place, which names one or both pieces.
+    """
     count = int(row[CONTACTS])
     pegs = row[PEG : PEG + count].tolist()
-    row[PIECE + pegs.index(ON_WALL[0])] = wall.on(side.pieces[0])[1]
+    row[PIECE + pegs.index(ON_WALL[0])] = wall.make_wall_contact(side.pieces[0])[1]
     if count < 4:
-        row[PEG + count], row[PIECE + count] = wall.on(side.pieces[1], True)
+        row[PEG + count], row[PIECE + count] = wall.make_wall_contact(side.pieces[1], True)
         row[CONTACTS] = count + 1
 
 
 def find_wall_turns(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
-    """Arcs of one centre on the wall and the tip, and on the locator if the tip is not square to the wall."""
+    """Return the loose sets with concentric arcs on the wall and the tip, and on the locator too.
+
+    Without the locator, only where the tip pushes towards the wall.
+    """
     out, (ux, uy, off) = list[Manifolds](), wall.half_plane
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
     hull = finder.boundary.hull.rows
@@ -270,15 +323,15 @@ def find_wall_turns(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifo
         if hull[piece, 2] == 0.0 or np.hypot(*(first[[X, Y]] - hull[piece, :2])) > SAME_CENTER:
             continue
         known = (ux + uy) * (off + hull[piece, 2])
-        for tip in (k for k in group if finder.boundary.fits(1, k)):
+        for tip in (k for k in group if finder.boundary.can_touch(1, k)):
             signed = float(finder.rows[tip, SIGN] * finder.rows[tip, RADIUS])
             if ux > 0.0:
                 across = (0.0, 1.0) if signed > 0.0 else None
-                motions = turning(
+                motions = make_turning_motion(
                     finder.pattern, first, (known, ty), known + signed - tx, [(TIP, tip)], across
                 )
-                out.append(finder.cut(finder.free(motions)))
-            for locator in (k for k in group if finder.boundary.fits(0, k)):
+                out.append(finder.cut_into_manifolds(finder.find_free_motions(motions)))
+            for locator in (k for k in group if finder.boundary.can_touch(0, k)):
                 bend = float(finder.rows[locator, SIGN] * finder.rows[locator, RADIUS])
                 square = bend**2 - ((known - lx) if ux else (known - ly)) ** 2
                 for turn in (1.0, -1.0) if square > 0.0 else ():
@@ -293,10 +346,12 @@ def find_wall_turns(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifo
                         ((x - center[0]) / radius, (y - center[1]) / radius)
                         for (x, y), radius in zip(at, (bend, signed), strict=True)
                     ]
-                    if balance([(-ux, -uy), *normals], [0, 0, 1]):
+                    if is_balanced([(-ux, -uy), *normals], [0, 0, 1]):
                         contacts = [(LOCATOR, locator), (TIP, tip)]
-                        motions = turning(finder.pattern, first, center, separation, contacts, None)
-                        out.append(finder.cut(finder.free(motions)))
+                        motions = make_turning_motion(
+                            finder.pattern, first, center, separation, contacts, None
+                        )
+                        out.append(finder.cut_into_manifolds(finder.find_free_motions(motions)))
     return out
 
 
@@ -315,11 +370,12 @@ class Equilibria:
 
     Parameters
     ----------
-    seats : (N, 24) candidates at which the separation has a strict minimum, ordered by it.
-    passes : (N, 24) candidates with one direction in which the separation falls, to both sides.
+    seats : (N, 24) candidates at which the separation has a strict minimum, in ascending order of it.
+    passes : (N, 24) candidates with one direction in which the separation falls, to both sides, in ascending
+        order.
     loose : equilibrium manifolds, each of one separation.
-    doubtful : (N, 24) candidates that bounds did not prove to exist, of near ones the one that presses
-        hardest.
+    doubtful : (N, 24) candidates that bounds did not prove to exist; of candidates near each other, the one
+        with the largest forces.
     origins : (N, 2) for each pass the number of the subset that makes it, and of its candidate among all that
         are kept; -1 where none does.
     subsets : the subsets of pegs, with their descent paths.
@@ -333,38 +389,50 @@ class Equilibria:
     subsets: tuple[tuple[PegSubset, DescentPaths], ...] = ()
 
 
-def equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
-    """All equilibria of a pattern; moments are divided by the part's ``size`` in mm."""
+def find_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
+    """Return all equilibria of a pattern and a part; ``size`` is the
+    part's in mm, by which moments are divided.
+    """
     if pattern.half_plane is not None:
         return find_wall_equilibria(boundary, pattern, size)
-    curves, finder = TwoContactCurves.of(boundary, pattern), ManifoldFinder(boundary, pattern)
-    given, jaws, pockets = curves.given, (curves.of_jaw(0), curves.of_jaw(1)), boundary.pocket_pieces
+    curves, finder = TwoContactCurves.from_pattern(boundary, pattern), ManifoldFinder(boundary, pattern)
+    given, jaws, pockets = (
+        curves.given,
+        (curves.make_jaw_cells(0), curves.make_jaw_cells(1)),
+        boundary.pocket_pieces,
+    )
     work = np.empty((2, CELL_LENGTH)), np.empty((DEPTH, 2)), np.empty(len(jaws[1].cells), np.int64)
-    roots = filled(ROOT_LENGTH, 1024, two_pairs, *jaws, curves.sought, *work)
-    two = filled(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
-    slid = filled(CANDIDATE_LENGTH, 256, slides_held, curves.slides, *jaws, given, pockets)
-    kept, ends = SubsetCache.on(boundary), (pattern.stop, pattern.widest)
+    roots = fill_rows(ROOT_LENGTH, 1024, write_two_pairs, *jaws, curves.sought, *work)
+    two = fill_rows(CANDIDATE_LENGTH, len(roots) + 1, complete_two, roots, given, pockets)
+    slid = fill_rows(CANDIDATE_LENGTH, 256, write_held_slides, curves.slides, *jaws, given, pockets)
+    kept, ends = SubsetCache.find_for_boundary(boundary), (pattern.stop, pattern.widest)
     parts = [(one, find_subset_equilibria(kept, boundary, one, size)) for one in list_subsets(pattern)]
     numbers = [(own.first, own.end, own.descents.first, *one.numbers_and_shift) for one, own in parts]
     room = len(two) + len(slid) + sum(own.end - own.first for _, own in parts) + 256
     given_subsets = np.array(numbers, dtype=np.float64), kept.candidates
     among = *given_subsets, two, slid, *ends, given, np.empty(CANDIDATE_LENGTH)
-    found = filled(GATHERED_LENGTH, room, gathered, *among)
-    every = with_forces(np.ascontiguousarray(found[:, :SUBSET]), given, size)
-    loose = finder.distinct(finder.cut(find_pattern_motions([(one, own.motions) for one, own in parts])))
+    found = fill_rows(GATHERED_LENGTH, room, write_gathered, *among)
+    every = complete_with_forces(np.ascontiguousarray(found[:, :SUBSET]), given, size)
+    loose = finder.drop_contained(
+        finder.cut_into_manifolds(find_pattern_motions([(one, own.motions) for one, own in parts]))
+    )
     subsets = tuple((one, own.descents) for one, own in parts)
     return sort_equilibria(every, loose, found[:, SUBSET:].astype(np.int64), subsets)
 
 
 def find_wall_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
+    """Return all equilibria of a pattern with a wall."""
     pressed = find_antipodal_candidates(boundary, pattern)
     candidates = np.concatenate([pressed, find_wall_candidates(boundary, pattern)])
     settle_on_wall(candidates, boundary, pattern, size)
     finder = ManifoldFinder(boundary, pattern)
-    loose = joined(
-        [finder.cut(finder.free(find_motions_on_one_line(boundary, pattern))), *find_wall_manifolds(finder)]
+    loose = join_manifolds(
+        [
+            finder.cut_into_manifolds(finder.find_free_motions(find_motions_on_one_line(boundary, pattern))),
+            *find_wall_manifolds(finder),
+        ]
     )
-    return sort_equilibria(candidates, finder.distinct(loose), np.full((len(candidates), 2), -1))
+    return sort_equilibria(candidates, finder.drop_contained(loose), np.full((len(candidates), 2), -1))
 
 
 def sort_equilibria(
@@ -373,24 +441,32 @@ def sort_equilibria(
     origins: NDArray[np.int64],
     subsets: tuple[tuple[PegSubset, DescentPaths], ...] = (),
 ) -> Equilibria:
-    """Sorts candidates with forces into seats and passes; the other arguments are those of ``Equilibria``."""
-    balance = verdicts(candidates, CLEAR_SLACK, CLEAR_IN_DOUBT)
+    """Return the equilibria among candidates with forces, sorted into seats, passes and doubtful ones.
+
+    Other parameters are those of ``Equilibria``, with ``origins`` for all candidates.
+    """
+    balance = judge_candidates(candidates, CLEAR_SLACK, CLEAR_IN_DOUBT)
     sure = balance == IN_BALANCE
     found = candidates[sure]
-    order = once(found, SAME_POSE, SAME)
+    order = number_first_of_equals(found, SAME_POSE, SAME)
     found, whose = found[order], origins[sure][order]
     four = found[:, CONTACTS] == 4.0
     is_pass = ~four & (found[:, SECOND] < 0.0)
     doubtful = candidates[balance == DOUBTFUL]
     if len(doubtful):
         doubtful = doubtful[np.argsort(-doubtful[:, FORCE : FORCE + 4].sum(axis=1), kind="stable")]
-        doubtful = doubtful[once(doubtful, SAME_DOUBT, SAME_DOUBT)]
+        doubtful = doubtful[number_first_of_equals(doubtful, SAME_DOUBT, SAME_DOUBT)]
     seats, passes = found[four | (found[:, SECOND] > 0.0)], found[is_pass]
     return Equilibria(seats, passes, loose, doubtful, whose[is_pass], subsets)
 
 
-def once(rows: Array, turn: float, shift: float) -> NDArray[np.int64]:
-    """Numbers of candidates, ordered by separation; of configurations that agree, the first."""
+def number_first_of_equals(rows: Array, turn: float, shift: float) -> NDArray[np.int64]:
+    """Return the numbers of candidates (N, 24), in ascending order of
+    separation, without those equal to an earlier one.
+
+    Configurations within ``turn`` radians and ``shift`` mm, with as many contacts, are equal. See
+    ``kernels.seating.columns`` for the layout of candidates.
+    """
     kept = np.empty(len(rows), np.int64)
-    kept = kept[: first_of_each(rows, turn, shift, kept)]
+    kept = kept[: write_first_of_equals(rows, turn, shift, kept)]
     return kept[np.argsort(rows[kept, SEPARATION], kind="stable")]

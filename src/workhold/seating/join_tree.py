@@ -35,9 +35,16 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     Manifolds,
 )
-from workhold.kernels.seating.descent_paths import BESIDE, FALLS, free_until, leads_out, take_up, write_places
-from workhold.kernels.seating.gathering import first_sets, write_beyond
-from workhold.seating.closing import LONGEST_STEP, Closing, find_descent_starts
+from workhold.kernels.seating.descent_paths import (
+    BESIDE,
+    FALLS,
+    find_pass_to_outside,
+    write_known_path_ends,
+    write_last_free_nodes,
+    write_places,
+)
+from workhold.kernels.seating.gathering import write_beyond, write_first_manifolds
+from workhold.seating.closing import LONGEST_STEP, ClosingMotion, find_descent_starts
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 
@@ -47,10 +54,10 @@ __all__ = [
     "LOOSE",
     "POCKET",
     "UNSETTLED",
-    "Join",
+    "CageJoin",
     "JoinTree",
     "RestPoses",
-    "distances",
+    "measure_distances",
     "follow_pass_descents",
 ]
 
@@ -59,9 +66,10 @@ IntArray = NDArray[np.int64]
 
 
 def follow_pass_descents(
-    found: Equilibria, closing: Closing, seats: Array
+    found: Equilibria, closing: ClosingMotion, seats: Array
 ) -> tuple[Array, Array, NDArray[np.int8]]:
-    """Where the descent paths off both sides of all passes begin, where they end (2 N, 4), and how.
+    """Return the starts (2 N, 4) of the descent paths from both sides
+    of all passes, their ends (2 N, 4), and how they end.
 
     ``seats`` (M, 4) are configurations at which closing is known to end.
     """
@@ -71,24 +79,26 @@ def follow_pass_descents(
     if len(known):
         cache, shifts = found.subsets[0][1].cache, compute_subset_shifts(found)
         paths = select_free_paths(found, known, closing, shifts)
-        take_up(known, *paths, cache.nodes, cache.begins, cache.how, shifts, ends, lengths, left)
+        write_known_path_ends(
+            known, *paths, cache.nodes, cache.begins, cache.how, shifts, ends, lengths, left
+        )
     rest = np.flatnonzero(left)
-    ends[rest], how[rest] = closing.run(ends[rest], lengths[rest], seats)
+    ends[rest], how[rest] = closing.close_from(ends[rest], lengths[rest], seats)
     return starts, ends, how
 
 
 def compute_subset_shifts(found: Equilibria) -> Array:
-    """The shifts (G, 4) by which configurations of each subset become those of the pattern."""
+    """Return the shifts (G, 4) by which configurations of each subset become those of the pattern."""
     return np.array([subset.shift for subset, _ in found.subsets])
 
 
 def select_free_paths(
-    found: Equilibria, passes: IntArray, closing: Closing, shifts: Array
+    found: Equilibria, passes: IntArray, closing: ClosingMotion, shifts: Array
 ) -> tuple[IntArray, IntArray, IntArray]:
-    """The paths off both sides of some passes, as far as the pattern's other pegs are not in the part.
+    """Return the paths from both sides of N passes, as far as the pattern's other pegs are outside the part.
 
-    Numbers of the paths in the cache, their subsets, and the last node of each, all (2 N,). For the shifts
-    see ``compute_subset_shifts``.
+    They are the numbers of the paths in the cache, their subsets, and the last node of each, all (2 N,).
+    ``passes`` are numbers of passes with origins; see :func:`compute_subset_shifts` for the shifts.
     """
     whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
     cache = found.subsets[0][1].cache
@@ -101,7 +111,7 @@ def select_free_paths(
         row[list(subset.numbers)] = 0
     most, lasts = LONGEST_STEP * min(closing.pattern.radii), np.empty(len(paths), np.int64)
     work = shifts, others, most, closing.obstacles, np.empty((4, 4))
-    free_until(paths, whose, cache.nodes, cache.begins, *work, lasts)
+    write_last_free_nodes(paths, whose, cache.nodes, cache.begins, *work, lasts)
     return paths, whose, lasts
 
 
@@ -110,14 +120,14 @@ FIRST_STEP = BESIDE / 2.0
 
 
 @frozen
-class Join:
+class CageJoin:
     """A pass, and the places whose cages join there.
 
     Parameters
     ----------
-    separation : there, in mm.
+    separation : S of the pass in mm.
     candidate : (24,) row of the pass.
-    places : what its two descent paths end in.
+    places : numbers of the places in which its two descent paths end.
     """
 
     separation: float
@@ -129,16 +139,18 @@ class Join:
 class JoinTree:
     """The places in which closing ends, and the passes at which their cages join.
 
+    Places are numbered: seats, loose sets, what is not settled; -1 is the outside, -2 the stop.
+
     Parameters
     ----------
-    seats : (N, 24) rows of strict seats.
-    loose : (L, 24) rows of loose sets off which no path leads down: their places follow those of the seats.
-    slack : (K, 24) rows of loose sets of three contacts or more off which paths lead down: no rest there is
-        certain.
-    doubtful : (M, 4) configurations of what is not settled, whose places follow.
-    passes, joined : (J, 24) rows in the order of their separations, and what their descent paths end in: (J,
-        2).
-    own : (N + L,) each place; for a seat that lies on a loose set it is the place of the set.
+    seats : (N, 24) rows of strict seats, places 0 to N - 1.
+    loose : (L, 24) rows of loose sets from which no path leads down, the next places.
+    slack : (K, 24) rows of loose sets with three contacts or more from which paths lead down: a rest there is
+        not certain.
+    doubtful : (M, 4) configurations of what is not settled, the last places.
+    passes : (J, 24) rows in ascending order of separation.
+    joined : (J, 2) places in which the two descent paths of each pass end.
+    own : (N + L,) each place itself; for a seat that lies on a loose set, the place of the set.
     """
 
     seats: Array
@@ -150,18 +162,20 @@ class JoinTree:
     own: IntArray
 
     @classmethod
-    def of(cls, found: Equilibria, closing: Closing) -> JoinTree:
-        """Follows the descent paths off all passes and off the ends of all loose sets."""
+    def from_equilibria(cls, found: Equilibria, closing: ClosingMotion) -> JoinTree:
+        """Return the join tree, after following the descent paths from
+        all passes and from the ends of all loose sets.
+        """
         loose, size, configs = found.loose, closing.size, np.ascontiguousarray(found.seats[:, CONFIG])
         # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing
         # leads on.
-        strict = np.flatnonzero(sets_at(configs, loose, np.arange(len(loose.rows)), size) < 0)
+        strict = np.flatnonzero(find_loose_sets(configs, loose, np.arange(len(loose.rows)), size) < 0)
         strict = strict[np.argsort(configs[strict, 3], kind="stable")]
-        seats, off = configs[strict], ManifoldDescents.of(loose, closing, configs[strict])
+        seats, off = configs[strict], ManifoldDescents.from_manifolds(loose, closing, configs[strict])
         first = len(configs) + len(off.lying)
         parts = off.both, follow_pass_descents(found, closing, seats), off.one
         starts, ends, how = (np.concatenate([part[k] for part in parts]) for k in range(3))
-        leaves = closing.leaves(starts, ends, how == AT_THE_STOP).astype(np.int8)
+        leaves = closing.find_leaving_at_stop(starts, ends, how == AT_THE_STOP).astype(np.int8)
         doubtful, count = np.empty((len(found.doubtful) + len(ends), 4)), len(found.doubtful)
         doubtful[:count] = found.doubtful[:, CONFIG]
         places = np.empty(len(ends) - len(off.falling), np.int64)
@@ -169,7 +183,7 @@ class JoinTree:
         count = write_places(*known, doubtful, count, np.empty(len(off.falling), np.int64), places)
         passes = np.concatenate([loose.rows[off.dividing], found.passes])
         order, own = np.argsort(passes[:, SEPARATION], kind="stable"), np.arange(first)
-        beside = sets_at(configs, loose, off.lying, size)
+        beside = find_loose_sets(configs, loose, off.lying, size)
         own[: len(configs)][beside >= 0] = len(configs) + beside[beside >= 0]
         rows = found.seats, loose.rows[off.lying], loose.rows[off.slack]
         return cls(*rows, doubtful[:count], passes[order], places.reshape(-1, 2)[order], own)
@@ -178,46 +192,50 @@ class JoinTree:
     def first_joins(self) -> IntArray:
         """The number (P + 2,) of the first pass at which each place's cage joins another, -1 for none.
 
-        The outside and the stop come last.
+        The stop and the outside are the last two entries.
         """
         out = np.full(len(self.own) + len(self.doubtful) + 2, -1)
         leading = np.flatnonzero(self.joined[:, 0] != self.joined[:, 1])[::-1]
         out[self.joined[leading]] = leading[:, None]
         return out
 
-    def join(self, number: int) -> Join:
-        """A pass by its number."""
+    def make_join(self, number: int) -> CageJoin:
+        """Return a pass by its number."""
         one, two = self.joined[number].tolist()
-        return Join(float(self.passes[number, SEPARATION]), self.passes[number], (one, two))
+        return CageJoin(float(self.passes[number, SEPARATION]), self.passes[number], (one, two))
 
-    def join_of(self, place: int) -> Join | None:
-        """The first pass at which the cage of a place joins another; None where it never does."""
+    def find_first_join(self, place: int) -> CageJoin | None:
+        """Return the first pass at which the cage of a place joins another; None where it never does."""
         number = int(self.first_joins[self.own[place]])
-        return None if number < 0 else self.join(number)
+        return None if number < 0 else self.make_join(number)
 
     @property
     def tops(self) -> Array:
-        """The separations (N + L,) of the first passes of seats and loose sets, infinite for none."""
+        """The separations (N + L,) in mm of the first passes of seats and loose sets, inf for none."""
         return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
 
-    def way_out(self, place: int) -> float | None:
-        """The separation at which a part can get from a place to the outside; None where it never can."""
-        number = leads_out(self.joined, int(self.own[place]), np.empty(len(self.first_joins), np.int64))
+    def find_escape_separation(self, place: int) -> float | None:
+        """Return the separation in mm at which a part can get from a
+        place to the outside; None where it never can.
+        """
+        number = find_pass_to_outside(
+            self.joined, int(self.own[place]), np.empty(len(self.first_joins), np.int64)
+        )
         return None if number < 0 else float(self.passes[number, SEPARATION])
 
 
 @frozen(eq=False)
 class ManifoldDescents:
-    """The descent paths off loose sets.
+    """The descent paths from loose sets.
 
     Parameters
     ----------
-    lying : (L,) numbers of sets off which no path leads.
+    lying : (L,) numbers of sets from which no path leads down.
     falling : (G,) numbers of the others.
-    slack : numbers of falling sets on which a part lies a while.
-    dividing : numbers of sets off which paths lead down to both sides.
-    both : where paths off dividing sets begin, (2 D, 4), and end, and how.
-    one : where the first path off each falling set begins, (G, 4), and ends, and how.
+    slack : numbers of falling sets with three contacts or more, on which a part may stay for a while.
+    dividing : numbers of sets from which paths lead down to both sides.
+    both : starts (2 D, 4) and ends (2 D, 4) of the paths from dividing sets, and how they end (2 D,).
+    one : starts (G, 4) and ends (G, 4) of the first path from each falling set, and how it ends (G,).
     """
 
     lying: IntArray
@@ -228,14 +246,16 @@ class ManifoldDescents:
     one: tuple[Array, Array, NDArray[np.int8]]
 
     @classmethod
-    def of(cls, loose: Manifolds, closing: Closing, seats: Array) -> ManifoldDescents:
-        """Follows the descent paths off some sets; ``seats`` (M, 4) are those of ``Closing.run``."""
+    def from_manifolds(cls, loose: Manifolds, closing: ClosingMotion, seats: Array) -> ManifoldDescents:
+        """Return the descent paths from loose sets; ``seats`` (M, 4) are
+        those of ``ClosingMotion.close_from``.
+        """
         if not len(loose.rows):
             return NOTHING
         starts, whose = np.empty((2 * len(loose.rows), 4)), np.empty(2 * len(loose.rows), np.int64)
         count = write_beyond(loose, closing.size, BESIDE, starts, whose)
         starts, whose = starts[:count], whose[:count]
-        ends, how = closing.run(starts, FIRST_STEP, seats)
+        ends, how = closing.close_from(starts, FIRST_STEP, seats)
         falls = np.flatnonzero(ends[:, 3] < loose.rows[whose, SEPARATION] - FALLS)
         paths = np.bincount(whose[falls], minlength=len(loose.rows))
         falling, first = np.flatnonzero(paths), falls[np.searchsorted(whose[falls], np.flatnonzero(paths))]
@@ -256,15 +276,21 @@ NUMBERS, PATHS = np.zeros(0, np.int64), (np.zeros((0, 4)), np.zeros((0, 4)), np.
 NOTHING = ManifoldDescents(NUMBERS, NUMBERS, NUMBERS, NUMBERS, PATHS, PATHS)
 
 
-def sets_at(configs: Array, loose: Manifolds, asked: IntArray, size: float) -> IntArray:
-    """The place among the asked of the first loose set in which each configuration (N, 4) lies, or -1."""
+def find_loose_sets(configs: Array, loose: Manifolds, asked: IntArray, size: float) -> IntArray:
+    """Return, for each configuration (N, 4), the position in
+    ``asked`` of the first loose set in which it lies, or -1.
+    """
     out = np.empty(len(configs), np.int64)
-    first_sets(configs, loose, asked, size, FALLS, out)
+    write_first_manifolds(configs, loose, asked, size, FALLS, out)
     return out
 
 
-def distances(configs: Array, others: Array, size: float) -> Array:
-    """The distances in mm of configurations (..., 4) from others, where turns count by the size."""
+def measure_distances(configs: Array, others: Array, size: float) -> Array:
+    """Return the distances in mm between configurations (..., 4): of
+    (x, y), plus the turn (mod 2 pi) times ``size``.
+
+    Separations are not compared.
+    """
     turn = np.abs((configs[..., 0] - others[..., 0] + pi) % tau - pi)
     return np.asarray(
         turn * size + np.hypot(configs[..., 1] - others[..., 1], configs[..., 2] - others[..., 2])
@@ -287,11 +313,11 @@ class RestPoses:
 
     Parameters
     ----------
-    rows : (N, 24) candidates; of what is not settled only the configuration is known.
+    rows : (N, 24) candidates; for those not settled, only the configuration is known.
     kinds : (N,) numbers of the kinds in ``KINDS``.
-    depths : (N,) how far in mm the jaws open before the part can get elsewhere; infinite where it never can,
+    depths : (N,) by how much in mm the jaws open before the part can get elsewhere; inf where it never can,
         or where that is not known.
-    turned_over : (N,) whether the part is.
+    turned_over : (N,) whether the part is turned over.
     """
 
     rows: Array
@@ -300,8 +326,12 @@ class RestPoses:
     turned_over: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, trees: tuple[JoinTree, JoinTree], boundary: ObstacleBoundary, pegs: int) -> RestPoses:
-        """The rest poses of a part as drawn, and then turned over, on so many pegs besides a wall."""
+    def from_join_trees(
+        cls, trees: tuple[JoinTree, JoinTree], boundary: ObstacleBoundary, pegs: int
+    ) -> RestPoses:
+        """Return the rest poses of a part as drawn, then turned over;
+        ``pegs`` is the number of pegs, without a wall.
+        """
         parts, tops = list[Array](), list[Array]()
         for tree in trees:
             unknown = np.zeros((len(tree.doubtful), CANDIDATE_LENGTH))
@@ -311,15 +341,19 @@ class RestPoses:
         counts = [len(part) for part in parts]
         rows = np.concatenate(parts)
         kinds = np.repeat([FIXTURE, LOOSE, LOOSE, UNSETTLED] * 2, counts)
-        kinds[kinds == FIXTURE] = kinds_of(rows[kinds == FIXTURE], boundary, pegs)
+        kinds[kinds == FIXTURE] = classify_seats(rows[kinds == FIXTURE], boundary, pegs)
         depths = np.concatenate(tops) - rows[:, SEPARATION]
         listed = (kinds >= ALWAYS) | (depths >= SHALLOW)
         turned_over = np.arange(len(rows)) >= sum(counts[:4])
         return cls(rows[listed], kinds[listed], depths[listed], turned_over[listed])
 
 
-def kinds_of(rows: Array, boundary: ObstacleBoundary, pegs: int) -> NDArray[np.int64]:
-    """The kinds (N,) of strict seats (N, 24), by the number of contacts and by what they touch."""
+def classify_seats(rows: Array, boundary: ObstacleBoundary, pegs: int) -> NDArray[np.int64]:
+    """Return the kinds (N,) of strict seats (N, 24), by the number of contacts and by what they touch.
+
+    They are CURVED with fewer than four contacts, else POCKET, CORNER or FIXTURE. See
+    ``kernels.seating.columns`` for the layout of candidates.
+    """
     who, where = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
     ordered = np.sort(who, axis=1)
     twice = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)

@@ -20,16 +20,16 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.contact.curves import CurveTable, LatticeSteps, curve_table, loosened, number_centers
+from workhold.contact.curves import CurveTable, LatticeSteps, loosen_rows, make_curve_table, number_centers
 from workhold.contact.problem import move_rows_to_origin
 from workhold.conventions import END_SLACK, SAME_CENTER
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.segment import make_segment_rows
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, REST_X, SIGN, X, Y
 from workhold.kernels.base.tables import HEAD, TAIL
 from workhold.kernels.seating.columns import Obstacles
 from workhold.model.seating import SeatContact
 from workhold.model.workpiece import Workpiece
-from workhold.seating.part_features import Hull, Touch, find_pockets, touched_pieces
+from workhold.seating.part_features import PartHull, TouchedFeature, find_pockets, list_touched_pieces
 from workhold.seating.pattern import Pattern
 
 __all__ = ["ObstacleBoundary", "contains"]
@@ -52,34 +52,40 @@ class ObstacleBoundary:
     rows : (N, 10) pieces about the centre of the part's bounding box, in mm.
     parts : (2, 2) first and past-the-last number of the pieces of pegs that stand still, and of those that
         move.
-    touches : what a peg on each piece touches.
-    pockets : (V, 6) place of each pocket and the outward normals of its two pieces.
+    touches : the feature that a peg on each piece touches.
+    pockets : (V, 6) place (x, y) of each pocket and the outward normals of its two pieces.
     pocket_pieces : (V, 2) their numbers.
-    hull : what of the part may touch a wall.
+    hull : the features of the part that may touch a wall.
     mirrored : whether the part is turned over.
-    contacts, tables : what has been asked for of ``contacts_of`` and of ``curves``.
-    found : what functions found on this boundary, see ``once``.
+    contacts, tables : caches of :meth:`make_contacts` and of :meth:`find_chord_curves`.
+    found : cache of :meth:`find_once`.
     """
 
     rows: Array
     parts: NDArray[np.int64]
-    touches: tuple[Touch, ...]
+    touches: tuple[TouchedFeature, ...]
     pockets: Array
     pocket_pieces: NDArray[np.int64]
-    hull: Hull
+    hull: PartHull
     mirrored: bool = False
     contacts: dict[int, tuple[SeatContact, ...]] = field(factory=dict, init=False)
     tables: dict[tuple[float, int], CurveTable] = field(factory=dict, init=False)
     found: dict[Callable[[ObstacleBoundary], Any], Any] = field(factory=dict, init=False)
 
     @classmethod
-    def of(cls, workpiece: Workpiece, radii: tuple[float, float]) -> ObstacleBoundary:
-        """The boundary for pegs that stand still and for those that move, of radii in mm above 0."""
-        rows, touches, pockets, whose, starts = list[Array](), list[Touch](), list[Array](), list[Any](), [0]
+    def from_workpiece(cls, workpiece: Workpiece, radii: tuple[float, float]) -> ObstacleBoundary:
+        """Return the boundary for pegs that stand still and for those that move, with radii in mm above 0."""
+        rows, touches, pockets, whose, starts = (
+            list[Array](),
+            list[TouchedFeature](),
+            list[Array](),
+            list[Any](),
+            [0],
+        )
         for radius in dict.fromkeys(radii):
-            touched = touched_pieces(workpiece, radius)
+            touched = list_touched_pieces(workpiece, radius)
             pieces = [piece for _, piece in touched]
-            rows.append(move_rows_to_origin(segment_rows(pieces), workpiece.center))
+            rows.append(move_rows_to_origin(make_segment_rows(pieces), workpiece.center))
             touches += [touch for touch, _ in touched]
             places, numbers = find_pockets(pieces, rows[-1])
             pockets.append(places)
@@ -89,17 +95,23 @@ class ObstacleBoundary:
         every.setflags(write=False)
         parts = np.array([starts[:2], starts[-2:]], dtype=np.int64)
         return cls(
-            every, parts, tuple(touches), np.concatenate(pockets), np.concatenate(whose), Hull.of(workpiece)
+            every,
+            parts,
+            tuple(touches),
+            np.concatenate(pockets),
+            np.concatenate(whose),
+            PartHull.from_workpiece(workpiece),
         )
 
-    def fits(self, side: int, piece: int) -> bool:
-        """Whether pegs that stand still (0), or that move (1), can touch a piece."""
+    def can_touch(self, side: int, piece: int) -> bool:
+        """Return whether pegs that stand still (``side`` 0), or that move (1), can touch a piece."""
         return bool(self.parts[side, 0] <= piece < self.parts[side, 1])
 
-    def obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
-        """The pieces about the pegs of a pattern, as kernels take them.
+    def make_obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
+        """Return the part's pieces and the pegs of a pattern, as kernels take them.
 
-        Turns are counted by the part's size in mm. What moves is stopped at ``stop``, S in mm.
+        ``size`` is the part's in mm, by which turns are compared with shifts; ``stop`` is the least S in mm.
+        S is the jaw separation in mm.
         """
         pegs = np.array(pattern.pegs), pattern.right, self.parts
         hull, half_plane = np.zeros((0, 6)), np.zeros(3)
@@ -109,17 +121,17 @@ class ObstacleBoundary:
 
     @cached_property
     def pieces(self) -> Array:
-        """The rows as a writable copy: numba compiles kernels once more for read-only arrays."""
+        """The rows as a writable copy, which kernels take."""
         return np.array(self.rows)
 
     @cached_property
     def loose(self) -> Array:
-        """The pieces with their ends moved out by a hair, as chord curves want them."""
-        return loosened(self.rows)
+        """The pieces (N, 10) with their ends moved out slightly, as chord curves need them."""
+        return loosen_rows(self.rows)
 
     @cached_property
     def discs(self) -> Array:
-        """Discs (N, 3) in which the pieces lie: middle and radius in mm."""
+        """Discs (N, 3) that hold the pieces: centre x, y and radius in mm."""
         rows, whole = self.loose, self.loose[:, HALF_EXTENT] >= pi / 2.0
         is_arc = rows[:, IS_ARC] != 0.0
         out = np.array(rows[:, [X, Y, HALF_EXTENT]], order="C")
@@ -132,12 +144,13 @@ class ObstacleBoundary:
 
     @cached_property
     def wide_discs(self) -> Array:
-        """The discs, widened by what of the pieces counts past pockets."""
+        """The discs (N, 3), widened by how far pieces count past pockets."""
         return np.asarray(self.discs + np.array([0.0, 0.0, PAST_POCKET]))
 
     @cached_property
     def spans(self) -> Array:
-        """Lowest and highest parameter of the pieces, a little past pockets, and the cosines of both: (N, 4).
+        """The lowest and highest parameter of each piece, slightly past
+        pockets, and the cosines of both: (N, 4).
 
         Past a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end
         it is.
@@ -148,13 +161,13 @@ class ObstacleBoundary:
         for (x, y, *_), pieces in zip(self.pockets, self.pocket_pieces, strict=True):
             for k in pieces:
                 unit = rows[k, RADIUS] if rows[k, IS_ARC] != 0.0 else 1.0
-                end = 1 if along(rows[k], x, y) > 0.0 else 0
+                end = 1 if compute_parameter(rows[k], x, y) > 0.0 else 0
                 out[k, end] += (2 * end - 1) * PAST_POCKET / unit
         return np.concatenate([out, np.cos(np.clip(out, -pi, pi))], axis=1)
 
     @cached_property
     def concentric(self) -> list[list[int]]:
-        """Numbers of the arcs, by their centres."""
+        """The numbers of the arcs, in a list for each centre."""
         groups: list[list[int]] = []
         for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
             center = self.rows[k, [X, Y]]
@@ -165,8 +178,10 @@ class ObstacleBoundary:
         return groups
 
     @cached_property
-    def all_touches(self) -> tuple[Touch, ...]:
-        """What a peg on each piece touches and, after that, what may touch a wall."""
+    def all_touches(self) -> tuple[TouchedFeature, ...]:
+        """The features that a peg on each piece touches and, after those,
+        the features that may touch a wall.
+        """
         return self.touches + self.hull.touches
 
     @cached_property
@@ -176,9 +191,10 @@ class ObstacleBoundary:
 
     @cached_property
     def rings(self) -> list[tuple[list[tuple[int, float]], list[tuple[int, float]]]]:
-        """The arcs about each centre that pegs that stand still and pegs that move both can touch.
+        """For each centre, the arcs that pegs that stand still can touch, and those that pegs that move can.
 
-        Each arc is its number and its radius in mm, which is below 0 where the arc bends in.
+        Each arc is its number and its radius in mm, negative where the arc is concave. Centres with arcs for
+        both are listed.
         """
         signed = (self.rows[:, SIGN] * self.rows[:, RADIUS]).tolist()
         both = (
@@ -187,10 +203,11 @@ class ObstacleBoundary:
         )
         return [(standing, moving) for standing, moving in both if standing and moving]
 
-    def contacts_of(
+    def make_contacts(
         self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]
     ) -> list[tuple[SeatContact, ...]]:
-        """What pegs of a fixture touch, made once for all seats that have it.
+        """Return, for each of N seats, the contacts of a fixture's pegs;
+        seats with the same contacts share one tuple.
 
         Parameters
         ----------
@@ -213,20 +230,25 @@ class ObstacleBoundary:
 
     @cached_property
     def centers(self) -> dict[int, NDArray[np.int64]]:
-        """The centres (N,) of pieces, numbered as in ``contact.curves``, by the first piece of each jaw."""
+        """The numbers of the pieces' centres as in
+        ``contact.curves.number_centers``, by the first piece of each jaw.
+        """
         return {first: number_centers(self.loose[first:end]) for first, end in self.parts.tolist()}
 
-    def once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
-        """What a function finds on this boundary, which is kept from its first call on, or from one anew."""
+    def find_once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
+        """Return ``find(self)``, computed at the first call and kept;
+        with ``anew``, compute and keep it again.
+        """
         if anew or find not in self.found:
             self.found[find] = find(self)
         kept: Found = self.found[find]
         return kept
 
-    def curves(self, length: float, side: int) -> CurveTable:
-        """The curves of chords of a length in mm between pegs that stand still (0), or that move (1).
+    def find_chord_curves(self, length: float, side: int) -> CurveTable:
+        """Return the curves of chords of a length in mm between pegs that
+        stand still (``side`` 0), or that move (1); kept.
 
-        Tails are on the piece of the lower number, and a chord's direction is its angle.
+        Tails are on the piece of the lower number, and a chord's direction alpha is its orientation psi.
         """
         first, end = self.parts[side].tolist()
         key = round(length, 9), first
@@ -238,14 +260,14 @@ class ObstacleBoundary:
                 np.array([[1, 0]], dtype=np.int64),
                 np.array([0.0]),
             )
-            table = curve_table(self.loose[first:end], steps, centers=self.centers[first])
+            table = make_curve_table(self.loose[first:end], steps, centers=self.centers[first])
             for integers in (table.curves.integers, table.sliding_pairs.integers):
                 integers[:, [TAIL, HEAD]] += first
             self.tables[key] = table
         return self.tables[key]
 
-    def normal(self, number: int, x: float, y: float) -> tuple[float, float]:
-        """Outward unit normal of a piece at a point on it."""
+    def compute_normal(self, number: int, x: float, y: float) -> tuple[float, float]:
+        """Return the outward unit normal (x, y) of a piece at a point on it."""
         row = self.rows[number].tolist()
         if row[IS_ARC] == 0.0:
             return row[AXIS_Y], -row[AXIS_X]
@@ -275,14 +297,14 @@ class ObstacleBoundary:
 
 
 def contains(row: Array, x: float, y: float) -> bool:
-    """Whether a point of a piece's carrier lies on the piece, up to rounding."""
+    """Return whether a point of a piece's line or circle lies on the piece, up to rounding."""
     unit = row[RADIUS] if row[IS_ARC] != 0.0 else 1.0
     whole = row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi
-    return bool(whole or abs(along(row, x, y)) <= row[HALF_EXTENT] + END_SLACK / unit)
+    return bool(whole or abs(compute_parameter(row, x, y)) <= row[HALF_EXTENT] + END_SLACK / unit)
 
 
-def along(row: Array, x: float, y: float) -> float:
-    """Parameter of a point on a piece."""
+def compute_parameter(row: Array, x: float, y: float) -> float:
+    """Return the parameter of a point on a piece, mm on a line and radians on an arc, 0 at its middle."""
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         return float(dx * row[AXIS_X] + dy * row[AXIS_Y])

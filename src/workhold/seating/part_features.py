@@ -22,13 +22,21 @@ from workhold.conventions import CLEARANCE, JOINT, LEAST_HULL_EDGE, SAME_POSE, T
 from workhold.errors import InputError
 from workhold.geometry.hull import HullPieces
 from workhold.geometry.offset import keep_clear_parts, list_trimmed_offsets, make_joint_circle, offset_segment
-from workhold.geometry.segment import Arc, Point, Segment, segment_rows
-from workhold.kernels.base.distance import outline_distances
+from workhold.geometry.segment import Arc, Point, Segment, make_segment_rows
+from workhold.kernels.base.distance import measure_outline_distances
 from workhold.kernels.base.feature import X, Y
-from workhold.kernels.seating.obstacles import SUPPORTS, cover_same
+from workhold.kernels.seating.obstacles import SUPPORTS, write_same_cover
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["Hull", "HullSide", "Silhouette", "Touch", "find_pockets", "refuse_own_outlines", "touched_pieces"]
+__all__ = [
+    "PartHull",
+    "HullSide",
+    "Silhouette",
+    "TouchedFeature",
+    "find_pockets",
+    "refuse_own_outlines",
+    "list_touched_pieces",
+]
 
 Array = NDArray[np.float64]
 # Corners that turn by less, in radians, are rounding.
@@ -36,7 +44,7 @@ STRAIGHT_ON = 1e-7
 
 
 @frozen
-class Touch:
+class TouchedFeature:
     """A face or a corner.
 
     Parameters
@@ -49,32 +57,43 @@ class Touch:
     corner: bool
 
 
-def touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch, Segment]]:
-    """The boundary for pegs of a radius in mm, and what they touch on each piece."""
+def list_touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[TouchedFeature, Segment]]:
+    """Return the pieces of the boundary for pegs of a radius in mm,
+    each with the feature that a peg on it touches.
+
+    Offset faces come first, then arcs around convex corners.
+    """
     faces = workpiece.faces
     segments = [face.segment for face in faces]
-    pieces = [(Touch(faces[k].number, False), piece) for k, piece in list_trimmed_offsets(segments, radius)]
+    pieces = [
+        (TouchedFeature(faces[k].number, False), piece) for k, piece in list_trimmed_offsets(segments, radius)
+    ]
     number = {segment.start: face.number for face, segment in zip(faces, segments, strict=True)}
     return pieces + [
-        (Touch(number[corner], True), arc) for corner, arc in make_rolled_corners(segments, radius)
+        (TouchedFeature(number[corner], True), arc) for corner, arc in make_rolled_corners(segments, radius)
     ]
 
 
 def make_rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
-    """The arcs on which a disc rolls around convex corners of an outline, where nothing else is nearer."""
-    rows, out = segment_rows(segments), []
+    """Return the arcs on which a disc's centre runs around convex
+    corners of an outline, each with its corner.
+
+    Only the parts where nothing else of the outline is nearer to the centre.
+    """
+    rows, out = make_segment_rows(segments), []
     raw = [piece for piece in (offset_segment(segment, radius) for segment in segments) if piece is not None]
     before = {segment.end: segment for segment in segments if not is_full(segment)}
     joints = [segment.start for segment in segments if not is_full(segment)]
 
     def is_clear(points: Array) -> NDArray[np.bool_]:
-        return np.asarray(outline_distances(points, rows) >= radius - CLEARANCE)
+        """Return whether points (M, 2) are at least the radius away from the outline."""
+        return np.asarray(measure_outline_distances(points, rows) >= radius - CLEARANCE)
 
     for segment in segments:
         if is_full(segment):
             continue
         previous = before.get(segment.start) or min(before.values(), key=lambda s: dist(s.end, segment.start))
-        low, high = end_angle(previous, 1.0), end_angle(segment, -1.0)
+        low, high = compute_end_angle(previous, 1.0), compute_end_angle(segment, -1.0)
         turn = (high - low + pi) % (2 * pi) - pi
         if turn <= STRAIGHT_ON:
             continue
@@ -86,24 +105,31 @@ def make_rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Po
 
 
 def is_full(segment: Segment) -> bool:
-    """Whether a segment is a whole circle."""
+    """Return whether a segment is a whole circle."""
     return isinstance(segment, Arc) and segment.is_full
 
 
-def end_angle(segment: Segment, end: float) -> float:
-    """Direction in radians of the outward normal at the end (1) or the start (-1) of a segment."""
+def compute_end_angle(segment: Segment, end: float) -> float:
+    """Return the direction in radians of the outward normal at the end (1) or the start (-1) of a segment."""
     along = end * segment.half_extent * (segment.sign if isinstance(segment, Arc) else 1.0)
-    x, y = segment.normal(along)
+    x, y = segment.compute_normal(along)
     return atan2(y, x)
 
 
 def find_pockets(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
-    """The pockets, in which two pieces end with different normals: places, normals and numbers of pieces."""
+    """Return the pockets, in which two pieces end with different normals.
+
+    ``rows`` are those of the pieces about the part's centre.
+
+    Returns
+    -------
+    (places and both outward normals (V, 6), numbers of both pieces (V, 2))
+    """
     ends = [(k, s) for k, piece in enumerate(pieces) if not is_full(piece) for s in (-1.0, 1.0)]
     if not ends:
         return np.zeros((0, 6)), np.zeros((0, 2), np.int64)
-    points = np.array([pieces[k].at(s * pieces[k].half_extent) for k, s in ends])
-    normals = np.array([pieces[k].normal(s * pieces[k].half_extent) for k, s in ends])
+    points = np.array([pieces[k].compute_point(s * pieces[k].half_extent) for k, s in ends])
+    normals = np.array([pieces[k].compute_normal(s * pieces[k].half_extent) for k, s in ends])
     shift = rows[0, [X, Y]] - np.array(
         pieces[0].center if isinstance(pieces[0], Arc) else pieces[0].middle  # the same point before centring
     )
@@ -126,8 +152,8 @@ class HullSide:
 
     Parameters
     ----------
-    angle : of its outward normal on the part, in radians.
-    pieces : at its start and its end, run through with the part on its left.
+    angle : of its outward normal in the part's frame, in radians.
+    pieces : numbers of the hull pieces at its start and end, traversed with the part on the left.
     """
 
     angle: float
@@ -135,23 +161,23 @@ class HullSide:
 
 
 @define(frozen=True, eq=False)
-class Hull:
-    """The pieces of a part's hull.
+class PartHull:
+    """The corners and arcs of a part's convex hull.
 
     Parameters
     ----------
     rows : (H, 6) see ``kernels.seating.obstacles``.
-    touches : what of the part each is.
+    touches : the part's feature that each row is.
     """
 
     rows: Array
-    touches: tuple[Touch, ...]
+    touches: tuple[TouchedFeature, ...]
 
     @classmethod
-    def of(cls, workpiece: Workpiece) -> Hull:
-        """The hull of a part, about the centre of its box."""
+    def from_workpiece(cls, workpiece: Workpiece) -> PartHull:
+        """Return the hull of a part, about the centre of its box."""
         outer = workpiece.outer_faces
-        pieces = HullPieces.of([face.segment for face in outer], workpiece.outer_face_counts)
+        pieces = HullPieces.from_segments([face.segment for face in outer], workpiece.outer_face_counts)
         rows = np.concatenate(
             [
                 pieces.center - np.array(workpiece.center),
@@ -161,35 +187,45 @@ class Hull:
             ],
             axis=1,
         )
-        return cls(rows, tuple(Touch(outer[faces[-1]].number, len(faces) > 1) for faces in pieces.faces))
+        return cls(
+            rows, tuple(TouchedFeature(outer[faces[-1]].number, len(faces) > 1) for faces in pieces.faces)
+        )
 
     @property
-    def turned_over(self) -> Hull:
+    def turned_over(self) -> PartHull:
         """The hull of the part turned over, x to -x."""
-        return Hull(self.rows * np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 1.0]), self.touches)
+        return PartHull(self.rows * np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 1.0]), self.touches)
 
     @property
     def limits(self) -> Array:
-        """Directions in radians in which arcs that are no whole circles cease to support."""
+        """The directions in radians, in [0, 2 pi), at which arcs that are
+        not whole circles cease to support.
+        """
         arcs = self.rows[(self.rows[:, 2] > 0.0) & (self.rows[:, 5] > -1.0)]
         middle, half = np.arctan2(arcs[:, 4], arcs[:, 3]), np.arccos(arcs[:, 5])
         return np.concatenate([middle - half, middle + half]) % tau
 
-    def reach(self, angles: Array) -> Array:
-        """The reach (N, H) in mm of the pieces in directions (N,), -inf where they do not support."""
+    def compute_reach(self, angles: Array) -> Array:
+        """Return how far in mm each piece extends in directions (N,) in
+        radians: (N, H), -inf where it does not support.
+        """
         normal = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         there = normal @ self.rows[:, 3:5].T >= self.rows[:, 5] - SUPPORTS
         return np.asarray(np.where(there, normal @ self.rows[:, :2].T + self.rows[:, 2], -np.inf))
 
-    def clearance(self, configs: Array, wall: tuple[float, float, float]) -> Array:
-        """Distances (N,) in mm of the part from a wall in configurations (N, 4); see ``Pattern.wall``."""
+    def compute_wall_clearance(self, configs: Array, wall: tuple[float, float, float]) -> Array:
+        """Return the distances (N,) in mm of the part from a wall in
+        configurations (N, 4), negative where it enters.
+
+        ``wall`` is ``Pattern.half_plane``.
+        """
         ux, uy, off = wall
-        reach = self.reach(atan2(-uy, -ux) - configs[:, 0]).max(axis=1)
+        reach = self.compute_reach(atan2(-uy, -ux) - configs[:, 0]).max(axis=1)
         return np.asarray(configs[:, 1] * ux + configs[:, 2] * uy - off - reach)
 
     @cached_property
     def sides(self) -> list[HullSide]:
-        """The hull edges, by their angles."""
+        """The hull edges, in ascending order of their angles."""
         found: list[tuple[float, int]] = []
         for i, one in enumerate(self.rows):
             for j, other in enumerate(self.rows[:i]):
@@ -199,7 +235,7 @@ class Hull:
                     continue
                 for turn in (1.0, -1.0):
                     angle = (atan2(dy, dx) + turn * acos(across / size)) % tau
-                    reach = self.reach(np.array([angle]))[0]
+                    reach = self.compute_reach(np.array([angle]))[0]
                     if min(reach[i], reach[j]) > reach.max() - 2 * TOUCHING:
                         found += [(angle, i), (angle, j)]
         sides: list[HullSide] = []
@@ -225,34 +261,41 @@ class Silhouette:
     Parameters
     ----------
     rows : (S, 10) faces.
-    points : (M, 2) on them.
+    points : (M, 2) points on the faces, in mm.
     """
 
     rows: Array
     points: Array
 
     @classmethod
-    def of(cls, workpiece: Workpiece) -> Silhouette:
+    def from_workpiece(cls, workpiece: Workpiece) -> Silhouette:
+        """Return the silhouette of a part; raise InputError as :func:`refuse_own_outlines`."""
         refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
-        rows = move_rows_to_origin(segment_rows(segments), workpiece.center)
-        points = [s.at(t) for s in segments for t in np.linspace(-s.half_extent, s.half_extent, POINTS)]
+        rows = move_rows_to_origin(make_segment_rows(segments), workpiece.center)
+        points = [
+            s.compute_point(t) for s in segments for t in np.linspace(-s.half_extent, s.half_extent, POINTS)
+        ]
         return cls(rows, np.array(points) - workpiece.center)
 
     @cached_property
     def arm(self) -> float:
-        """Largest distance in mm of one of its points from the centre."""
+        """The largest distance in mm of one of its points from the centre."""
         return float(np.hypot(*self.points.T).max())
 
-    def cover_same(self, one: Array, others: Array, turned_over: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Whether a part, perhaps turned over (N,), covers in configurations (N, 4) what it does in one."""
+    def find_same_cover(self, one: Array, others: Array, turned_over: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return, for each configuration (N, 4), whether the part covers
+        the same place in it as in ``one`` (4,).
+
+        ``turned_over`` (N,) is True where the part is turned over.
+        """
         out = np.empty(len(others), np.int8)
-        cover_same(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
+        write_same_cover(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
         return out.astype(np.bool_)
 
 
 def refuse_own_outlines(workpiece: Workpiece) -> None:
-    """Refuses a part of which some carriers meet another outline than others."""
+    """Raise InputError for a part on which some carriers meet another outline than others."""
     if workpiece.outlines:
         role, _ = workpiece.outlines[0]
         raise InputError(

@@ -55,53 +55,62 @@ QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 @frozen
 class ClosingFrame:
-    """A change from a toolkit's frame to that of seating, and back.
+    """The change from a toolkit's frame to that of seating, and back.
 
     Parameters
     ----------
-    quarters : by how many quarter turns the toolkit is turned.
-    sign : 1 where S is the travel, -1 where it is the travel with the other sign.
+    quarters : number of quarter turns, counter-clockwise, from the toolkit's frame.
+    sign : 1 where S is the travel, -1 where it is minus the travel.
     """
 
     quarters: int
     sign: float
 
     @classmethod
-    def of(cls, toolkit: Toolkit, carrier: Carrier) -> ClosingFrame:
-        """The closing frame of a toolkit in which a carrier moves."""
+    def from_toolkit(cls, toolkit: Toolkit, carrier: Carrier) -> ClosingFrame:
+        """Return the closing frame of a toolkit in which ``carrier`` moves."""
         assert carrier.travel is not None
         x, y = (toolkit.clamping * part for part in carrier.travel.unit)
         return cls(-QUARTERS.index((round(x) + 0.0, round(y) + 0.0)) % 4, float(toolkit.clamping))
 
-    def turned(self, points: Array, back: bool = False) -> Array:
-        """Points or directions (..., 2) of the toolkit's frame as they lie in that of seating, or back."""
+    def turn_points(self, points: Array, back: bool = False) -> Array:
+        """Return points or directions (..., 2) of the toolkit's frame as they lie in the frame of seating.
+
+        With ``back``, return those of the frame of seating as they lie in the toolkit's frame.
+        """
         cosine, sine = QUARTERS[self.quarters]
         sine = -sine if back else sine
         return np.asarray(points @ np.array([[cosine, sine], [-sine, cosine]]) + 0.0)
 
-    def enter(self, config: Array) -> Array:
-        """A configuration (4,) of theta, x, y and travel as one of theta, x, y and S."""
+    def map_from_toolkit(self, config: Array) -> Array:
+        """Return a configuration (4,) in the frame of seating (theta, x,
+        y, jaw separation S), in radians and mm.
+
+        ``config`` is the same in the toolkit's frame: theta, x, y and travel.
+        """
         return np.array(
-            [config[0] + self.quarters * np.pi / 2, *self.turned(config[1:3]), self.sign * config[3]]
+            [config[0] + self.quarters * np.pi / 2, *self.turn_points(config[1:3]), self.sign * config[3]]
         )
 
-    def leave(self, configs: Array) -> Array:
-        """Configurations (..., 4) of theta, x, y and S as those of theta, x, y and travel."""
+    def map_to_toolkit(self, configs: Array) -> Array:
+        """Return configurations (..., 4) of theta, x, y and the jaw
+        separation S as theta, x, y and travel in the toolkit's frame.
+        """
         out = np.array(configs)
         out[..., 0] -= self.quarters * np.pi / 2
-        out[..., 1:3] = self.turned(configs[..., 1:3], back=True)
+        out[..., 1:3] = self.turn_points(configs[..., 1:3], back=True)
         out[..., 3] *= self.sign
         return out
 
 
 @frozen(eq=False)
 class CommonToPatterns:
-    """What the patterns of all fixtures have in common whose pegs stand on the same carriers.
+    """The data that patterns of all fixtures share whose pegs stand on the same carriers.
 
     Parameters
     ----------
-    travel : of what moves.
-    frame, right, radii, numbers, half_plane : as of ``Pattern``.
+    travel : of the carrier that moves.
+    frame, right, radii, numbers, half_plane : as in ``Pattern``.
     """
 
     travel: Travel
@@ -113,20 +122,22 @@ class CommonToPatterns:
 
     @classmethod
     @lru_cache(maxsize=TOOLKITS)
-    def of(cls, toolkit: Toolkit, names: tuple[str, ...]) -> CommonToPatterns:
-        """What patterns on carriers of some names have in common."""
+    def from_toolkit(cls, toolkit: Toolkit, names: tuple[str, ...]) -> CommonToPatterns:
+        """Return the common data of patterns whose pegs stand on carriers
+        with these names, in the order of the pegs.
+        """
         refuse_unseated(toolkit)
         standing_on = [toolkit.find_carrier(name) for name in names]
         numbers = tuple(k for k, carrier in enumerate(standing_on) if carrier.contact.is_placed)
         carriers = [standing_on[k] for k in numbers]
         moving = next(carrier for carrier in carriers if carrier.travel is not None)
         standing = next(carrier for carrier in carriers if carrier.travel is None)
-        frame = ClosingFrame.of(toolkit, moving)
+        frame = ClosingFrame.from_toolkit(toolkit, moving)
         right = np.array([int(carrier.travel is not None) for carrier in carriers], dtype=np.int64)
         half_plane = None
         if WALL_END in toolkit.contacts:
             # It runs along x at y = 0, the part above it.
-            x, y = frame.turned(np.array([0.0, 1.0])).tolist()
+            x, y = frame.turn_points(np.array([0.0, 1.0])).tolist()
             half_plane = x, y, 0.0
         assert moving.travel is not None
         radii = standing.peg_radius, moving.peg_radius
@@ -134,12 +145,13 @@ class CommonToPatterns:
 
 
 def refuse_unseated(toolkit: Toolkit) -> None:
-    """Refuses toolkits for which seats of closing are not sought.
+    """Raise InputError for a toolkit whose seats are not computed.
 
     Raises
     ------
     InputError
-        With two clamps, where no peg stands still, for pegs with a flat, and for pegs without a radius.
+        With two clamps, straps or flat jaws, where no peg stands still, for pegs with a flat, and for pegs
+        without a radius.
     """
     words = "the seating is worked out only"
     if toolkit.flat_jaws is not None:
@@ -171,18 +183,18 @@ BEYOND = 1.0
 
 @define(frozen=True, eq=False)
 class Pattern:
-    """Four pegs, in their closing frame.
+    """A fixture's pegs in their closing frame: four, or two with a wall; in a subset two or three.
 
     Parameters
     ----------
     pegs : (4, 2) their places in mm at separation 0.
     right : (4,) 1 for those that move, such as pegs of the right jaw, 0 for others.
     radii : in mm, of the pegs that stand still and of those that move.
-    stop, widest : the smallest and the largest separation in mm, infinite where nothing stops what moves.
+    stop, widest : the smallest and the largest separation in mm, -inf and inf where nothing stops what moves.
     frame : leads to the toolkit's frame and back.
-    numbers : their places (4,) in the fixture's pegs.
-    half_plane : what a wall leaves free, with two pegs: the unit vector into it, along x or y, and how far in
-        mm along it the wall is. None without a wall.
+    numbers : their indices (4,) in the fixture's pegs.
+    half_plane : the side of a wall on which the part is: the unit vector into it, along x or y, and the
+        wall's coordinate along that in mm. None without a wall.
     gap : least distance in mm along x that pegs of both jaws keep, None where none is asked for.
     """
 
@@ -197,39 +209,47 @@ class Pattern:
     gap: float | None = None
 
     @classmethod
-    def of(cls, fixture: Fixture, toolkit: Toolkit) -> Pattern:
-        """The pattern of a fixture's pegs.
+    def from_fixture(cls, fixture: Fixture, toolkit: Toolkit) -> Pattern:
+        """Return the pattern of a fixture's pegs.
 
         Raises
         ------
         InputError
-            With two clamps, for pegs with a flat, and for pegs without a radius.
+            As :func:`refuse_unseated`.
         """
-        common = CommonToPatterns.of(toolkit, tuple([peg.carrier for peg in fixture.pegs]))
+        common = CommonToPatterns.from_toolkit(toolkit, tuple([peg.carrier for peg in fixture.pegs]))
         frame, right, gap = common.frame, common.right, toolkit.gap
-        pegs = frame.turned(np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in common.numbers], float))
+        pegs = frame.turn_points(
+            np.array([[fixture.pegs[k].x, fixture.pegs[k].y] for k in common.numbers], float)
+        )
         separation = frame.sign * fixture.travel
         pegs[:, 0] -= right * separation
         pattern = cls(pegs, right, common.radii, -inf, inf, frame, common.numbers, common.half_plane, gap)
-        stop, widest = pattern.free_of_locators(separation) if gap is None else pattern.gap_kept(gap)
+        stop, widest = (
+            pattern.find_locator_limits(separation) if gap is None else pattern.find_gap_limits(gap)
+        )
         if frame.sign < 0.0:
             stop = stop if common.travel.most is None else max(stop, -common.travel.most)
         elif gap is None:
             stop = max(stop, common.travel.least)
         return evolve(pattern, stop=stop, widest=widest)
 
-    def gap_kept(self, gap: float) -> tuple[float, float]:
-        """The stop and the widest separation that a gap between pegs of both jaws leaves.
+    def find_gap_limits(self, gap: float) -> tuple[float, float]:
+        """Return the stop and the widest separation in mm that a gap in mm between pegs of both jaws leaves.
 
-        Jaws that close have a stop, and jaws that clamp by opening a widest separation.
+        Jaws that close have a stop (and inf), jaws that clamp by opening a widest separation (and -inf).
         """
         left, right = self.along_x
         if self.frame.sign > 0.0:
             return gap + max(left) - min(right), inf
         return -inf, min(left) - max(right) - gap
 
-    def free_of_locators(self, separation: float) -> tuple[float, float]:
-        """The separations, about a given one, at which a clamp's tip meets a locator before or behind it."""
+    def find_locator_limits(self, separation: float) -> tuple[float, float]:
+        """Return the nearest separations below and above a given one at
+        which a clamp's tip meets a locator or the wall.
+
+        -inf and inf where it meets none.
+        """
         stop, widest = -inf, inf
         for tip in self.pegs[self.right == 1]:
             for locator in self.pegs[self.right == 0]:
@@ -250,27 +270,30 @@ class Pattern:
                     widest = min(widest, ahead)
         return stop, widest
 
-    def end(self, diameter: float) -> float:
-        """The smallest separation in mm that a descent leads to: the stop, if there is one.
+    def find_least_separation(self, diameter: float) -> float:
+        """Return the smallest separation in mm to which a descent leads: the stop, if there is one.
 
-        Without a stop no peg that moves touches a part of the diameter together with one that stands still.
+        Without a stop it is so small that no moving peg can touch a part of this diameter together with a
+        standing one.
         """
         left, right = self.along_x
         return max(self.stop, min(left) - max(right) - diameter - sum(self.radii) - BEYOND)
 
     @property
     def along_x(self) -> tuple[list[float], list[float]]:
-        """The places in mm along x of the pegs that stand still, and of those that move at separation 0."""
+        """The x coordinates in mm of the pegs that stand still, and of those that move at separation 0."""
         left, right = (self.pegs[self.right == side, 0].tolist() for side in (0, 1))
         return left, right
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
-        """(4,) the pegs from left to right, those that stand still before those that move."""
+        """The numbers (4,) of the pegs that stand still, then of those that move, each from left to right."""
         return np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
 
-    def key(self) -> tuple[object, ...]:
-        """A key that patterns share if they differ by a shift of all pegs and by their order."""
+    def make_key(self) -> tuple[object, ...]:
+        """Return a key that patterns share if they differ only by a shift
+        of all pegs and by the pegs' order.
+        """
         order, pegs = self.order.tolist(), self.pegs.tolist()
         (x, y), sides = pegs[order[0]], [int(self.right[k]) for k in order]
         # Where separations are counted from is of no account.
@@ -285,12 +308,18 @@ class Pattern:
         steps = np.rint(np.array([*ends, *chain(*moved)]) / SAME_PATTERN) + 0.0
         return (*self.radii, *sides, *steps.tolist())
 
-    def reaches(self, separation: Any, slack: float = 0.0) -> Any:
-        """Whether separations, a number or many, are between the stop and the widest."""
+    def is_reachable(self, separation: Any, slack: float = 0.0) -> Any:
+        """Return whether separations, a number or an array, are between
+        the stop and the widest, ``slack`` mm inside both.
+        """
         return (separation > self.stop + slack) & (separation < self.widest - slack)
 
-    def at(self, configs: Array) -> Array:
-        """Places (N, 4, 2) of the pegs on the part, in configurations (N, 4) of theta, x, y and S."""
+    def place_pegs(self, configs: Array) -> Array:
+        """Return the places (N, K, 2) of the K pegs in the part's frame,
+        in configurations (N, 4) of theta, x, y and S.
+
+        S is the jaw separation in mm.
+        """
         x = self.pegs[:, 0] + self.right * configs[:, 3:4] - configs[:, 1:2]
         y = self.pegs[:, 1] - configs[:, 2:3]
         cosine, sine = np.cos(configs[:, :1]), np.sin(configs[:, :1])
@@ -309,14 +338,16 @@ SLACK = 1e-6
 
 @frozen(eq=False, slots=False)
 class PegSubset:
-    """Pegs of a pattern in an own frame: the first at the origin, and the first that moves at x = 0.
+    """Some pegs of a pattern in a frame of their own: the first at
+    the origin, and the first that moves at x = 0.
 
     Parameters
     ----------
     whole : the pattern.
     numbers : of the pegs in it.
-    sides, places : of each 1 where it moves, and where it stands.
-    shift : (4,) by which configurations become those of the pattern.
+    sides : for each peg 1 if it moves, else 0.
+    places : of the pegs in mm.
+    shift : (4,) added to configurations to make them those of the pattern.
     """
 
     whole: Pattern
@@ -326,8 +357,9 @@ class PegSubset:
     shift: Array
 
     @classmethod
-    def of(cls, pattern: Pattern, numbers: Sequence[int]) -> PegSubset:
-        pegs, right, beside = places_of(pattern)
+    def from_pattern(cls, pattern: Pattern, numbers: Sequence[int]) -> PegSubset:
+        """Return the subset of a pattern's pegs with these numbers."""
+        pegs, right, beside = list_peg_places(pattern)
         # Pegs of each jaw from left to right, those that stand still before those that move.
         start = {right[k]: k for k in reversed(numbers)}
         order = tuple(k for *_, k in sorted((right[k], *beside[start[right[k]]][k], k) for k in numbers))
@@ -338,64 +370,67 @@ class PegSubset:
 
     @property
     def is_of_a_jaw(self) -> bool:
-        """Whether all pegs move, or none."""
+        """Whether all pegs are of one jaw: all move, or none."""
         return self.sides[0] == self.sides[-1]
 
     @cached_property
     def key(self) -> tuple[object, ...]:
-        """A key that subsets share if they stand alike: all that their own pattern is made from."""
+        """A key that subsets share if their pegs stand alike; their own patterns then agree."""
         return self.whole.radii, self.whole.frame.sign, self.whole.gap, self.sides, self.places
 
     @cached_property
     def pattern(self) -> Pattern:
-        """The pegs alone, with no other stop than the gap, which patterns of more pegs keep too."""
+        """The pattern of these pegs alone, with no other stop than the
+        gap, which patterns of more pegs keep too.
+        """
         whole, alone = self.whole, (np.array(self.places), np.array(self.sides, dtype=np.int64))
         made = Pattern(*alone, whole.radii, -inf, inf, whole.frame, self.numbers, None, whole.gap)
         if whole.gap is None or self.is_of_a_jaw:
             return made
-        stop, widest = made.gap_kept(whole.gap)
+        stop, widest = made.find_gap_limits(whole.gap)
         return evolve(made, stop=stop - SLACK, widest=widest + SLACK)
 
     @cached_property
     def numbers_and_shift(self) -> tuple[float, ...]:
-        """The jaw, the names and the shift, as of ``kernels.seating.gathering``."""
+        """The columns JAW, NAMES and SHIFT of the subset, see ``kernels.seating.gathering``."""
         jaw = self.sides[0] if self.is_of_a_jaw else -1
         names = *self.numbers, *[-1] * (4 - len(self.numbers))
         return (jaw, *names, *self.shift[1:].tolist())
 
 
 @lru_cache(maxsize=SIDES)
-def places_of(pattern: Pattern) -> tuple[list[list[float]], list[int], list[list[tuple[float, float]]]]:
-    """The pegs of a pattern, whether each moves, and how far right of and above each other they are, in mm.
-
-    Of the two indices the first is that of the peg from which the other is seen.
+def list_peg_places(pattern: Pattern) -> tuple[list[list[float]], list[int], list[list[tuple[float, float]]]]:
+    """Return the places of a pattern's pegs, their sides, and
+    beside[i][j] = (x, y) of peg j from peg i, rounded, in mm.
     """
     pegs = pattern.pegs.tolist()
     return (
         pegs,
         pattern.right.tolist(),
-        [[(rounded(x - left), rounded(y - low)) for x, y in pegs] for left, low in pegs],
+        [[(round_length(x - left), round_length(y - low)) for x, y in pegs] for left, low in pegs],
     )
 
 
-def rounded(x: float) -> float:
-    """A length in mm without its rounding, nor the sign of 0."""
+def round_length(x: float) -> float:
+    """Return a length in mm rounded to ``DECIMALS``, with 0.0 for -0.0."""
     return round(x, DECIMALS) + 0.0
 
 
 @lru_cache(maxsize=SIDES)
 def list_subsets(pattern: Pattern) -> tuple[PegSubset, ...]:
-    """All subsets of three pegs, pairs of pegs of both jaws, and pairs of a jaw that has no third peg.
-
-    They are kept for the other side of the part.
+    """Return all subsets of three pegs, pairs of pegs of both jaws,
+    and pairs of a jaw that has no third peg; kept.
     """
     right, every = pattern.right.tolist(), range(len(pattern.right))
     two = [(i, j) for i, j in combinations(every, 2) if right[i] != right[j] or right.count(right[i]) == 2]
-    return tuple(PegSubset.of(pattern, numbers) for numbers in (*two, *combinations(every, 3)))
+    return tuple(PegSubset.from_pattern(pattern, numbers) for numbers in (*two, *combinations(every, 3)))
 
 
 @lru_cache(maxsize=SIDES)
 def list_jaw_subsets(pattern: Pattern) -> dict[int, PegSubset]:
-    """The pegs of each jaw, by whether it moves (1) or not (0); kept like those of ``list_subsets``."""
+    """Return the subset of all pegs of each jaw, by whether it moves (1) or not (0); kept."""
     sides = dict.fromkeys(pattern.right.tolist())
-    return {side: PegSubset.of(pattern, np.flatnonzero(pattern.right == side).tolist()) for side in sides}
+    return {
+        side: PegSubset.from_pattern(pattern, np.flatnonzero(pattern.right == side).tolist())
+        for side in sides
+    }

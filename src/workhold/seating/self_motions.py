@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from workhold.conventions import PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, X, Y
-from workhold.kernels.seating.columns import Given, Manifolds, Obstacles, SelfMotions
-from workhold.kernels.seating.freedom import free_runs, keep_free
+from workhold.kernels.seating.columns import HeldPart, Manifolds, Obstacles, SelfMotions
+from workhold.kernels.seating.freedom import keep_free, write_free_runs
 from workhold.kernels.seating.gathering import write_each_once
 from workhold.kernels.seating.parallel_and_concentric import (
     AT_HIGH,
@@ -35,23 +35,23 @@ from workhold.kernels.seating.parallel_and_concentric import (
     ON_THIRD,
     THIRD,
     THREE_FACES,
-    on_three_faces,
+    write_on_three_faces,
 )
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_ONE, SLIDE_SECOND, SLIDE_TWO
-from workhold.seating.closing import filled
+from workhold.seating.closing import fill_rows
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern, PegSubset
 
 __all__ = [
     "ManifoldFinder",
-    "Opposed",
+    "OpposedLines",
     "SelfMotion",
-    "joined",
+    "join_manifolds",
     "find_pattern_motions",
     "find_motions_on_one_center",
     "find_motions_on_one_line",
     "find_motions_on_parallel_lines",
-    "turning",
+    "make_turning_motion",
 ]
 
 Array = NDArray[np.float64]
@@ -73,9 +73,9 @@ class SelfMotion:
 
     Parameters
     ----------
-    configs : (N, 4) along it.
-    contacts : pegs and the pieces that they touch all along.
-    is_closed : whether the last one is beside the first.
+    configs : (N, 4) theta, x, y, S along it.
+    contacts : (peg, piece) numbers of the contacts that stay.
+    is_closed : whether the last configuration is beside the first.
     across : (2,) direction in which the part gives way to both sides, or None where it does not.
     """
 
@@ -86,15 +86,16 @@ class SelfMotion:
 
 
 @frozen
-class Opposed:
-    """Two straight pieces that face away from each other, of a peg that stands still and of one that moves.
+class OpposedLines:
+    """Two parallel straight pieces with opposite normals, for a peg that stands still and one that moves.
 
     Parameters
     ----------
     pieces : their numbers.
-    width : from the first to the second in mm along the second's normal, below 0 where they face each other.
+    width : from the first to the second in mm along the second's normal, negative where they face each other.
     angle : of that normal in radians.
-    low, high : parameters of the first between which both are beside each other.
+    low, high : parameters of the first in mm between which both are beside each other; low > high where they
+        nowhere are.
     """
 
     pieces: tuple[int, int]
@@ -104,8 +105,9 @@ class Opposed:
     high: float
 
 
-def list_opposed_lines(boundary: ObstacleBoundary) -> list[Opposed]:
-    rows, found = boundary.rows.tolist(), list[Opposed]()
+def list_opposed_lines(boundary: ObstacleBoundary) -> list[OpposedLines]:
+    """Return all pairs of opposed lines of a boundary."""
+    rows, found = boundary.rows.tolist(), list[OpposedLines]()
     standing, moving = (
         [k for k in range(first, end) if rows[k][IS_ARC] == 0.0] for first, end in boundary.parts.tolist()
     )
@@ -117,11 +119,11 @@ def list_opposed_lines(boundary: ObstacleBoundary) -> list[Opposed]:
         shift = dx * one[AXIS_X] + dy * one[AXIS_Y]
         low = max(-one[HALF_EXTENT], shift - two[HALF_EXTENT])
         high = min(one[HALF_EXTENT], shift + two[HALF_EXTENT])
-        found.append(Opposed((a, b), dx * ux + dy * uy, atan2(uy, ux), low, high))
+        found.append(OpposedLines((a, b), dx * ux + dy * uy, atan2(uy, ux), low, high))
     return found
 
 
-def sliding(
+def make_sliding_motion(
     pattern: Pattern,
     theta: float,
     start: Point,
@@ -131,8 +133,19 @@ def sliding(
     s: float,
     contacts: list[PegOnPiece],
 ) -> list[SelfMotion]:
-    """The motion of a part that slides on a peg at ``start`` along a line, from one parameter to another."""
-    if high - low < SHORTEST or not pattern.reaches(s, SAME):
+    """Return the motion of a part that slides on a peg along a line,
+    as a list of one, empty where it is not possible.
+
+    Parameters
+    ----------
+    theta : orientation in radians.
+    start : place of the peg in the closing frame, in mm.
+    line : row of the piece.
+    low, high : parameters in mm between which the peg slides.
+    s : separation in mm.
+    contacts : see ``SelfMotion``.
+    """
+    if high - low < SHORTEST or not pattern.is_reachable(s, SAME):
         return []
     t = EVEN * ((high - low) / EVEN[-1]) + low
     t[-1] = high
@@ -143,11 +156,20 @@ def sliding(
     return [SelfMotion(configs, contacts, False, None)]
 
 
-def turning(
+def make_turning_motion(
     pattern: Pattern, row: Array, center: Point, s: float, contacts: list[PegOnPiece], across: Point | None
 ) -> list[SelfMotion]:
-    """The motion of a part that turns about an arc's centre, which is at a place in the closing frame."""
-    if not pattern.reaches(s, SAME):
+    """Return the motion of a part that turns about an arc's centre,
+    as a list of one, empty where S is out of reach.
+
+    Parameters
+    ----------
+    row : of the arc.
+    center : place of its centre in the closing frame, in mm.
+    s : separation in mm.
+    contacts, across : see ``SelfMotion``.
+    """
+    if not pattern.is_reachable(s, SAME):
         return []
     theta = np.arange(TURN_STEPS) * tau / TURN_STEPS
     c, d = np.cos(theta), np.sin(theta)
@@ -156,19 +178,19 @@ def turning(
 
 
 def find_motions_on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
-    """Self-motions on two pegs that press parallel faces, or arcs of one centre, along one line."""
+    """Return self-motions on two pegs that press parallel faces, or arcs of one centre, along one line."""
     out, pegs, right = list[SelfMotion](), pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in product(range(len(pegs)), repeat=2):
         if not right[i] < right[j]:
             continue
         run, rise = pegs[j][0] - pegs[i][0], pegs[j][1] - pegs[i][1]
         least = abs(rise) * (1.0 + 1e-12)
-        for pair in boundary.once(list_opposed_lines):
+        for pair in boundary.find_once(list_opposed_lines):
             if abs(pair.width) > least:
                 a, b = pair.pieces
                 omega = asin(rise / pair.width)
                 theta, s = omega - pair.angle, pair.width * cos(omega) - run
-                out += sliding(
+                out += make_sliding_motion(
                     pattern, theta, pegs[i], boundary.rows[a], pair.low, pair.high, s, [(i, a), (j, b)]
                 )
         for standing, moving in boundary.rings:
@@ -181,23 +203,23 @@ def find_motions_on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> li
                 # Square to the line the centre gives way where both arcs bend away.
                 falls = 2.0 / d < 1.0 / one + 1.0 / two - 1e-12
                 across = (-sin(omega), cos(omega)) if falls else None
-                out += turning(
+                out += make_turning_motion(
                     pattern, boundary.rows[a], center, d * cos(omega) - run, [(i, a), (j, b)], across
                 )
     return out
 
 
 def find_motions_on_parallel_lines(
-    boundary: ObstacleBoundary, pattern: Pattern, slides: Array, given: Given
+    boundary: ObstacleBoundary, pattern: Pattern, slides: Array, given: HeldPart
 ) -> list[SelfMotion]:
-    """Self-motions on parallel faces: the middle one of three pegs presses against the outer two.
+    """Return self-motions on parallel faces: the middle one of three pegs presses against the outer two.
 
     ``slides`` (S, 7) are those of the two pegs of one jaw.
     """
     if not len(slides):
         return []
     out = list[SelfMotion]()
-    for row in filled(THREE_FACES, 64, on_three_faces, slides, given, pattern.stop, pattern.widest):
+    for row in fill_rows(THREE_FACES, 64, write_on_three_faces, slides, given, pattern.stop, pattern.widest):
         slide = slides[int(row[OF_SLIDE])]
         first, a, s = int(slide[SLIDE_FIRST]), int(slide[SLIDE_ONE]), float(row[AT_SEPARATION])
         contacts = [
@@ -207,14 +229,14 @@ def find_motions_on_parallel_lines(
         ]
         x, y = pattern.pegs[first].tolist()
         start = x + s * int(pattern.right[first]), y
-        out += sliding(
+        out += make_sliding_motion(
             pattern, row[AT_THETA], start, boundary.rows[a], row[AT_LOW], row[AT_HIGH], s, contacts
         )
     return out
 
 
 def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
-    """Self-motions on two pegs of one jaw and one of the other, all on arcs of one centre."""
+    """Return self-motions on two pegs of one jaw and one of the other, all on arcs of one centre."""
     out, pegs, right = list[SelfMotion](), pattern.pegs.tolist(), pattern.right.tolist()
     pairs = [(p, q) for p, q in combinations(range(len(right)), 2) if right[p] == right[q]]
     for ring, (p, q) in product(boundary.rings, pairs):
@@ -226,7 +248,7 @@ def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> 
                     for turn in (1.0, -1.0) if square >= 0.0 else ():
                         at = x + turn * sqrt(square)
                         s = at - pegs[k][0] if right[k] == 1 else pegs[k][0] - at
-                        if not pattern.reaches(s, SAME):
+                        if not pattern.is_reachable(s, SAME):
                             continue
                         center = x + s * side, y
                         normals = [
@@ -236,15 +258,18 @@ def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> 
                             )
                             for peg, signed in ((p, one), (q, two), (k, three))
                         ]
-                        if balance(normals, [side, side, 1 - side]):
-                            out += turning(
+                        if is_balanced(normals, [side, side, 1 - side]):
+                            out += make_turning_motion(
                                 pattern, boundary.rows[a], center, s, [(p, a), (q, b), (k, c)], None
                             )
     return out
 
 
-def balance(normals: list[Point], moves: list[int]) -> bool:
-    """Whether forces of three pegs through one centre balance the jaw's; ``moves`` is 1 where one moves."""
+def is_balanced(normals: list[Point], moves: list[int]) -> bool:
+    """Return whether forces at three pegs with concurrent normals balance the jaw force without pulling.
+
+    ``moves`` is 1 for a peg that moves, else 0.
+    """
     (ax, ay), (bx, by), (cx, cy) = normals
     # As much of each as the other two span, which leaves nothing over, per unit of what presses along x.
     forces = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
@@ -253,7 +278,7 @@ def balance(normals: list[Point], moves: list[int]) -> bool:
 
 
 def find_circle_crossings(one: Point, r1: float, two: Point, r2: float) -> list[Point]:
-    """The points at given distances from two places."""
+    """Return the points at distance ``r1`` from one place and ``r2`` from another, in mm: two, or none."""
     dx, dy = two[0] - one[0], two[1] - one[1]
     d = hypot(dx, dy)
     along = (d * d + r1 * r1 - r2 * r2) / (2.0 * d)
@@ -264,11 +289,12 @@ def find_circle_crossings(one: Point, r1: float, two: Point, r2: float) -> list[
     return [(one[0] + along * ex - t * half * ey, one[1] + along * ey + t * half * ex) for t in (1.0, -1.0)]
 
 
-NO_MANIFOLDS = Manifolds.room(0, 0)
-NO_MOTIONS = SelfMotions.room(0, 0)
+NO_MANIFOLDS = Manifolds.allocate(0, 0)
+NO_MOTIONS = SelfMotions.allocate(0, 0)
 
 
 def find_pattern_motions(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
+    """Return the self-motions of all subsets with configurations and pegs of their common pattern."""
     some = [(subset, motions) for subset, motions in found if len(motions.counts)]
     if not some:
         return NO_MOTIONS
@@ -281,7 +307,8 @@ def find_pattern_motions(found: Sequence[tuple[PegSubset, SelfMotions]]) -> Self
     return out._replace(pegs=np.repeat(numbers, [len(motions.counts) for _, motions in some], axis=0))
 
 
-def joined(parts: Sequence[Manifolds]) -> Manifolds:
+def join_manifolds(parts: Sequence[Manifolds]) -> Manifolds:
+    """Return the sets of all parts, in order."""
     rows, configs, _, closed, across = (
         np.concatenate(same) for same in zip(NO_MANIFOLDS, *parts, strict=True)
     )
@@ -293,7 +320,7 @@ def joined(parts: Sequence[Manifolds]) -> Manifolds:
 
 @define(frozen=True, eq=False, slots=False)
 class ManifoldFinder:
-    """Finds the equilibrium manifolds of a pattern on a part.
+    """A finder of the equilibrium manifolds of a pattern on a part.
 
     Parameters
     ----------
@@ -305,25 +332,31 @@ class ManifoldFinder:
 
     @property
     def rows(self) -> Array:
+        """The pieces (N, 10) of the boundary."""
         return self.boundary.rows
 
     @cached_property
     def lines(self) -> list[int]:
+        """The numbers of the straight pieces."""
         return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
 
     @cached_property
     def around(self) -> Obstacles:
-        """What keeps the pegs off the part, where turns and the stop do not count."""
-        return self.boundary.obstacles(self.pattern, 1.0, 0.0)
+        """The part and the pegs as kernels take them, with an arbitrary
+        size and stop, which do not count here.
+        """
+        return self.boundary.make_obstacles(self.pattern, 1.0, 0.0)
 
     @property
     def obstacles(self) -> int:
-        """How many pegs and walls there are."""
+        """The number of pegs and walls."""
         return len(self.pattern.pegs) + (self.pattern.half_plane is not None)
 
-    def free(self, motions: Sequence[SelfMotion]) -> SelfMotions:
-        """The self-motions along which the part is free somewhere, with where it is known to be."""
-        every = SelfMotions.room(len(motions), sum(len(motion.configs) for motion in motions))
+    def find_free_motions(self, motions: Sequence[SelfMotion]) -> SelfMotions:
+        """Return those self-motions along which the part is free
+        somewhere, with the clearances of the pegs along them.
+        """
+        every = SelfMotions.allocate(len(motions), sum(len(motion.configs) for motion in motions))
         if not motions:
             return every
         np.concatenate([motion.configs for motion in motions], out=every.configs)
@@ -334,23 +367,27 @@ class ManifoldFinder:
             for peg, piece in motion.contacts:
                 every.pieces[k, peg] = piece
         count = keep_free(every, self.around, np.empty((len(self.pattern.pegs) + 1, 4)))
-        return every.first(count)
+        return every.take_first(count)
 
-    def cut(self, motions: SelfMotions) -> Manifolds:
-        """The free runs of self-motions at separations that are reached."""
+    def cut_into_manifolds(self, motions: SelfMotions) -> Manifolds:
+        """Return the free runs of self-motions, as sets, at separations between the stop and the widest."""
         if not len(motions.counts):
             return NO_MANIFOLDS
         # At least every second configuration hinders between runs; each has two ends besides.
         most, pegs = len(motions.configs) // 2 + len(motions.counts), len(self.pattern.pegs)
-        out = Manifolds.room(most, len(motions.configs) + 2 * most)
+        out = Manifolds.allocate(most, len(motions.configs) + 2 * most)
         low, high = self.pattern.stop + SAME, self.pattern.widest - SAME
         clear, seen = np.empty((len(motions.configs), self.obstacles)), np.empty((pegs + 1, 4))
         touched, work = np.empty(pegs, np.int64), np.empty((4, 4))
-        return out.first(free_runs(motions, low, high, self.around, clear, seen, touched, work, out))
+        return out.take_first(
+            write_free_runs(motions, low, high, self.around, clear, seen, touched, work, out)
+        )
 
-    def distinct(self, found: Manifolds) -> Manifolds:
-        """The manifolds found, each once: of those that lie in each other the one with the most contacts."""
+    def drop_contained(self, found: Manifolds) -> Manifolds:
+        """Return the sets without those that lie in a set with as many
+        contacts or more, in descending order of contacts.
+        """
         if not len(found.rows):
             return found
-        out = Manifolds.room(len(found.rows), len(found.configs))
-        return out.first(write_each_once(found, 1.0, SAME, out))
+        out = Manifolds.allocate(len(found.rows), len(found.configs))
+        return out.take_first(write_each_once(found, 1.0, SAME, out))

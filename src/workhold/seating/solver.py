@@ -21,25 +21,33 @@ from workhold.limits import choose_thread_count
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.result import Result
-from workhold.model.seating import Cage, Pass, Seat, SeatContact, Seating
+from workhold.model.seating import Cage, CagePass, Seat, SeatContact, Seating
 from workhold.model.workpiece import Workpiece
 from workhold.seating.caging_set import CagingSet
-from workhold.seating.clamping import by_hand, sticking_friction
-from workhold.seating.closing import Closing
+from workhold.seating.clamping import find_sticking_friction, plan_hand_loading
+from workhold.seating.closing import ClosingMotion
 from workhold.seating.contact_forces import (
     OTHERS_MAY_BE,
     WAS_NOT_FOUND,
-    as_candidate,
     find_contact_normals,
     is_equilibrium,
+    to_candidate,
 )
-from workhold.seating.equilibria import equilibria
-from workhold.seating.join_tree import KINDS, LOOSE, UNSETTLED, Join, JoinTree, RestPoses, distances
+from workhold.seating.equilibria import find_equilibria
+from workhold.seating.join_tree import (
+    KINDS,
+    LOOSE,
+    UNSETTLED,
+    CageJoin,
+    JoinTree,
+    RestPoses,
+    measure_distances,
+)
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import Silhouette
 from workhold.seating.pattern import Pattern
 
-__all__ = ["Solver", "seatings"]
+__all__ = ["SeatingSolver", "seatings"]
 
 Array = NDArray[np.float64]
 # mm. A fixture is found among the seats of its pegs when both pose and separation agree to this.
@@ -50,12 +58,13 @@ NO_PASS = "The pass at which its cage opens could not be settled: from where on 
 
 
 @define(eq=False)
-class Solver:
-    """Solves patterns of pegs on a part, each once, for one fixture (:meth:`of`) or many (:meth:`of_all`).
+class SeatingSolver:
+    """A solver of patterns of pegs on a part, each once, for one
+    fixture (:meth:`solve`) or many (:meth:`solve_all`).
 
     Parameters
     ----------
-    workpiece, toolkit : what is held in what.
+    workpiece, toolkit : the part, and what it is held in.
     """
 
     workpiece: Workpiece
@@ -67,26 +76,31 @@ class Solver:
     outline: Silhouette = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.outline = Silhouette.of(self.workpiece)
+        self.outline = Silhouette.from_workpiece(self.workpiece)
 
-    def closing(self, pattern: Pattern, turned_over: bool) -> Closing:
+    def make_closing(self, pattern: Pattern, turned_over: bool) -> ClosingMotion:
+        """Return the jaws of a pattern about the part, as drawn or turned over."""
         if pattern.radii not in self.boundaries:
-            self.boundaries[pattern.radii] = ObstacleBoundary.of(self.workpiece, pattern.radii)
+            self.boundaries[pattern.radii] = ObstacleBoundary.from_workpiece(self.workpiece, pattern.radii)
         boundary = self.boundaries[pattern.radii]
-        return Closing(boundary.turned_over if turned_over else boundary, pattern, self.outline.arm)
+        return ClosingMotion(boundary.turned_over if turned_over else boundary, pattern, self.outline.arm)
 
-    def trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[JoinTree, JoinTree]:
-        """The join trees of the part as drawn, with further seats (24,), and of the part turned over."""
+    def find_join_trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[JoinTree, JoinTree]:
+        """Return the join trees of the part as drawn, with further seats
+        (24,) ``missed``, and of the part turned over.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         out = list[JoinTree]()
-        for closing in (self.closing(pattern, turned_over) for turned_over in (False, True)):
-            found = equilibria(closing.boundary, pattern, closing.size)
+        for closing in (self.make_closing(pattern, turned_over) for turned_over in (False, True)):
+            found = find_equilibria(closing.boundary, pattern, closing.size)
             if missed and not out:
                 found = evolve(found, seats=np.vstack([found.seats, *missed]))
-            out.append(JoinTree.of(found, closing))
+            out.append(JoinTree.from_equilibria(found, closing))
         return out[0], out[1]
 
-    def of(self, fixture: Fixture, with_cage: bool = True) -> Seating:
-        """The seating of a fixture.
+    def solve(self, fixture: Fixture, with_cage: bool = True) -> Seating:
+        """Return the seating of a fixture.
 
         Parameters
         ----------
@@ -95,42 +109,51 @@ class Solver:
         Raises
         ------
         InputError
-            As ``Pattern.of``, and for a fixture of another part or toolkit.
+            As ``Pattern.from_fixture``, and for a fixture of another part or toolkit.
         """
         fixture.refuse_others(self.workpiece, self.toolkit)
-        return self.read(fixture, Pattern.of(fixture, self.toolkit), with_cage)
+        return self.make_seating(fixture, Pattern.from_fixture(fixture, self.toolkit), with_cage)
 
-    def read(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
-        return self.in_pattern(fixture, pattern).seating(with_cage)
+    def make_seating(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
+        """Return the seating of a fixture in its pattern."""
+        return self.place_in_pattern(fixture, pattern).make_seating(with_cage)
 
-    def in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
-        """A fixture in its pattern, which is solved once and has the fixture among its seats from then on."""
-        key = pattern.key()
+    def place_in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
+        """Return a fixture in its solved pattern.
+
+        The pattern is solved once; a fixture that is not among its seats is added to them, and the pattern
+        solved again.
+        """
+        key = pattern.make_key()
         if key not in self.solved:
-            self.solved[key] = pattern, self.trees(pattern), ()
+            self.solved[key] = pattern, self.find_join_trees(pattern), ()
         found = FixtureInPattern(self, fixture, pattern, *self.solved[key])
         if found.place is not None:
             return found
-        missed = (*found.missed, found.as_candidate())
-        self.solved[key] = found.known, self.trees(found.known, missed), missed
+        missed = (*found.missed, found.make_candidate())
+        self.solved[key] = found.known, self.find_join_trees(found.known, missed), missed
         return FixtureInPattern(self, fixture, pattern, *self.solved[key])
 
-    def of_all(
+    def solve_all(
         self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None
     ) -> list[Seating]:
-        """The seatings of many fixtures, in their order; patterns are shared out among threads.
+        """Return the seatings of many fixtures, in their order; patterns are shared out among threads.
 
-        None stands for a thread on each processor; the seatings do not depend on it. For ``with_cage`` see
-        :meth:`of`. Raises InputError as ``Pattern.of`` does, for a number of threads that is too large, and
-        for a fixture of another part or toolkit.
+        ``threads`` None stands for a thread on each processor; the seatings do not depend on it. For
+        ``with_cage`` see :meth:`solve`.
+
+        Raises
+        ------
+        InputError
+            As :meth:`solve`, and for a number of threads that is too large.
         """
         fixtures = list(fixtures)
         for fixture in fixtures:
             fixture.refuse_others(self.workpiece, self.toolkit)
-        made = self.as_many(fixtures, with_cage, choose_thread_count(threads))
+        made = self.solve_until_cancelled(fixtures, with_cage, choose_thread_count(threads))
         return [seating for seating in made if seating is not None]
 
-    def as_many(
+    def solve_until_cancelled(
         self,
         fixtures: Iterable[Fixture],
         with_cage: bool = True,
@@ -138,7 +161,8 @@ class Solver:
         progress: Callable[[float], None] | None = None,
         cancel: Event | None = None,
     ) -> list[Seating | None]:
-        """The seatings of fixtures until somebody cancels, in their order; None for fixtures that were left.
+        """Return the seatings of fixtures, in their order; None for
+        fixtures that were left when somebody cancelled.
 
         Parameters
         ----------
@@ -148,22 +172,25 @@ class Solver:
         Raises
         ------
         InputError
-            As :meth:`of`.
+            As :meth:`solve`.
         """
-        given = [(fixture, Pattern.of(fixture, self.toolkit)) for fixture in fixtures]
+        given = [(fixture, Pattern.from_fixture(fixture, self.toolkit)) for fixture in fixtures]
         groups: dict[tuple[object, ...], list[int]] = {}
         for number, (_, pattern) in enumerate(given):
-            groups.setdefault(pattern.key(), []).append(number)
+            groups.setdefault(pattern.make_key(), []).append(number)
 
         made: list[Seating | None] = [None] * len(given)
 
         def make(numbers: list[int]) -> int:
+            """Make the seatings of fixtures on one pattern, given by their
+            numbers; return how many were made.
+            """
             if cancel is not None and cancel.is_set():
                 return 0
             # All fixtures that stand on the pegs are known before the seating of any is made.
             for number in numbers[1:]:
-                self.in_pattern(*given[number])
-            for number, one in [(number, self.read(*given[number], with_cage)) for number in numbers]:
+                self.place_in_pattern(*given[number])
+            for number, one in [(number, self.make_seating(*given[number], with_cage)) for number in numbers]:
                 made[number] = one
             return len(numbers)
 
@@ -183,16 +210,16 @@ class Solver:
 
 @define(frozen=True, eq=False)
 class FixtureInPattern:
-    """A fixture in a solved pattern, whose pegs may stand elsewhere and in another order.
+    """A fixture in a solved pattern, whose pegs may be shifted and in another order.
 
     Parameters
     ----------
-    pattern, known : the fixture's, and the one that was solved.
+    pattern, known : the fixture's pattern, and the one that was solved.
     trees : the join trees of the part as drawn and turned over.
     missed : (24,) candidates of fixtures that were not found among the seats, and so were added to them.
     """
 
-    solver: Solver
+    solver: SeatingSolver
     fixture: Fixture
     pattern: Pattern
     known: Pattern
@@ -211,67 +238,83 @@ class FixtureInPattern:
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
-        """The number (K,) of each solved peg among the fixture's."""
+        """The index (K,) of each solved peg among the fixture's pegs."""
         out = np.empty(len(self.known.pegs), np.int64)
         out[self.known.order] = np.array(self.pattern.numbers)[self.pattern.order]
         return out
 
     @cached_property
     def own(self) -> Array:
-        """The configuration (4,) of the fixture."""
+        """The configuration (4,) of the fixture in the frame of seating."""
         pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
-        return self.pattern.frame.enter(np.array([radians(pose.theta_deg), x, y, self.fixture.travel]))
+        return self.pattern.frame.map_from_toolkit(
+            np.array([radians(pose.theta_deg), x, y, self.fixture.travel])
+        )
 
     @cached_property
     def place(self) -> int | None:
         """The number of the strict seat that is the fixture; None if none is."""
-        return self.nearest(self.trees[0].seats)
+        return self.find_own_candidate(self.trees[0].seats)
 
-    def nearest(self, rows: Array) -> int | None:
-        """The number of the candidate (N, 24) that is the fixture; None if none is."""
+    def find_own_candidate(self, rows: Array) -> int | None:
+        """Return the index of the candidate (N, 24) that is the fixture,
+        within ``AGREES`` mm; None if none is.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         configs = rows[:, CONFIG] + self.shift
-        away = distances(configs, self.own, self.solver.outline.arm) + np.abs(configs[:, 3] - self.own[3])
+        away = measure_distances(configs, self.own, self.solver.outline.arm) + np.abs(
+            configs[:, 3] - self.own[3]
+        )
         return int(np.argmin(away)) if len(away) and away.min() <= AGREES else None
 
-    def as_candidate(self) -> Array:
-        closing, faces = self.solver.closing(self.known, False), [peg.face for peg in self.fixture.pegs]
+    def make_candidate(self) -> Array:
+        """Return the fixture as a candidate (24,) of the solved pattern.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
+        closing, faces = self.solver.make_closing(self.known, False), [peg.face for peg in self.fixture.pegs]
         touched = [faces[number] for number in self.order]
-        return as_candidate(closing.boundary, self.known, self.own - self.shift, touched, closing.size)
+        return to_candidate(closing.boundary, self.known, self.own - self.shift, touched, closing.size)
 
-    def poses(self, configs: Array, turned_over: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
-        """The poses of configurations (N, 4) in the toolkit's frame: theta in degrees, x and y.
+    def compute_poses(self, configs: Array, turned_over: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
+        """Return the poses of configurations (N, 4) in the toolkit's
+        frame: theta in degrees (0 to 360), x and y in mm.
 
-        Where a part is turned over (N,) the pose is that of the part turned over.
+        Where ``turned_over`` (N,) is True, the pose is that of the part turned over.
         """
         x, y = self.solver.workpiece.center
         across = np.where(turned_over, -x, x)
-        left = self.pattern.frame.leave(configs)
+        left = self.pattern.frame.map_to_toolkit(configs)
         theta = left[:, 0] % tau
         c, s = np.cos(theta), np.sin(theta)
         return theta * 180.0 / pi, left[:, 1] - (c * across - s * y), left[:, 2] - (s * across + c * y)
 
-    def contacts(self, rows: Array) -> list[tuple[SeatContact, ...]]:
-        """The contacts of each of some candidates (N, 24)."""
+    def make_contacts(self, rows: Array) -> list[tuple[SeatContact, ...]]:
+        """Return the contacts of each candidate (N, 24), with the fixture's pegs.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
         numbers = self.order.tolist() + [
             k for k in range(len(self.fixture.pegs)) if k not in self.pattern.numbers
         ]
         pegs, pieces = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
         pegs = np.where(np.arange(4) < rows[:, CONTACTS, None], np.array(numbers)[pegs], -1)
-        return self.solver.closing(self.known, False).boundary.contacts_of(pegs, pieces)
+        return self.solver.make_closing(self.known, False).boundary.make_contacts(pegs, pieces)
 
-    def seats(self) -> tuple[Seat, ...]:
-        """All seats, by their separations."""
-        rests = RestPoses.of(
-            self.trees, self.solver.closing(self.known, False).boundary, len(self.known.pegs)
+    def make_seats(self) -> tuple[Seat, ...]:
+        """Return all seats, as drawn and turned over, in ascending order of separation."""
+        rests = RestPoses.from_join_trees(
+            self.trees, self.solver.make_closing(self.known, False).boundary, len(self.known.pegs)
         )
         rows, kinds, own, sign = rests.rows, rests.kinds, self.own, self.pattern.frame.sign
         configs = rows[:, CONFIG] + self.shift
-        away, rise = distances(configs, own, self.solver.outline.arm), configs[:, 3] - own[3]
+        away, rise = measure_distances(configs, own, self.solver.outline.arm), configs[:, 3] - own[3]
         is_own = (away < AGREES) & (np.abs(rise) < AGREES) & ~(rests.turned_over | (kinds == UNSETTLED))
-        same = self.solver.outline.cover_same(own, configs, rests.turned_over)
-        poses, separations = self.poses(configs, rests.turned_over), sign * configs[:, 3]
+        same = self.solver.outline.find_same_cover(own, configs, rests.turned_over)
+        poses, separations = self.compute_poses(configs, rests.turned_over), sign * configs[:, 3]
         # In a loose rest the forces are not certain.
         ends = (
             np.arange(0, 4 * len(rows), 4) + np.where(kinds < LOOSE, rows[:, CONTACTS], 0.0).astype(np.int64)
@@ -286,7 +329,7 @@ class FixtureInPattern:
                 (sign * rise).tolist(),
                 rests.turned_over.tolist(),
                 same.tolist(),
-                self.contacts(rows),
+                self.make_contacts(rows),
                 [tuple(forces[4 * k : end]) for k, end in enumerate(ends)],
                 [None if depth == inf else depth for depth in rests.depths.tolist()],
                 is_own.tolist(),
@@ -294,88 +337,100 @@ class FixtureInPattern:
         )
         return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
 
-    def seating(self, with_cage: bool) -> Seating:
+    def make_seating(self, with_cage: bool) -> Seating:
+        """Return the seating of the fixture, which must be among the
+        seats; with cage and placing if asked for.
+        """
         tree = self.trees[0]
         place = self.place
         assert place is not None
-        row, join = tree.seats[place], tree.join_of(place)
-        way_out = tree.way_out(place)
-        seats = self.seats()
+        row, join = tree.seats[place], tree.find_first_join(place)
+        way_out = tree.find_escape_separation(place)
+        seats = self.make_seats()
         factor = float(row[FORCE : FORCE + 4].sum())
         capture = None if join is None else float(join.separation - row[SEPARATION])
         unsettled = sum(seat.kind == "unsettled" for seat in seats)
         places = "A place" if unsettled == 1 else f"{unsettled} places"
         doubts = [f"{places} where the part may rest could not be settled."] if unsettled else []
-        if join is not None and not is_equilibrium(join.candidate, self.solver.closing(self.known, False)):
+        if join is not None and not is_equilibrium(
+            join.candidate, self.solver.make_closing(self.known, False)
+        ):
             # Only what was checked is claimed; from no opening at all the part comes home for certain.
             join, capture, doubts = None, 0.0, [*doubts, NO_PASS]
-        if self.missed and self.nearest(np.array(self.missed)) is not None:
+        if self.missed and self.find_own_candidate(np.array(self.missed)) is not None:
             # Whatever missed the seat may have missed a pass out of it.
             join, capture, way_out, doubts = None, 0.0, float(row[SEPARATION]), [*doubts, WAS_NOT_FOUND]
         elif self.missed:
             doubts = [*doubts, OTHERS_MAY_BE]
         cage, placing = None, None
         if join is not None and with_cage:
-            cage, placing = self.freedom(row[CONFIG], join)
+            cage, placing = self.measure_freedom(row[CONFIG], join)
         return Seating(
             capture_opening=capture,
             room_factor=factor,
-            lowest_pass=None if join is None else self.lowest_pass(join),
+            lowest_pass=None if join is None else self.make_pass(join),
             way_out=None if way_out is None else float(way_out - row[SEPARATION]),
             cage=cage,
             placing=placing,
-            sticking_friction=self.sticking(row),
+            sticking_friction=self.find_sticking_friction(row),
             stop=self.pattern.frame.sign * self.pattern.stop if isfinite(self.pattern.stop) else None,
             seats=seats,
             unsettled=tuple(doubts),
-        ).in_toolkit(self.solver.toolkit)
+        ).with_toolkit(self.solver.toolkit)
 
-    def lowest_pass(self, join: Join) -> Pass:
-        """A join as the fixture's pass."""
+    def make_pass(self, join: CageJoin) -> CagePass:
+        """Return a join as a pass in the toolkit's frame."""
         config = join.candidate[CONFIG] + self.shift
         separation = self.pattern.frame.sign * float(config[3])
-        pose = Pose(*(float(value[0]) for value in self.poses(config[None], np.zeros(1, np.bool_))))
-        return Pass(pose, separation, self.contacts(join.candidate[None])[0])
+        pose = Pose(*(float(value[0]) for value in self.compute_poses(config[None], np.zeros(1, np.bool_))))
+        return CagePass(pose, separation, self.make_contacts(join.candidate[None])[0])
 
-    def caging_set(self, seat: Array, join: Join) -> CagingSet:
-        """The caging set of the fixture's seat, with what moves opened by a hair less than to a pass."""
-        closing, top = self.solver.closing(self.known, False), join.candidate[CONFIG]
+    def make_caging_set(self, seat: Array, join: CageJoin) -> CagingSet:
+        """Return the caging set of the fixture's seat (4,), with the jaws
+        opened by slightly less than to a pass.
+        """
+        closing, top = self.solver.make_closing(self.known, False), join.candidate[CONFIG]
         opening = (top[3] - seat[3]) * (1.0 - LESS)
         to_pass = top[:3] - seat[:3]
         to_pass[0] = (to_pass[0] + pi) % tau - pi
         seats = np.ascontiguousarray(self.trees[0].seats[:, CONFIG])
         return CagingSet(closing, np.array(seat), seats, opening, to_pass, self.solver.outline.arm)
 
-    def freedom(self, seat: Array, join: Join) -> tuple[Cage, float]:
-        """The cage and the placing."""
-        around = self.caging_set(seat, join)
+    def measure_freedom(self, seat: Array, join: CageJoin) -> tuple[Cage, float]:
+        """Return the cage in the toolkit's frame, in degrees and mm, and the placing in mm."""
+        around = self.make_caging_set(seat, join)
         turns, across, along = around.extents.reach
-        corners = self.pattern.frame.turned(np.array(list(product(across, along))), back=True)
+        corners = self.pattern.frame.turn_points(np.array(list(product(across, along))), back=True)
         x, y = ((float(ends.min()), float(ends.max())) for ends in corners.T)
         return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
 
-    def sticking(self, row: Array) -> float:
-        boundary = self.solver.closing(self.known, False).boundary
+    def find_sticking_friction(self, row: Array) -> float:
+        """Return the least friction coefficient at which the part can
+        stick near the seat ``row`` (24,), inf for none.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
+        boundary = self.solver.make_closing(self.known, False).boundary
         places, normals, moves = find_contact_normals(boundary, self.known, row)
-        return sticking_friction(places, normals, moves)
+        return find_sticking_friction(places, normals, moves)
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
-    """The seatings of fixtures: from how wide open each catches the part, and where else it can rest.
+    """Return the seatings of fixtures: from which opening each catches the part, and where else it can rest.
 
     Each is a ``model.seating.Seating``. With two clamps the part is put in by hand, and each is a
-    ``seating.clamping.ByHand``, which says how.
+    ``seating.clamping.HandLoading``, which says how.
 
     Parameters
     ----------
-    fixtures : which, or how many of the best.
+    fixtures : the fixtures, or how many of the best.
     with_cage : whether cage and placing are computed.
 
     Raises
     ------
     InputError
-        As ``Pattern.of``: for pegs with a flat and for pegs of radius 0. Also for a fixture of another part
-        or toolkit.
+        As ``Pattern.from_fixture``: for pegs with a flat and for pegs of radius 0. Also for a fixture of
+        another part or toolkit.
 
     Examples
     --------
@@ -391,5 +446,5 @@ def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage
     if not result.toolkit.closes_at_once:
         for fixture in chosen:
             fixture.refuse_others(result.workpiece, result.toolkit)
-        return [by_hand(fixture, result.workpiece, result.toolkit) for fixture in chosen]
-    return Solver(result.workpiece, result.toolkit).of_all(chosen, with_cage)
+        return [plan_hand_loading(fixture, result.workpiece, result.toolkit) for fixture in chosen]
+    return SeatingSolver(result.workpiece, result.toolkit).solve_all(chosen, with_cage)

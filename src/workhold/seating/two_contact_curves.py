@@ -44,12 +44,12 @@ from workhold.kernels.seating.columns import (
     PIVOT_Y,
     SECOND_PEG,
     SOURCE,
-    Given,
+    HeldPart,
     JawCells,
 )
 from workhold.kernels.seating.slides import SLIDE_FIRST, SLIDE_LENGTH, SLIDE_SECOND
 from workhold.kernels.seating.two_contact_curves import MIDDLE_LENGTH, make_cells, write_middles
-from workhold.seating.closing import filled
+from workhold.seating.closing import fill_rows
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.pattern import Pattern, PegSubset, list_jaw_subsets
 
@@ -69,11 +69,11 @@ class JawCurves:
 
     Parameters
     ----------
-    rows, curves, reals : ``holdings``, ``curves`` and ``reals`` of ``Given``, with pegs and curves counted
+    rows, curves, reals : ``pairs``, ``curves`` and ``reals`` of ``HeldPart``, with pegs and curves counted
         from 0.
     cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see
         ``kernels.seating.two_contact_curves``.
-    slides : (S, 7) what is no curve over the orientation: ``kernels.seating.slides``.
+    slides : (S, 7) pairs of contacts at one orientation only, see ``kernels.seating.slides``.
     """
 
     rows: Array
@@ -84,9 +84,12 @@ class JawCurves:
     slides: Array
 
     @classmethod
-    def of(cls, boundary: ObstacleBoundary, pegs: Array, right: NDArray[np.int64]) -> JawCurves:
-        """The two-contact curves of pegs (K, 2) of a jaw, the first at the origin."""
-        made, slides = [pocket_rows(boundary, right)], list[tuple[float, ...]]()
+    def from_boundary(cls, boundary: ObstacleBoundary, pegs: Array, right: NDArray[np.int64]) -> JawCurves:
+        """Return the two-contact curves of the pegs (K, 2) of a jaw, the first at the origin.
+
+        ``right`` (K,) is 1 for pegs that move, else 0.
+        """
+        made, slides = [make_pocket_rows(boundary, right)], list[tuple[float, ...]]()
         integers, reals, stretches = (
             [np.zeros((0, CURVE_INTEGERS), np.int64)],
             [np.zeros((0, CURVE_REALS))],
@@ -96,7 +99,7 @@ class JawCurves:
         curves_before = stretches_before = 0
         for one, two in combinations(range(len(pegs)), 2):
             dx, dy = pegs[two] - pegs[one]
-            table = boundary.curves(hypot(dx, dy), int(right[one]))
+            table = boundary.find_chord_curves(hypot(dx, dy), int(right[one]))
             whole = np.array(table.curves.integers)
             whole[:, [FIRST_STRETCH, END_STRETCH]] += stretches_before
             for first, second, angle in ((one, two, atan2(dy, dx)), (two, one, atan2(dy, dx) + pi)):
@@ -121,18 +124,21 @@ class JawCurves:
             )
         rows, curves = np.concatenate(made), (np.concatenate(integers), np.concatenate(reals))
         given, every = (
-            Given(rows, *curves, boundary.loose, pegs, right, boundary.parts),
+            HeldPart(rows, *curves, boundary.loose, pegs, right, boundary.parts),
             np.concatenate(stretches),
         )
-        cells = filled(
+        cells = fill_rows(
             CELL_LENGTH, 2 * len(every) + 64 * len(boundary.pockets) + 64, make_cells, given, every
         )
         known = np.empty((len(cells), MIDDLE_LENGTH))
         write_middles(cells, given, known)
         return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
 
-    def named(self, names: Array) -> tuple[Array, Array]:
-        """Rows and slides with a pattern's numbers (K + 1,) of the pegs, where the last, -1, is of no peg."""
+    def number_rows_by_pegs(self, names: Array) -> tuple[Array, Array]:
+        """Return copies of rows and slides with pegs renumbered: peg k becomes ``names[k]``.
+
+        ``names`` (K + 1,) ends with -1, which stands for no peg.
+        """
         rows, slid = np.array(self.rows), np.array(self.slides)
         rows[:, FIRST_PEG : SECOND_PEG + 1] = names[self.pegs]
         slid[:, SLIDE_FIRST : SLIDE_SECOND + 1] = names[self.sliding_pegs]
@@ -140,12 +146,12 @@ class JawCurves:
 
     @cached_property
     def after_one(self) -> tuple[Array, Array]:
-        """Rows and slides of two pegs that come after the only one of the other jaw."""
-        return self.named(np.array([1.0, 2.0, -1.0]))
+        """The rows and slides of two pegs numbered 1 and 2, after the only peg of the other jaw."""
+        return self.number_rows_by_pegs(np.array([1.0, 2.0, -1.0]))
 
     @cached_property
     def pegs(self) -> NDArray[np.int64]:
-        """The pegs (H, 2) of the rows."""
+        """The pegs (H, 2) of the rows, -1 for none."""
         return self.rows[:, FIRST_PEG : SECOND_PEG + 1].astype(np.int64)
 
     @cached_property
@@ -155,32 +161,36 @@ class JawCurves:
 
     @cached_property
     def pockets(self) -> int:
-        """How many rows are of a peg in a pocket: the first ones."""
+        """The number of rows of a peg in a pocket, which are the first ones."""
         return int(self.rows[:, KIND].sum())
 
     @cached_property
     def ordered(self) -> Array:
-        """The cells by their lowest orientation; those that reach past a whole turn come a second time."""
+        """The cells in ascending order of LOW; those that reach past a whole turn occur again, a turn
+        lower.
+        """
         again = np.array(self.cells[self.cells[:, HIGH] > tau])
         again[:, [LOW, HIGH]] -= tau
         every = np.concatenate([self.cells, again])
         return every[np.argsort(every[:, LOW], kind="stable")]
 
     @classmethod
-    def known(cls, boundary: ObstacleBoundary, subset: PegSubset) -> JawCurves:
-        """The curves of a subset of pegs of one jaw, found once for all subsets that stand alike."""
-        kept = boundary.once(curves_of_jaws)
+    def find_known(cls, boundary: ObstacleBoundary, subset: PegSubset) -> JawCurves:
+        """Return the curves of a subset of pegs of one jaw, computed once for all subsets that stand
+        alike.
+        """
+        kept = boundary.find_once(make_curve_cache)
         found = kept.get(subset.key)
         if found is None:
-            found = cls.of(boundary, subset.pattern.pegs, subset.pattern.right)
+            found = cls.from_boundary(boundary, subset.pattern.pegs, subset.pattern.right)
             if len(found.cells) + sum(len(one.cells) for one in list(kept.values())) > MOST_KEPT:
                 kept.clear()
             kept[subset.key] = found
         return found
 
 
-def curves_of_jaws(_: ObstacleBoundary) -> dict[tuple[object, ...], JawCurves]:
-    """An empty cache of the curves of jaws on a part, by how their pegs stand."""
+def make_curve_cache(_: ObstacleBoundary) -> dict[tuple[object, ...], JawCurves]:
+    """Return an empty cache of the curves of jaws on a part, by ``PegSubset.key``."""
     return {}
 
 
@@ -190,69 +200,77 @@ class TwoContactCurves:
 
     Parameters
     ----------
-    given : what kernels are given, with pieces as they are.
-    sought : what roots are sought with: curves run past their ends by a hair, and so do the pieces here.
-    slides : (S, 7) what is no curve over the orientation.
-    jaws : for each jaw, by whether it moves, its curves, how many rows stand before them, and the height of
-        their first peg in mm.
+    given : the held part for kernels, with pieces as they are.
+    sought : the held part in which roots are sought: curves run slightly past their ends, and so do its
+        pieces.
+    slides : (S, 7) pairs of contacts at one orientation only, see ``kernels.seating.slides``.
+    jaws : for each jaw, by whether it moves (1) or not (0): its curves, how many rows of other jaws come
+        before its rows, and the height of its first peg in mm.
     """
 
-    given: Given
-    sought: Given
+    given: HeldPart
+    sought: HeldPart
     slides: Array
     jaws: dict[int, tuple[JawCurves, int, float]]
 
     @classmethod
-    def of(cls, boundary: ObstacleBoundary, pattern: Pattern) -> TwoContactCurves:
+    def from_pattern(cls, boundary: ObstacleBoundary, pattern: Pattern) -> TwoContactCurves:
+        """Return the curves of both jaws of a pattern."""
         parts: list[tuple[NDArray[Any], ...]] = []
         jaws: dict[int, tuple[JawCurves, int, float]] = {}
         before = curves_before = 0
         for side, subset in list_jaw_subsets(pattern).items():
-            known = JawCurves.known(boundary, subset)
-            rows, slid = known.named(np.array([*subset.numbers, -1.0]))
+            known = JawCurves.find_known(boundary, subset)
+            rows, slid = known.number_rows_by_pegs(np.array([*subset.numbers, -1.0]))
             # Pockets, of which curves are none, come first.
             rows[known.pockets :, SOURCE] += curves_before
             parts.append((rows, known.curves, known.reals, slid))
             jaws[side] = known, before, float(subset.shift[2])
             before, curves_before = before + len(rows), curves_before + len(known.curves)
         rows, curves, reals, slides = (np.concatenate(one) for one in zip(*parts, strict=True))
-        return cls(*given_of(boundary, pattern, rows, curves, reals), slides, jaws)
+        return cls(*make_held_parts(boundary, pattern, rows, curves, reals), slides, jaws)
 
     @classmethod
-    def of_jaw_alone(cls, boundary: ObstacleBoundary, subset: PegSubset) -> TwoContactCurves:
-        """The curves of a subset that has two pegs or more on one jaw alone, and of others none."""
+    def from_one_jaw(cls, boundary: ObstacleBoundary, subset: PegSubset) -> TwoContactCurves:
+        """Return the curves of that jaw of a subset that has two pegs or more; none where neither has."""
         if len(subset.sides) == 2 and not subset.is_of_a_jaw:
-            return cls(*given_of(boundary, subset.pattern, *NO_CURVES), NO_SLIDES, {})
+            return cls(*make_held_parts(boundary, subset.pattern, *NO_CURVES), NO_SLIDES, {})
         side = int(2 * sum(subset.sides) > len(subset.sides))
         own = subset
         if not subset.is_of_a_jaw:
-            own = PegSubset.of(subset.pattern, np.flatnonzero(np.equal(subset.sides, side)).tolist())
-        known = JawCurves.known(boundary, own)
+            own = PegSubset.from_pattern(
+                subset.pattern, np.flatnonzero(np.equal(subset.sides, side)).tolist()
+            )
+        known = JawCurves.find_known(boundary, own)
         rows, slides = (known.rows, known.slides) if subset.sides[0] == side else known.after_one
-        given = given_of(boundary, subset.pattern, rows, known.curves, known.reals)
+        given = make_held_parts(boundary, subset.pattern, rows, known.curves, known.reals)
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
-    def of_jaw(self, right: int) -> JawCells:
+    def make_jaw_cells(self, right: int) -> JawCells:
+        """Return the cells of the jaw that moves (1) or stands still (0), as kernels take them."""
         known, before, height = self.jaws[right]
         return JawCells(known.ordered, before, height)
 
 
-def given_of(
+def make_held_parts(
     boundary: ObstacleBoundary, pattern: Pattern, rows: Array, curves: NDArray[np.int64], reals: Array
-) -> tuple[Given, Given]:
-    """``given`` and ``sought`` of ``TwoContactCurves``."""
+) -> tuple[HeldPart, HeldPart]:
+    """Return ``given`` and ``sought`` of ``TwoContactCurves``."""
     after = np.array(pattern.pegs), pattern.right, boundary.parts
-    return Given(rows, curves, reals, boundary.pieces, *after), Given(
+    return HeldPart(rows, curves, reals, boundary.pieces, *after), HeldPart(
         rows, curves, reals, boundary.loose, *after
     )
 
 
-def pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
+def make_pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
+    """Return rows of pairs (H, 7) for each peg in each pocket that it
+    can touch; ``right`` is 1 for pegs that move.
+    """
     held = [
         (peg, pocket)
         for peg, side in enumerate(right.tolist())
         for pocket, (piece, _) in enumerate(boundary.pocket_pieces.tolist())
-        if boundary.fits(side, piece)
+        if boundary.can_touch(side, piece)
     ]
     rows = np.zeros((len(held), PAIR_LENGTH))
     rows[:, KIND], rows[:, SECOND_PEG] = 1.0, -1.0

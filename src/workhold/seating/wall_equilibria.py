@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.tables import CURVE_INTEGERS, CURVE_REALS
-from workhold.kernels.seating.candidates import fourths
+from workhold.kernels.seating.candidates import write_fourths
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
     DEPTH,
@@ -34,13 +34,13 @@ from workhold.kernels.seating.columns import (
     PLACE_Y,
     SECOND,
     THETA,
-    Given,
+    HeldPart,
 )
-from workhold.kernels.seating.tip_in_pocket import tip_in_pocket
+from workhold.kernels.seating.tip_in_pocket import write_tip_in_pocket
 from workhold.kernels.seating.turning import SHAPE_LENGTH
-from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, Stood, stationary
+from workhold.kernels.seating.wall_equilibria import LOCATOR, TIP, StandingPart, write_equilibria
 from workhold.kernels.seating.wall_equilibria import ON_WALL as FIRST_ON_WALL
-from workhold.seating.closing import filled, make_candidate
+from workhold.seating.closing import fill_rows, make_candidate
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern
@@ -63,7 +63,7 @@ class WallEquilibria:
 
     Parameters
     ----------
-    boundary, pattern : of the part and the pegs.
+    boundary, pattern : of the part and the pegs; the pattern's first peg is the locator, the second the tip.
     """
 
     boundary: ObstacleBoundary
@@ -71,7 +71,7 @@ class WallEquilibria:
 
     @property
     def half_plane(self) -> tuple[float, float, float]:
-        """Unit vector from the wall to the part, and how far along it the wall is."""
+        """The unit vector from the wall to the part, and the wall's coordinate along it in mm."""
         assert self.pattern.half_plane is not None
         return self.pattern.half_plane
 
@@ -82,15 +82,19 @@ class WallEquilibria:
 
     @property
     def sides(self) -> list[HullSide]:
-        """The part's hull edges."""
+        """The part's hull edges, in ascending order of their angles."""
         return self.boundary.hull.sides
 
-    def outward(self) -> float:
-        """Direction in radians of the normal into the wall, which is the part's outward normal there."""
+    def compute_outward_direction(self) -> float:
+        """Return the direction in radians of the normal into the wall,
+        which is the part's outward normal there.
+        """
         return atan2(-self.half_plane[1], -self.half_plane[0])
 
-    def resting(self, piece: int, theta: float) -> float:
-        """The coordinate in mm of the part's place square to the wall on which a piece of its hull stands."""
+    def find_resting_place(self, piece: int, theta: float) -> float:
+        """Return the coordinate in mm, square to the wall, of the place
+        of a part that stands on a hull piece at ``theta``.
+        """
         ux, uy, off = self.half_plane
         x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
         c, s = cos(theta), sin(theta)
@@ -98,10 +102,10 @@ class WallEquilibria:
 
     @cached_property
     def runs(self) -> list[tuple[int, float, float]]:
-        """Pieces of the hull, and first and last orientation in which the part stands on each.
+        """The ranges of theta in which the part stands on one hull piece: (piece, first, last), in radians.
 
         At the ends of arcs runs overlap, so that no orientation lies between two. At hull edges they leave
-        out orientations so near that the edge's other end, too, touches the wall, with next to no force.
+        out orientations so near that the edge's other end touches the wall too, with next to no force.
         """
         edges = np.array([side.angle for side in self.sides])
         angles = np.sort(np.concatenate([edges, self.boundary.hull.limits]))
@@ -110,18 +114,21 @@ class WallEquilibria:
             return [(k, 0.0, tau) for k in range(len(self.boundary.hull.rows))]
         apart = np.abs((angles[:, None] - edges + pi) % tau - pi).min(axis=1, initial=pi)
         over, ends = np.where(apart < 2.0 * BESIDE, -BESIDE, BESIDE), np.append(angles, angles[0] + tau)
-        pieces = self.boundary.hull.reach((ends[1:] + ends[:-1]) / 2.0).argmax(axis=1)
+        pieces = self.boundary.hull.compute_reach((ends[1:] + ends[:-1]) / 2.0).argmax(axis=1)
         # The part's normal on the wall turns with the part.
-        lows, highs = self.outward() - ends[1:] - np.roll(over, -1), self.outward() - ends[:-1] + over
+        lows, highs = (
+            self.compute_outward_direction() - ends[1:] - np.roll(over, -1),
+            self.compute_outward_direction() - ends[:-1] + over,
+        )
         runs = zip(pieces.tolist(), lows.tolist(), highs.tolist(), ends[1:] - ends[:-1], strict=True)
         return [(piece, low, high) for piece, low, high, width in runs if width > 4.0 * BESIDE]
 
     @cached_property
-    def stood(self) -> Stood:
-        """What the part stands on, as kernels take it."""
+    def standing_part(self) -> StandingPart:
+        """The part on the wall, as kernels take it."""
         boundary, pegs = self.boundary, np.array(self.pattern.pegs)
         runs = np.array(self.runs, dtype=np.float64).reshape(-1, 3)
-        return Stood(
+        return StandingPart(
             np.array(boundary.rows),
             boundary.discs,
             boundary.parts,
@@ -131,30 +138,42 @@ class WallEquilibria:
             np.array(self.half_plane),
         )
 
-    def given(self, pegs: Array) -> Given:
-        """Pegs without two-contact curves, as kernels take them."""
+    def make_held_part(self, pegs: Array) -> HeldPart:
+        """Return the part and pegs (2, 2) without two-contact curves, as kernels take them."""
         none = np.zeros((0, PAIR_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
-        return Given(*none, self.stood.rows, pegs, self.pattern.right, self.boundary.parts)
+        return HeldPart(*none, self.standing_part.rows, pegs, self.pattern.right, self.boundary.parts)
 
-    def on(self, piece: int, second: bool = False) -> Contact:
+    def make_wall_contact(self, piece: int, second: bool = False) -> Contact:
+        """Return the first or second contact with the wall, of a hull
+        piece, as the numbers (peg, piece) of a candidate.
+        """
         return ON_WALL[second], len(self.boundary.rows) + piece
 
-    def with_tip(self, fixed: Array) -> Array:
-        """Candidates (N, 24) of a part that three contacts fix, with each piece that the tip meets."""
-        return filled(CANDIDATE_LENGTH, 64, fourths, fixed, 0, self.given(self.stood.pegs))
+    def add_tip_contacts(self, fixed: Array) -> Array:
+        """Return candidates with a fourth contact: those in ``fixed``
+        (N, 24) with each piece that the tip meets.
 
-    def with_locator(self, fixed: Array) -> Array:
-        """Candidates (N, 24) of a part that may slide along the wall, with each piece that the locator meets.
-
-        The locator comes first among the contacts, and the separation grows with the place.
+        The candidates in ``fixed`` have three contacts that fix the part. See ``kernels.seating.columns`` for
+        the layout of candidates.
         """
-        fixed, pegs = fixed.copy(), self.stood.pegs
+        return fill_rows(
+            CANDIDATE_LENGTH, 64, write_fourths, fixed, 0, self.make_held_part(self.standing_part.pegs)
+        )
+
+    def add_locator_contacts(self, fixed: Array) -> Array:
+        """Return candidates (M, 24): those in ``fixed`` (N, 24), free to
+        slide along the wall, with each piece the locator meets.
+
+        The locator becomes the first contact, and the separation grows with the place. See
+        ``kernels.seating.columns`` for the layout of candidates.
+        """
+        fixed, pegs = fixed.copy(), self.standing_part.pegs
         if self.is_upright:
             # Seen a quarter turn further, where the wall is level.
             fixed[:, THETA] += pi / 2.0
             fixed[:, PLACE_Y], fixed[:, PLACE_X] = fixed[:, PLACE_X].copy(), 0.0
             pegs = np.stack([-pegs[:, 1], pegs[:, 0]], axis=1)
-        met = filled(CANDIDATE_LENGTH, 64, fourths, fixed, 1, self.given(pegs))
+        met = fill_rows(CANDIDATE_LENGTH, 64, write_fourths, fixed, 1, self.make_held_part(pegs))
         if self.is_upright:
             met[:, THETA] -= pi / 2.0
             met[:, PLACE_X], met[:, PLACE_Y] = met[:, PLACE_Y].copy(), -met[:, PLACE_X]
@@ -162,44 +181,58 @@ class WallEquilibria:
             met[:, first : first + 4] = np.roll(met[:, first : first + 4], 1, axis=1)
         return met
 
-    def flush(self) -> Array:
-        """Four contacts: a hull edge on the wall, and locator and tip, or the tip in a pocket."""
+    def find_flush(self) -> Array:
+        """Return candidates (N, 24) of four contacts: two of a hull edge on
+        the wall, and locator and tip, or the tip in a pocket.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         fixed, out = [], []
         for side in self.sides:
-            theta = self.outward() - side.angle
+            theta = self.compute_outward_direction() - side.angle
             ends, known = (
-                [self.on(side.pieces[0]), self.on(side.pieces[1], True)],
-                self.resting(side.pieces[0], theta),
+                [self.make_wall_contact(side.pieces[0]), self.make_wall_contact(side.pieces[1], True)],
+                self.find_resting_place(side.pieces[0], theta),
             )
             fixed.append(
                 make_candidate((theta, *((known, 0.0) if self.is_upright else (0.0, known)), 0.0), ends)
             )
-            for ahead, up, held in self.pocketed(theta) if self.is_upright else ():
+            for ahead, up, held in self.list_tip_pockets(theta) if self.is_upright else ():
                 place = known, float(self.pattern.pegs[TIP, 1]) - up
                 out.append(
                     make_candidate((theta, *place, known + ahead - self.pattern.pegs[TIP, 0]), ends + held)
                 )
-        return np.concatenate([self.with_tip(self.with_locator(rows_of(fixed))), rows_of(out)])
+        return np.concatenate(
+            [self.add_tip_contacts(self.add_locator_contacts(stack_candidates(fixed))), stack_candidates(out)]
+        )
 
-    def pocketed(self, theta: float) -> list[tuple[float, float, list[Contact]]]:
-        """The tip's pockets, from the place of a part in an orientation, and the tip's contacts in each."""
+    def list_tip_pockets(self, theta: float) -> list[tuple[float, float, list[Contact]]]:
+        """Return (x, y, contacts) of the tip in each pocket: the pocket's
+        place relative to the part's at ``theta``, in mm.
+        """
         c, s, out = cos(theta), sin(theta), []
-        for (x, y), pieces in zip(*self.pockets(1), strict=True):
+        for (x, y), pieces in zip(*self.list_pockets(1), strict=True):
             out.append((c * x - s * y, s * x + c * y, [(TIP, piece) for piece in pieces.tolist()]))
         return out
 
-    def pockets(self, jaw: int) -> tuple[Array, NDArray[np.int64]]:
-        """The pockets of the locator (0) or the tip (1): places (V, 2) on the part, and pieces (V, 2)."""
+    def list_pockets(self, jaw: int) -> tuple[Array, NDArray[np.int64]]:
+        """Return the pockets of the locator (0) or the tip (1): places
+        (V, 2) on the part in mm, and numbers of pieces (V, 2).
+        """
         first, end = self.boundary.parts[jaw]
         own = (self.boundary.pocket_pieces[:, 0] >= first) & (self.boundary.pocket_pieces[:, 0] < end)
         return np.ascontiguousarray(self.boundary.pockets[own, :2]), self.boundary.pocket_pieces[own]
 
-    def locator_in_pocket(self) -> Array:
-        """Four contacts: the locator in a pocket, a piece of the hull on the wall, and the tip."""
+    def find_locator_in_pocket(self) -> Array:
+        """Return candidates (N, 24) of four contacts: two of the locator
+        in a pocket, a hull piece on the wall, and the tip.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         out = []
         ux, uy, off = self.half_plane
         lx, ly = self.pattern.pegs[LOCATOR].tolist()
-        for (vx, vy), (one, two) in zip(*(values.tolist() for values in self.pockets(0)), strict=True):
+        for (vx, vy), (one, two) in zip(*(values.tolist() for values in self.list_pockets(0)), strict=True):
             for piece, low, high in self.runs:
                 x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
                 dx, dy = vx - x, vy - y
@@ -212,22 +245,26 @@ class WallEquilibria:
                     )
                     if theta <= high:
                         c, s = cos(theta), sin(theta)
-                        contacts = [(LOCATOR, one), (LOCATOR, two), self.on(piece)]
+                        contacts = [(LOCATOR, one), (LOCATOR, two), self.make_wall_contact(piece)]
                         out.append(
                             make_candidate((theta, lx - c * vx + s * vy, ly - s * vx - c * vy, 0.0), contacts)
                         )
-        return self.with_tip(rows_of(out))
+        return self.add_tip_contacts(stack_candidates(out))
 
-    def tip_in_pocket(self) -> Array:
-        """Four contacts: the tip in a pocket, a piece of the hull on the wall, and the locator.
+    def find_tip_in_pocket(self) -> Array:
+        """Return candidates (N, 24) of four contacts: two of the tip in a
+        pocket, a hull piece on the wall, and the locator.
 
-        Where the wall alone is against the tip, three contacts do.
+        On an upright wall, also of three contacts, without the locator. See ``kernels.seating.columns`` for
+        the layout of candidates.
         """
-        places, pieces = self.pockets(1)
+        places, pieces = self.list_pockets(1)
         work = np.empty((DEPTH, 2)), np.empty((MOST_ZEROS, 2))
-        found = filled(CANDIDATE_LENGTH, 64, tip_in_pocket, self.stood, places, pieces, *work)
+        found = fill_rows(
+            CANDIDATE_LENGTH, 64, write_tip_in_pocket, self.standing_part, places, pieces, *work
+        )
         if not self.is_upright:
-            return self.with_locator(found)
+            return self.add_locator_contacts(found)
         out = []
         for piece, low, high in self.runs:
             x, y = self.boundary.hull.rows[piece, :2].tolist()
@@ -238,23 +275,32 @@ class WallEquilibria:
                 c, s = cos(theta), sin(theta)
                 ahead, place = (
                     c * vx - s * vy,
-                    (self.resting(piece, theta), self.pattern.pegs[TIP, 1] - (s * vx + c * vy)),
+                    (self.find_resting_place(piece, theta), self.pattern.pegs[TIP, 1] - (s * vx + c * vy)),
                 )
-                contacts = [self.on(piece), *((TIP, k) for k in held)]
+                contacts = [self.make_wall_contact(piece), *((TIP, k) for k in held)]
                 row = make_candidate((theta, *place, place[0] + ahead - self.pattern.pegs[TIP, 0]), contacts)
                 row[SECOND], row[MOTION], row[MOTION + 1], row[MOTION + 2] = -1.0, 1.0, s * x + c * y, -ahead
                 out.append(row)
-        return np.concatenate([found, rows_of(out)])
+        return np.concatenate([found, stack_candidates(out)])
 
-    def three_contacts(self) -> Array:
-        """Candidates (N, 24) of contacts with wall, locator and tip whose normals go through one point."""
+    def find_three_contacts(self) -> Array:
+        """Return candidates (N, 24) of contacts with wall, locator and
+        tip whose normals go through one point.
+
+        See ``kernels.seating.columns`` for the layout of candidates.
+        """
         work = np.empty((len(self.boundary.rows), SHAPE_LENGTH)), np.empty((DEPTH, 2))
-        return filled(CANDIDATE_LENGTH, 64, stationary, self.stood, *work)
+        return fill_rows(CANDIDATE_LENGTH, 64, write_equilibria, self.standing_part, *work)
 
-    def against_wall(self) -> Array:
-        """Candidates (N, 24) of the tip alone against the wall, on a normal of a hull edge or hull piece."""
+    def find_tip_against_wall(self) -> Array:
+        """Return candidates (N, 24) of the tip alone against the wall, on
+        a common normal with a hull edge or hull piece.
+
+        There are none unless the tip pushes towards the wall. See ``kernels.seating.columns`` for the layout
+        of candidates.
+        """
         if self.half_plane[0] <= 0.0:
-            return rows_of([])
+            return stack_candidates([])
         out = []
         tx, ty = self.pattern.pegs[TIP].tolist()
         for number in range(*self.boundary.parts[1]):
@@ -262,10 +308,14 @@ class WallEquilibria:
             is_arc = row[IS_ARC] != 0.0
             signed = row[SIGN] * row[RADIUS]
             for side in self.sides if is_arc else ():
-                theta = self.outward() - side.angle
+                theta = self.compute_outward_direction() - side.angle
                 c, s = cos(theta), sin(theta)
-                place = self.resting(side.pieces[0], theta), ty - (s * row[X] + c * row[Y])
-                contacts = [(TIP, number), self.on(side.pieces[0]), self.on(side.pieces[1], True)]
+                place = self.find_resting_place(side.pieces[0], theta), ty - (s * row[X] + c * row[Y])
+                contacts = [
+                    (TIP, number),
+                    self.make_wall_contact(side.pieces[0]),
+                    self.make_wall_contact(side.pieces[1], True),
+                ]
                 one = make_candidate(
                     (theta, *place, place[0] + c * row[X] - s * row[Y] + signed - tx), contacts
                 )
@@ -284,26 +334,30 @@ class WallEquilibria:
                     if theta > high:
                         continue
                     c, s = cos(theta), sin(theta)
-                    place = self.resting(piece, theta), ty - (s * hull[0] + c * hull[1])
+                    place = self.find_resting_place(piece, theta), ty - (s * hull[0] + c * hull[1])
                     ahead = c * dx - s * dy + (signed if is_arc else 0.0)
                     separation = place[0] + c * hull[0] - s * hull[1] + ahead - tx
-                    one = make_candidate((theta, *place, separation), [(TIP, number), self.on(piece)])
+                    one = make_candidate(
+                        (theta, *place, separation), [(TIP, number), self.make_wall_contact(piece)]
+                    )
                     # Over the turn, and the rise of the tip above the piece: see ``curvature``.
-                    second, turn, rise = curvature(ahead, signed if is_arc else None)
+                    second, turn, rise = compute_least_curvature(ahead, signed if is_arc else None)
                     one[SECOND], one[MOTION] = second, turn
                     # The piece stays on the wall.
                     one[MOTION + 1] = turn * (s * hull[0] + c * hull[1])
                     one[MOTION + 2] = -turn * (c * hull[0] - s * hull[1]) - rise
                     out.append(one)
-        return rows_of(out)
+        return stack_candidates(out)
 
 
-def curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
-    """The least second derivative of S over the part's turn and the tip's rise, and its direction.
+def compute_least_curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
+    """Return the least second derivative of S over the part's turn
+    and the tip's rise, and its direction (turn, rise).
 
     The rise is the tip's above the piece on the wall; the derivative is NaN where both principal ones are
-    below 0. The tip is ahead of the piece's centre by d, on an arc of signed radius r, or a line. At a turn f
-    and a rise e it is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r) sin f)^2), or (d - e sin f) / cos f.
+    negative. The tip is ahead of the piece's centre by d (``ahead``), on an arc of signed radius r, or on a
+    line (``signed`` None). At a turn f and a rise e it is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r)
+    sin f)^2), or by (d - e sin f) / cos f. S is the jaw separation in mm.
     """
     if signed is None:
         matrix = np.array([[ahead, -1.0], [-1.0, 0.0]])
@@ -317,17 +371,26 @@ def curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
 
 
 def add_turns_until_past(low: float, theta: float) -> float:
-    """An orientation moved by whole turns to the first that is not before another."""
+    """Return theta shifted by whole turns to the least value that is not below ``low``, in radians."""
     return theta + tau * ceil((low - theta) / tau)
 
 
-def rows_of(candidates: list[Array]) -> Array:
-    """Candidates (N, 24), none or more."""
+def stack_candidates(candidates: list[Array]) -> Array:
+    """Return a list of candidates as an array (N, 24), also of none.
+
+    See ``kernels.seating.columns`` for the layout of candidates.
+    """
     return np.array(candidates).reshape(-1, CANDIDATE_LENGTH)
 
 
 def find_wall_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
-    """Candidates (N, 24) of all equilibria on a wall; the first peg is the locator, the second the tip."""
+    """Return candidates (N, 24) of all equilibria on a wall; the
+    first peg is the locator, the second the tip.
+
+    See ``kernels.seating.columns`` for the layout of candidates.
+    """
     wall = WallEquilibria(boundary, pattern)
-    pockets = wall.locator_in_pocket(), wall.tip_in_pocket()
-    return np.concatenate([wall.flush(), *pockets, wall.three_contacts(), wall.against_wall()])
+    pockets = wall.find_locator_in_pocket(), wall.find_tip_in_pocket()
+    return np.concatenate(
+        [wall.find_flush(), *pockets, wall.find_three_contacts(), wall.find_tip_against_wall()]
+    )

@@ -11,13 +11,13 @@ from workhold.conventions import STATED_FORCE
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.judging import is_beyond
-from workhold.statics.pins import PinRuns, compute_bent_pins, limits_of
-from workhold.statics.quality import extremes
+from workhold.statics.pins import PinRuns, compute_bent_pins, get_limits
+from workhold.statics.quality import find_silhouette_extremes
 from workhold.units import Unit
 
-__all__ = ["BentPeg", "BentPegs", "at_force", "bent_pegs"]
+__all__ = ["BentPeg", "BentPegs", "describe_force", "compute_bent_pegs"]
 
 
 @frozen
@@ -26,11 +26,12 @@ class BentPeg:
 
     Parameters
     ----------
-    hole : its name.
+    hole : name of its hole.
     peg : what it is, such as "locator".
-    diameter : of it.
-    height, top : above the plate, of the middle and of the top of the run on which it can press.
-    force : on it.
+    diameter : of the peg.
+    height, top : above the plate, of the middle and of the top of the range of heights at which it can be
+        pressed.
+    force : on the peg.
     deflection, stress : with the force at the middle.
     worst_deflection, worst_stress : with the force at the top.
     """
@@ -54,9 +55,9 @@ class BentPegs:
     Parameters
     ----------
     pegs : those that stand in holes of a plate.
-    movement, worst_movement : the farthest that they move a point of the part in mm, with the forces at the
-        middle and at the top.
-    jaw_force : in N; None where it is not known, and all is for each kN of it.
+    movement, worst_movement : largest movement of a point of the part by bending, in mm, with the forces at
+        the middle and at the top.
+    jaw_force : in N; None where not given: figures are then for each kN.
     stress_limit, movement_limit : of the toolkit, in MPa and mm.
     """
 
@@ -69,35 +70,40 @@ class BentPegs:
 
     @property
     def most(self) -> BentPeg:
+        """Peg with the largest deflection, forces at the middle."""
         return max(self.pegs, key=lambda peg: peg.deflection)
 
     @property
     def hardest(self) -> BentPeg:
+        """Peg with the largest stress, forces at the middle."""
         return max(self.pegs, key=lambda peg: peg.stress)
 
     @property
     def is_overbent(self) -> bool:
-        """Whether a peg is bent harder than it may, at a jaw force that is known."""
+        """Whether a peg's stress is above the limit at the given jaw force; False without one."""
         return self.jaw_force is not None and bool(is_beyond(self.hardest.stress, self.stress_limit))
 
     @property
     def gives_way(self) -> bool:
-        """Whether pegs move the part farther than they may, at a jaw force that is known."""
+        """Whether the part's movement is above the limit at the given jaw force; False without one."""
         return self.jaw_force is not None and bool(is_beyond(self.movement, self.movement_limit))
 
-    def at_force(self, mover: str, unit: Unit) -> str:
-        """The force that it is stated for, in words, see :func:`at_force`."""
-        return at_force(self.jaw_force, mover, unit)
+    def describe_force(self, mover: str, unit: Unit) -> str:
+        """Return the force that the figures are for, in words, see :func:`describe_force`."""
+        return describe_force(self.jaw_force, mover, unit)
 
-    def sentence(self, mover: str, unit: Unit, location_error: float | None = None) -> str:
-        """What bending does, in a sentence; ``location_error`` in mm is named beside it where it is known."""
+    def describe_bending(self, mover: str, unit: Unit, location_error: float | None = None) -> str:
+        """Return a sentence on the largest deflection, the largest stress and the movement of the part.
+
+        ``mover`` is what presses, such as "jaw"; ``location_error`` in mm is added if given.
+        """
         most, hardest = self.most, self.hardest
         beside = (
             ""
             if location_error is None
             else f", on top of its location error of {unit.format_length(location_error)}"
         )
-        at = self.at_force(mover, unit)
+        at = self.describe_force(mover, unit)
         return (
             f"{at[0].upper()}{at[1:]} {most.hole} gives way most, by "
             f"{unit.format_length(most.deflection)} "
@@ -108,11 +114,11 @@ class BentPegs:
 
     @property
     def worst(self) -> BentPeg:
-        """The peg that gives way most with the force at the top of its run."""
+        """Peg with the largest deflection, forces at the top."""
         return max(self.pegs, key=lambda peg: peg.worst_deflection)
 
-    def cautions(self, mover: str, unit: Unit) -> list[str]:
-        """What to beware of, a sentence each; nothing where the jaw force is not known."""
+    def list_cautions(self, mover: str, unit: Unit) -> list[str]:
+        """Return a sentence for each limit that is exceeded; none without a given jaw force."""
         found = []
         if self.is_overbent:
             peg = self.hardest
@@ -130,7 +136,7 @@ class BentPegs:
         return found
 
     def to_dict(self) -> dict[str, object]:
-        """What of it is plain data: lengths in mm, forces in N, stresses in MPa."""
+        """Return the figures as plain data: lengths in mm, forces in N, stresses in MPa."""
         names = ("height", "top", "force", "deflection", "stress", "worst_deflection", "worst_stress")
         return {
             "jaw_force": self.jaw_force,
@@ -146,12 +152,12 @@ class BentPegs:
         }
 
 
-def at_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
-    """The force that pegs bend at, in words.
+def describe_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
+    """Return the force that pegs bend at as a phrase, such as "at a jaw force of 5 kN".
 
     Parameters
     ----------
-    jaw_force : in N; None where it is not known, and all is for each kN of it.
+    jaw_force : in N; None for "for each kN of …".
     mover : what presses, such as "jaw".
     """
     if jaw_force is not None:
@@ -159,7 +165,7 @@ def at_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
     return f"for each {'kN' if unit.newtons == 1 else unit.format_force(STATED_FORCE)} of {mover} force"
 
 
-def bent_pegs(
+def compute_bent_pegs(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -168,22 +174,24 @@ def bent_pegs(
     jaw_force: float | None = None,
     lift: float = 0.0,
 ) -> BentPegs | None:
-    """How far the pegs of a fixture bend; None where nobody knows how high they press, or there are none.
+    """Return how far the pegs of a fixture bend.
+
+    None without pegs in holes of plates, and where the heights or forces on them are not known.
 
     Parameters
     ----------
-    pressed_up_to : up to which height pegs press on a prism, in mm; a solid says it itself.
-    jaw_force : in N; None is for each kN.
-    lift : how far the part lies above the plates, in mm.
+    pressed_up_to : height in mm up to which pegs press on a prism; not needed for a solid.
+    jaw_force : in N; None for figures for each kN.
+    lift : height of the part above the plates, in mm.
     """
     if workpiece.solid is None and pressed_up_to is None:
         return None
-    touched = Touched.of(workpiece, toolkit)
-    contacts = touched.of_fixture(fixture, toolkit)
+    touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
+    contacts = touched.compute_for_fixture(fixture, toolkit)
     carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
-    runs = PinRuns.of(faces, carriers, workpiece, toolkit, contacts.points, pressed_up_to, lift)
-    silhouette = extremes(workpiece)
+    runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, contacts.points, pressed_up_to, lift)
+    silhouette = find_silhouette_extremes(workpiece)
     middle, worst = (
         compute_bent_pins(contacts, runs.diameter, heights, jaw_force, touched.length, silhouette)
         for heights in (runs.middle, runs.high)
@@ -208,4 +216,4 @@ def bent_pegs(
     if not rows or any(isnan(peg.deflection) for peg in rows):
         return None
     moved = float(middle.movement[0]), float(worst.movement[0])
-    return BentPegs(tuple(rows), *moved, jaw_force, *limits_of(toolkit))
+    return BentPegs(tuple(rows), *moved, jaw_force, *get_limits(toolkit))

@@ -16,9 +16,9 @@ import numpy as np
 from attrs import define
 from numpy.typing import NDArray
 
-from workhold.contact.features import ContactFeature, end_slacks, list_features_met, make_feature_rows
+from workhold.contact.features import ContactFeature, list_features_met, make_feature_rows, measure_end_slacks
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Line, segment_rows
+from workhold.geometry.segment import Line, make_segment_rows
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -31,25 +31,31 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.contact.contact_matrix import contact_matrices_of
+from workhold.kernels.contact.contact_matrix import write_contact_matrices
 from workhold.model.clamps import LOCATORS, compute_working_forces
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import measure_outline_diameter
-from workhold.model.pose import Flush
+from workhold.model.pose import FlushContacts
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import find_largest
 
-__all__ = ["ContactMatrices", "Touched", "compute_outward_normals", "wrench_length", "wrenches"]
+__all__ = [
+    "ContactMatrices",
+    "TouchableFeatures",
+    "compute_outward_normals",
+    "compute_wrench_length",
+    "compute_wrenches",
+]
 
 Array = NDArray[np.float64]
 
 
 def compute_outward_normals(rows: Array, points: Array) -> Array:
-    """Outward unit normals of features at peg centres on them.
+    """Return the part's outward unit normals at peg centres on features.
 
     Parameters
     ----------
-    rows : (..., 10) feature rows, see ``geometry.segment.segment_rows``.
+    rows : (..., 10) feature rows, see ``geometry.segment.make_segment_rows``.
     points : (..., 2) in mm.
 
     Returns
@@ -62,8 +68,8 @@ def compute_outward_normals(rows: Array, points: Array) -> Array:
     return np.where(is_arc == 0.0, straight, radial)
 
 
-def wrenches(points: Array, normals: Array, length: float) -> Array:
-    """Wrenches (..., 3) of contacts: the normal, and its moment over L.
+def compute_wrenches(points: Array, normals: Array, length: float) -> Array:
+    """Return wrenches (..., 3) of unit contact forces: the normal's x and y, and its moment divided by L.
 
     Parameters
     ----------
@@ -85,15 +91,15 @@ class ContactMatrices:
 
     Parameters
     ----------
-    points : (N, P, 2) peg centres about the centre of the part.
+    points : (N, P, 2) peg centres relative to the centre of the part.
     normals : (N, P, 2) outward unit normals.
     ends : (N, P) distances along the contact features to their nearer ends.
-    edges : (N, P) the same to their nearer edges, ends that are no tangent joints; infinite
-        where there is none.
-    inverses : (N, 4, P) inverses of the contact matrices, NaN where there is none. With two clamps, P is 5:
-        the locators alone say how the part moves, and the last row are the forces at the working ratio of the
-        clamps' forces.
-    closing : (N, P, M) forces of all pegs per unit of the force of each thing that moves.
+    edges : (N, P) distances to the nearer ends that are no tangent joints; inf where there is none.
+    inverses : (N, 4, P) inverses of the contact matrices, NaN where singular. Rows are movements x, y and L
+        times angle, per error of each contact, and in the last row the pegs' forces per unit of jaw force.
+        With two clamps (P = 5) only the locators move the part, and the last row is for the working ratio of
+        the clamps' forces.
+    closing : (N, P, M) forces of all pegs per unit of the force of each of M moving things.
     """
 
     points: Array
@@ -104,28 +110,30 @@ class ContactMatrices:
     closing: Array
 
 
-def wrench_length(workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """L of the wrenches in mm, half the diameter of the peg-centre locus of a toolkit's widest pegs."""
+def compute_wrench_length(workpiece: Workpiece, toolkit: Toolkit) -> float:
+    """Return the length L in mm that moments are divided by:
+    half the part's diameter plus the largest peg radius.
+    """
     return measure_outline_diameter(workpiece) / 2 + max(carrier.peg_radius for carrier in toolkit.carriers)
 
 
 @define(frozen=True, eq=False)
-class Touched:
-    """What pegs of a toolkit touch of a workpiece; lengths in mm, everything about the centre of the part.
+class TouchableFeatures:
+    """What pegs of a toolkit can touch of a workpiece; lengths in mm, relative to the centre of the part.
 
     Parameters
     ----------
-    center : (2,) of the part's bounding box, in the part's coordinates.
-    length : L of the wrenches, half the diameter of the peg-centre locus.
-    features : (F, 12) rows of the contact features of each carrier's pegs with the slacks of their ends, one
-        carrier after the other, ordered by face. For a wall the hull edges come after them.
-    starts : where the features of each face number begin in them, carrier after carrier, then where each hull
-        edge does, and where the last ones end.
+    center : (2,) centre of the part's bounding box, in the part's coordinates.
+    length : L of the wrenches.
+    features : (F, 12) rows of the contact features with slacks of their ends, carrier by carrier, by face in
+        each; then the hull edges, for a wall.
+    starts : index in ``features`` at which each carrier's features of each face number begin, then each hull
+        edge, then the end.
     segments : how many face numbers there are.
     moving : (C,) 1 for a carrier that moves, 0 for others.
-    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame, zero for one that
+    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame; zero for one that
         stands still.
-    lies_flush : (C,) whether the part lies flush on a carrier, a wall.
+    lies_flush : (C,) whether the carrier is a wall that the part lies flush on.
     flush : how the part lies on a wall.
     """
 
@@ -137,29 +145,29 @@ class Touched:
     moving: Array
     directions: Array
     lies_flush: NDArray[np.bool_]
-    flush: Flush
+    flush: FlushContacts
 
     @classmethod
-    def of(
+    def from_workpiece(
         cls,
         workpiece: Workpiece,
         toolkit: Toolkit,
         loci: Sequence[Sequence[ContactFeature]] | None = None,
         length: float | None = None,
-    ) -> Touched:
-        """The contact features of a workpiece for a toolkit's pegs.
+    ) -> TouchableFeatures:
+        """Return the contact features of a workpiece for a toolkit's pegs.
 
         Parameters
         ----------
-        loci : for each carrier with holes those of its pegs, where they are known already.
-        length : L in mm, where it is known already.
+        loci : contact features for each carrier with pegs, in order; None to compute them.
+        length : L in mm; None to compute it.
         """
         carriers, segments = toolkit.carriers, len(workpiece.numbered.segments)
         if loci is None:
             placed = [one for one in carriers if one.contact.is_placed]
             loci = [list_features_met(workpiece, one) for one in placed]
         lies_flush = np.array([not one.contact.is_placed for one in carriers])
-        flush = workpiece.flush if lies_flush.any() else Flush.of((), ())
+        flush = workpiece.flush if lies_flush.any() else FlushContacts.from_hull_edges((), ())
         before = iter(loci)
         loci = [() if wall else next(before) for wall in lies_flush]
         features = [feature for locus in loci for feature in locus]
@@ -167,19 +175,20 @@ class Touched:
         walls = [Line((a, b), (x, y)) for (a, b), (x, y) in flush.ends.tolist()]
         # A copy of one row more, because the kernel looks at row 0 even where a face has no feature.
         rows = np.zeros((len(features) + len(walls) + 1, FEATURE_LENGTH))
-        # Each carrier's by themselves: where another's pegs may stand says nothing of a joint. Many touch the
-        # same.
+        # Slacks of ends are computed for each carrier by itself, since where another's pegs may stand says
+        # nothing of a joint; many carriers touch the same features.
         different = {id(locus): list(locus) for locus in loci}
         known = {
-            key: np.hstack([make_feature_rows(locus), end_slacks(locus)]) for key, locus in different.items()
+            key: np.hstack([make_feature_rows(locus), measure_end_slacks(locus)])
+            for key, locus in different.items()
         }
         rows[: len(features)] = np.concatenate([known[id(locus)] for locus in loci])
-        rows[len(features) : -1, :SEGMENT_LENGTH] = segment_rows(walls)
+        rows[len(features) : -1, :SEGMENT_LENGTH] = make_segment_rows(walls)
         rows[:, [X, Y]] -= center
         faces = [number * segments + feature.face for number, locus in enumerate(loci) for feature in locus]
         return cls(
             center=center,
-            length=wrench_length(workpiece, toolkit) if length is None else length,
+            length=compute_wrench_length(workpiece, toolkit) if length is None else length,
             features=rows,
             starts=np.concatenate(
                 [
@@ -197,54 +206,59 @@ class Touched:
             flush=flush,
         )
 
-    def contact_matrices(
+    def compute_contact_matrices(
         self, pegs: Array, pose: Array, carriers: NDArray[np.integer[Any]], faces: NDArray[np.int64]
     ) -> ContactMatrices:
-        """Contact matrices of N fixtures.
+        """Return the contact matrices of N fixtures.
 
-        Peg centres (N, P, 2) are in the toolkit's frame in mm. Poses (N, 3) are orientation in radians and
-        translation in mm. Carriers and faces (N, P) are numbers of the pegs' carriers and of the faces
-        touched.
+        Parameters
+        ----------
+        pegs : (N, P, 2) peg centres in the toolkit's frame, in mm; P is 3 under straps, 4, or 5 with two
+            clamps.
+        pose : (N, 3) orientation in radians and translation in mm.
+        carriers, faces : (N, P) numbers of the pegs' carriers and of the faces touched.
         """
         on = np.asarray(carriers, np.int64)
         on_wall = self.lies_flush.take(on)
-        edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.number(pose[:, 0])
+        edge = len(self.starts) - 1 - len(self.flush.theta) + self.flush.find_nearest_edges(pose[:, 0])
         touched = np.where(on_wall, edge[:, None], faces + self.segments * on)
         moves = self.moving.take(on)
         # Each fixture has an axis of its own where a toolkit has several carriers that move.
         mover = find_largest(on * (moves > 0.0))
-        known = self.contacts(pegs, pose, moves, -self.directions[mover], touched)
+        known = self.compute_contacts(pegs, pose, moves, -self.directions[mover], touched)
         points, normals, ends, edges, inverses = known
-        # What lies flush on a wall ends nowhere that matters.
+        # The ends of a contact with a wall have no distance to an end or edge that matters.
         for distances in (ends, edges):
             distances[on_wall & ~np.isnan(distances)] = np.inf
         if pegs.shape[1] == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
         if pegs.shape[1] == LOCATORS:
             # Under straps nothing moves.
-            inverses[:, :LOCATORS] = invert_locator_matrices(wrenches(points, normals, self.length))
+            inverses[:, :LOCATORS] = invert_locator_matrices(compute_wrenches(points, normals, self.length))
             return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((*pegs.shape[:2], 0)))
-        closing = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
-        inverses[:, :LOCATORS, :LOCATORS] += invert_locator_matrices(wrenches(points, normals, self.length))
+        closing = pair_reactions(points, normals, self.compute_push_directions(pose, carriers), self.length)
+        inverses[:, :LOCATORS, :LOCATORS] += invert_locator_matrices(
+            compute_wrenches(points, normals, self.length)
+        )
         inverses[:, 3] += compute_working_forces(closing)
         return ContactMatrices(points, normals, ends, edges, inverses, closing)
 
-    def contacts(
+    def compute_contacts(
         self, pegs: Array, pose: Array, moves: Array, against: Array, touched: NDArray[np.int64]
     ) -> tuple[Array, Array, Array, Array, Array]:
-        """Points, normals, ends, edges and inverses of N fixtures, see :class:`ContactMatrices`.
+        """Return points, normals, ends, edges and inverses of N fixtures, see :class:`ContactMatrices`.
 
         Parameters
         ----------
         moves : (N, P) 1 for pegs that move, 0 for others.
-        against : (N, 2) unit vector against which they clamp, in the toolkit's frame.
-        touched : (N, P) numbers in ``starts``.
+        against : (N, 2) unit vector opposite to the clamping direction, in the toolkit's frame.
+        touched : (N, P) index in ``starts`` of the face or hull edge touched.
         """
         count, each = pegs.shape[:2]
         points, normals, ends, edges = (np.empty((count, each, *shape)) for shape in ((2,), (2,), (), ()))
         inverses = np.zeros((count, 4, each))
         # A kernel is compiled anew for arrays that are read-only or laid out otherwise.
-        contact_matrices_of(
+        write_contact_matrices(
             np.require(pegs, np.float64, ["C", "W"]),
             np.require(pose, np.float64, ["C", "W"]),
             moves,
@@ -263,8 +277,10 @@ class Touched:
         )
         return points, normals, ends, edges, inverses
 
-    def locators(self, points: Array, faces: NDArray[np.int64]) -> ContactMatrices:
-        """Contacts of the first carrier's pegs alone, with the inverses of the locators' wrenches; nothing closes.
+    def compute_locators(self, points: Array, faces: NDArray[np.int64]) -> ContactMatrices:
+        """Return the contacts of three locators alone on the first carrier, with inverses of their wrenches.
+
+        ``closing`` is empty.
 
         Parameters
         ----------
@@ -273,18 +289,21 @@ class Touched:
         """
         count, each = points.shape[:2]
         still = np.zeros((count, 3)), np.zeros((count, each)), np.zeros((count, 2))
-        _, normals, ends, edges, inverses = self.contacts(points + self.center, *still, faces)
-        inverses[:, :LOCATORS] = invert_locator_matrices(wrenches(points, normals, self.length))
+        _, normals, ends, edges, inverses = self.compute_contacts(points + self.center, *still, faces)
+        inverses[:, :LOCATORS] = invert_locator_matrices(compute_wrenches(points, normals, self.length))
         return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((count, each, 0)))
 
-    def pushes(self, pose: Array, carriers: NDArray[np.integer[Any]]) -> Array:
-        """The unit vectors (N, 2, 2) along which the two clamps of fixtures push, in the part's frame."""
+    def compute_push_directions(self, pose: Array, carriers: NDArray[np.integer[Any]]) -> Array:
+        """Return the unit vectors (N, 2, 2) along which the
+        last two contacts' clamps push, in the part's frame.
+        """
         along = self.directions[np.asarray(carriers)[:, -2:]]
         return np.stack(rotate_vectors(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
 
-    def of_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
+    def compute_for_fixture(self, fixture: Fixture, toolkit: Toolkit) -> ContactMatrices:
+        """Return the contact matrices of one fixture (N = 1)."""
         pose = fixture.pose
-        return self.contact_matrices(
+        return self.compute_contact_matrices(
             np.array([[(peg.x, peg.y) for peg in fixture.pegs]]),
             np.array([[radians(pose.theta_deg), pose.x, pose.y]]),
             np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)]),
@@ -293,7 +312,9 @@ class Touched:
 
 
 def invert_locator_matrices(all_wrenches: Array) -> Array:
-    """Inverses (N, 3, 3) of the matrices whose rows are the locators' wrenches; NaN where there is none."""
+    """Return inverses (N, 3, 3) of the matrices whose
+    rows are the first three wrenches; NaN where singular.
+    """
     matrix = all_wrenches[:, :LOCATORS]
     usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.abs(np.linalg.det(matrix)) > 0.0)
     inverse = np.full(matrix.shape, np.nan)
@@ -302,12 +323,15 @@ def invert_locator_matrices(all_wrenches: Array) -> Array:
 
 
 def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) -> Array:
-    """Forces (N, 5, 2) of three locators and two clamps per unit of the force of each clamp.
+    """Return forces (N, 5, 2) of three locators and two clamps per unit of the force of each clamp.
 
-    Points and normals (N, 5, 2) are about the centre of the part, pushes (N, 2, 2) of length 1 in its frame,
-    L is in mm.
+    Parameters
+    ----------
+    points, normals : (N, 5, 2) relative to the centre of the part, in mm; locators first.
+    pushes : (N, 2, 2) unit vectors along which the clamps push, in the part's frame.
+    length : L in mm.
     """
-    each = wrenches(points, normals, length)
+    each = compute_wrenches(points, normals, length)
     push = -(normals[:, LOCATORS:] * pushes).sum(axis=-1)
     taken = -np.einsum("nij,nki->njk", invert_locator_matrices(each), each[:, LOCATORS:])
     out = np.zeros((len(points), 5, 2))

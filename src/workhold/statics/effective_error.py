@@ -1,6 +1,6 @@
-"""The effective location error: the location error times what a machinist would rather not have.
+"""The effective location error: the location error times factors for what a machinist would rather avoid.
 
-The factors are data (``model.first_choice``); here it is found out which of them hold of a fixture.
+The factors are data (``model.choose_first_toolkit``); here it is determined which of them apply to a fixture.
 
 Glossary
 --------
@@ -25,7 +25,7 @@ from workhold.fixels.contacts import CLAMP_TIP
 from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.segment import Arc, Line
 from workhold.model.first_choice import FACTORS
-from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.fixture_table import FixtureTable, compute_peg_places
 from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
@@ -41,7 +41,10 @@ TIMES = np.array([factor.times for factor in FACTORS])
 
 
 def classify_angles(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
-    """Classes (N,) of angles (N,) in radians; within so many degrees ``beside`` one it counts as that."""
+    """Return the class (N,) of each angle (N,) in radians: 0 as drawn, 1 another quarter turn, 2 elsewhere.
+
+    An angle within ``beside`` degrees of a quarter turn counts as that.
+    """
     turns = np.degrees(theta) / 90.0
     whole = np.rint(turns)
     there = np.abs(turns - whole) * 90.0 <= beside
@@ -49,7 +52,10 @@ def classify_angles(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
 
 
 def find_unasked_faces(query: Query) -> BoolArray:
-    """Which faces (S,), by number, are those of holes that nobody asked for."""
+    """Return a mask (S,), by face number, of faces of holes that the query does not ask to work from.
+
+    They are asked for if the toolkit clamps by opening or every outer face is avoided.
+    """
     every = query.workpiece.numbered
     out = np.zeros(len(every.segments), np.bool_)
     outside = {face.number for face in every.faces} - every.inside - query.workpiece.untouchable
@@ -60,15 +66,16 @@ def find_unasked_faces(query: Query) -> BoolArray:
 
 @frozen(eq=False)
 class EffectiveErrors:
-    """What is needed to find which factors hold of the fixtures of a query.
+    """A calculator of the factors on the location error,
+    and of effective errors, for the fixtures of a query.
 
     Parameters
     ----------
     query : what is asked.
-    unasked : (S,) which faces are those of holes that nobody asked for.
-    lines : (S, 5) of each straight face by number its start, direction and length; NaN for others.
-    corners : (C, 2) of the part's convex hull, of joints of its outline.
-    arcs : (A, 6) its convex arcs: centre, radius, middle direction, cosine of half the sweep.
+    unasked : (S,) mask of faces of holes that the query does not ask for.
+    lines : (S, 5) start, direction and length of each straight face, by number; NaN for others.
+    corners : (C, 2) corners of the convex hull of the outline's joints.
+    arcs : (A, 6) convex arcs of the outline: centre, radius, middle direction, cosine of half the sweep.
     """
 
     query: Query
@@ -78,21 +85,24 @@ class EffectiveErrors:
     arcs: Array
 
     @classmethod
-    def of(cls, query: Query) -> EffectiveErrors:
+    def from_query(cls, query: Query) -> EffectiveErrors:
+        """Return the calculator for the fixtures of a query."""
         every = query.workpiece.numbered
         lines = np.full((len(every.segments), 5), np.nan)
         for face in every.faces:
             if isinstance(face.segment, Line):
                 lines[face.number] = (*face.segment.start, *face.segment.tangent, face.segment.length)
-        return cls(query, find_unasked_faces(query), lines, *outermost(query.workpiece))
+        return cls(query, find_unasked_faces(query), lines, *find_outermost(query.workpiece))
 
-    def errors(self, table: FixtureTable) -> Array:
-        """Effective location errors (N,) in mm of a table of fixtures."""
-        factors = np.where(self.holding(table), TIMES, 1.0).prod(axis=1)
+    def compute_errors(self, table: FixtureTable) -> Array:
+        """Return effective location errors (N,) in mm of a measured table."""
+        factors = np.where(self.find_factors(table), TIMES, 1.0).prod(axis=1)
         return np.asarray(table.quality[:, LOCATION_ERROR] * factors)
 
-    def holding(self, table: FixtureTable) -> BoolArray:
-        """Which factors (N, F) hold of a table's fixtures, in the order of ``FACTORS``."""
+    def find_factors(self, table: FixtureTable) -> BoolArray:
+        """Return a mask (N, F) of the factors that hold of
+        a table's fixtures, in the order of ``FACTORS``.
+        """
         toolkit, angle = self.query.toolkit, classify_angles(table.theta)
         carriers = toolkit.find_peg_carriers(table.arrangement)
         is_clamp = np.array([one.contact is CLAMP_TIP for one in toolkit.carriers])[carriers]
@@ -101,24 +111,26 @@ class EffectiveErrors:
         found = {
             "quarter_turn": angle == 1,
             "other_angle": angle == 2,
-            "face_end": (self.near_end(table, carriers) & is_placed).any(axis=1),
+            "face_end": (self.find_near_face_ends(table, carriers) & is_placed).any(axis=1),
             "clamp_in_hole": (inside & is_clamp).any(axis=1),
             "dowel_in_bore": (inside & ~is_clamp).any(axis=1),
-            "hangs_over": self.hangs_over(table),
+            "hangs_over": self.find_overhanging(table),
         }
         return np.stack([found[key] for key in KEYS], axis=1)
 
-    def near_end(self, table: FixtureTable, carriers: NDArray[np.int8]) -> BoolArray:
-        """Which contacts (N, P) are nearer than their peg's radius to the end of a straight face."""
+    def find_near_face_ends(self, table: FixtureTable, carriers: NDArray[np.int8]) -> BoolArray:
+        """Return which contacts (N, P) are nearer than their peg's radius to an end of a straight face."""
         radius = np.array([one.peg_radius for one in self.query.toolkit.carriers])[carriers]
-        x, y = peg_places(table, self.query.toolkit, self.query.workpiece)
+        x, y = compute_peg_places(table, self.query.toolkit, self.query.workpiece)
         x, y = x - table.position[:, :1], y - table.position[:, 1:]
         cosine, sine = np.cos(table.theta)[:, None], np.sin(table.theta)[:, None]
         points = np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=2)
         return np.asarray(to_ends(points, self.lines[table.face]) < np.round(radius, FIGURE_DECIMALS))
 
-    def hangs_over(self, table: FixtureTable) -> BoolArray:
-        """Which fixtures (N,) hang over the plate."""
+    def find_overhanging(self, table: FixtureTable) -> BoolArray:
+        """Return which fixtures (N,) have a part that hangs
+        over the plates wherever the set-up stands on them.
+        """
         toolkit, out = self.query.toolkit, np.zeros(len(table), np.bool_)
         plates, travel = toolkit.plates, table.jaw_separation
         moved = travel if travel.ndim == 1 else np.zeros(len(table))
@@ -126,30 +138,40 @@ class EffectiveErrors:
             if any(count is None for count in counts) or not len(table):
                 continue
             pitch = plates[0].pitch[axis]
-            first = np.array([plate.place(0, 0, moved)[axis] + np.zeros(len(table)) for plate in plates])
+            first = np.array(
+                [plate.compute_hole_center(0, 0, moved)[axis] + np.zeros(len(table)) for plate in plates]
+            )
             last = first + (np.array([count or 0 for count in counts])[:, None] - 1) * pitch
             low, high = first.min(axis=0) - pitch / 2, last.max(axis=0) + pitch / 2
-            least, most = self.extent(table, axis)
-            back, ahead = self.spare(table, axis)
-            # By so many holes at least, and at most, all has to be moved to lie within.
+            least, most = self.compute_extent(table, axis)
+            back, ahead = self.count_spare_holes(table, axis)
+            # Smallest and largest number of holes by which the set-up must be moved for the part to lie
+            # within the plates.
             needed = np.ceil((low - least - AGREEMENT) / pitch)
             allowed = np.floor((high - most + AGREEMENT) / pitch)
             if axis == 1 and toolkit.wall is not None:
-                # The part lies on the wall; nobody asks what is under its foot.
+                # The part lies on the wall, so what is under its lower side does not matter.
                 needed = np.full(len(table), -np.inf)
             out |= np.maximum(needed, -back) > np.minimum(allowed, ahead)
         return out
 
-    def extent(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """The least and largest places (N,) that the part reaches along x or y of the toolkit."""
-        # The axis as the part sees it.
+    def compute_extent(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
+        """Return the least and the largest coordinates (N,)
+        in mm of the part along x (0) or y (1) of the toolkit.
+        """
+        # Direction of the axis in the part's frame.
         turn = (pi / 2) * axis - table.theta
         along = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        low, high = -reach(-along, self.corners, self.arcs), reach(along, self.corners, self.arcs)
+        low, high = (
+            -compute_reach(-along, self.corners, self.arcs),
+            compute_reach(along, self.corners, self.arcs),
+        )
         return low + table.position[:, axis], high + table.position[:, axis]
 
-    def spare(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """The holes (N,) by which all may be moved back, and ahead, along x or y."""
+    def count_spare_holes(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
+        """Return by how many holes (N,) the set-up can be moved
+        toward lower, and toward higher numbers, along x (0) or y (1).
+        """
         toolkit, none = self.query.toolkit, np.zeros(len(table))
         slides = [plate for plate in toolkit.plates if plate.travel is not None]
         if any(plate.is_along_x == (axis == 0) for plate in slides) or (axis == 1 and toolkit.wall):
@@ -164,8 +186,9 @@ class EffectiveErrors:
 
 
 def to_ends(points: Array, lines: Array) -> Array:
-    """Distances (...,) of contacts from the nearer ends of straight faces, in mm to nine decimals; NaN for
-    others.
+    """Return distances (...) of contacts from the nearer ends of straight faces, in mm to nine decimals.
+
+    Negative beyond an end; NaN for other faces.
 
     Parameters
     ----------
@@ -176,20 +199,20 @@ def to_ends(points: Array, lines: Array) -> Array:
     return np.asarray(np.round(np.minimum(along, lines[..., 4] - along), FIGURE_DECIMALS))
 
 
-def outermost(workpiece: Workpiece) -> tuple[Array, Array]:
-    """Corners and convex arcs of a part, see :class:`EffectiveErrors`."""
+def find_outermost(workpiece: Workpiece) -> tuple[Array, Array]:
+    """Return the corners (C, 2) and convex arcs (A, 6) of a part's outline, see :class:`EffectiveErrors`."""
     outer = [face.segment for face in workpiece.outer_faces]
     joints = [one.start for one in outer if not (isinstance(one, Arc) and one.is_full)]
     arcs = [
-        (*one.row()[1:3], one.radius, *one.row()[3:5], cos(min(one.half_sweep, pi)))
+        (*one.to_row()[1:3], one.radius, *one.to_row()[3:5], cos(min(one.half_sweep, pi)))
         for one in outer
         if isinstance(one, Arc) and one.sign > 0
     ]
     return np.array(compute_convex_hull(joints)).reshape(-1, 2), np.array(arcs).reshape(-1, 6)
 
 
-def reach(along: Array, corners: Array, arcs: Array) -> Array:
-    """How far (N,) a part reaches in directions (N, 2)."""
+def compute_reach(along: Array, corners: Array, arcs: Array) -> Array:
+    """Return the largest coordinate (N,) in mm of a part along unit vectors (N, 2)."""
     out = np.full(len(along), -np.inf)
     for x, y in corners.tolist():
         np.maximum(out, along[:, 0] * x + along[:, 1] * y, out=out)

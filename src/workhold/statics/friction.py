@@ -1,13 +1,14 @@
-"""The jaw force that loads ask for, of a part held between two flat jaws by friction.
+"""The jaw force that loads require, for a part held between two flat jaws by friction.
 
-Both jaws press with affine pressures (``statics.patches``). In each cell of a patch friction acts in any direction of
-the plane, at most the coefficient times the pressure at the cell's centre times its area; the circle of directions is
-a polygon of 16 sides inside it. Parallels push upward and the work stop along the jaws, without friction. A load is
-held at a jaw force F if such forces balance it where the jaw that moves presses with F. For given pressures every
-friction that balances is a safe one: the lower bound theorem of limit analysis.
+Both jaws press with affine pressures (``statics.patches``). In each cell of a patch friction acts in any
+direction of the plane, at most the coefficient times the pressure at the cell's centre times its area; the
+circle of directions is replaced by a polygon of 16 sides inside it. Parallels push upward and the work stop
+along the jaws, without friction. A jaw force F holds a load if such forces balance it while the moving jaw
+presses with F. By the lower bound theorem of limit analysis any balancing friction is safe for given
+pressures.
 
-The least F is a linear program with six equations of balance, and its dual asks for a motion of the part. F is convex
-in the load, so that of a range of loads those at its corners are the worst.
+The least F is the value of a linear program with six equations of balance; the dual program seeks a motion of
+the part. F is convex in the load, so the worst loads of a range are its corners.
 
 Reference: D. C. Drucker, W. Prager, H. J. Greenberg, *Extended limit design theorems for continuous media*, Quarterly of
 Applied Mathematics 9 (1952).
@@ -25,7 +26,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import WorkholdError
 from workhold.geometry.segment import Point
-from workhold.model.jaw_hold import Patch
+from workhold.model.jaw_hold import JawPatch
 from workhold.model.requirements import Load
 from workhold.statics.linear_program import LinearProgram
 from workhold.statics.patches import PressedPatch, hulls_meet
@@ -36,11 +37,11 @@ if TYPE_CHECKING:
 __all__ = [
     "BROKEN",
     "DIRECTIONS",
-    "Grip",
+    "FrictionHold",
     "HeldByFriction",
     "MotionProgram",
-    "corners_of_load",
-    "directed",
+    "list_load_corners",
+    "enclose_directions",
     "is_pressed_all_over",
     "find_least_peak_pressure",
 ]
@@ -64,16 +65,18 @@ MOST_CONDITION = 1e9
 
 
 @frozen(eq=False)
-class Grip:
-    """A part between two flat jaws, ready for the linear programs of its loads.
+class FrictionHold:
+    """A part between two flat jaws, as the linear programs of its loads need it.
+
+    x runs along the jaws, y from the fixed to the moving jaw, z upward.
 
     Parameters
     ----------
     fixed, moving : what each jaw touches.
-    opening : S in mm.
+    opening : distance between the jaws, in mm.
     friction : the coefficient between jaws and part.
-    stop_points : (K, 3) in mm, where the work stop may push; empty without one.
-    stop_way : 1 where it pushes along x, -1 where against it.
+    stop_points : (K, 3) points in mm at which the work stop may push; empty without one.
+    stop_way : 1 where the stop pushes toward +x, -1 toward -x.
     """
 
     fixed: PressedPatch
@@ -84,74 +87,81 @@ class Grip:
     stop_way: float = 1.0
 
     @classmethod
-    def of(
+    def from_patches(
         cls,
-        fixed: Patch,
-        moving: Patch,
+        fixed: JawPatch,
+        moving: JawPatch,
         opening: float,
         friction: float,
         stop_points: Sequence[tuple[float, float, float]] = (),
         stop_way: float = 1.0,
-    ) -> Grip:
+    ) -> FrictionHold:
+        """Return the hold by two patches, with perhaps points (x, y, z) in mm on the work stop."""
         points = np.array(stop_points, np.float64).reshape(-1, 3)
         return cls(PressedPatch(fixed), PressedPatch(moving), opening, friction, points, stop_way)
 
     @cached_property
     def centre(self) -> Array:
-        """What moments are taken about, in mm."""
+        """Point (3,) in mm that moments are taken about."""
         ends = np.array([self.fixed.patch.ends, self.moving.patch.ends])
         tops = [one[3] for patch in (self.fixed, self.moving) for one in patch.rectangles]
         return np.array([ends.mean(), self.opening / 2, max(tops) / 2])
 
     @cached_property
     def length(self) -> float:
-        """What moments are divided by, in mm."""
+        """Length in mm that moments are divided by."""
         ends = np.array([self.fixed.patch.ends, self.moving.patch.ends])
         return float(max(self.opening, np.ptp(ends), 1.0) / 2)
 
-    def wrenches(self, points: Array, forces: Array) -> Array:
-        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm, moments over the length."""
+    def compute_wrenches(self, points: Array, forces: Array) -> Array:
+        """Return wrenches (N, 6) of forces (N, 3) in N at points (N,
+        3) in mm; moments about ``centre``, divided by ``length``.
+        """
         arms = points - self.centre
         return np.hstack([forces, np.cross(arms, forces) / self.length])
 
     @cached_property
     def pressing(self) -> Array:
-        """Wrenches (R, 6) of the edges of pressure, those of the fixed jaw first."""
+        """Wrenches (R, 6) on the part of the unit pressures of both
+        jaws, see ``PressedFace.edges``; the fixed jaw's first.
+        """
         rows = []
         for patch, y, way in ((self.fixed, 0.0, 1.0), (self.moving, self.opening, -1.0)):
             points = np.column_stack([patch.centres[:, 0], np.full(len(patch.edges), y), patch.centres[:, 1]])
-            rows.append(self.wrenches(points, np.tile([0.0, way, 0.0], (len(points), 1))))
+            rows.append(self.compute_wrenches(points, np.tile([0.0, way, 0.0], (len(points), 1))))
         return np.vstack(rows)
 
     @cached_property
     def pushing(self) -> Array:
-        """Wrenches (K, 6) of unit forces of the parallels, then of the work stop."""
+        """Wrenches (K, 6) of unit forces without friction: of the parallels upward, then of the work stop."""
         points = [
             (x, y, 0.0)
             for patch, y in ((self.fixed, 0.0), (self.moving, self.opening))
             for x in patch.patch.ends
         ]
-        upward = self.wrenches(np.array(points), np.tile([0.0, 0.0, 1.0], (len(points), 1)))
+        upward = self.compute_wrenches(np.array(points), np.tile([0.0, 0.0, 1.0], (len(points), 1)))
         ways = np.tile([self.stop_way, 0.0, 0.0], (len(self.stop_points), 1))
-        return np.vstack([upward, self.wrenches(self.stop_points, ways)])
+        return np.vstack([upward, self.compute_wrenches(self.stop_points, ways)])
 
     @cached_property
     def rubbing(self) -> Array:
-        """Wrenches (C, 16, 6) of unit forces of friction in the cells of both jaws, in each direction."""
+        """Wrenches (C, 16, 6) of unit friction forces in the cells of both jaws, in each direction."""
         turns = 2 * pi / DIRECTIONS * np.arange(DIRECTIONS)
         ways = np.column_stack([np.sin(turns), np.zeros(DIRECTIONS), np.cos(turns)])
         rows = []
         for patch, y in ((self.fixed, 0.0), (self.moving, self.opening)):
             centre = patch.cells.centre
             points = np.column_stack([centre[:, 0], np.full(len(centre), y), centre[:, 1]])
-            rows.append(self.wrenches(np.repeat(points, DIRECTIONS, axis=0), np.tile(ways, (len(points), 1))))
+            rows.append(
+                self.compute_wrenches(np.repeat(points, DIRECTIONS, axis=0), np.tile(ways, (len(points), 1)))
+            )
         return np.vstack(rows).reshape(-1, DIRECTIONS, 6)
 
     @cached_property
     def bearing(self) -> Array:
-        """The friction (C, R) that each cell bears per unit of each edge of pressure."""
+        """Friction force (C, R) that each cell bears per unit of each pressure in ``pressing``."""
         own, other = (
-            (self.friction * patch.pressure(patch.cells.centre) * patch.cells.area).T
+            (self.friction * patch.compute_pressures(patch.cells.centre) * patch.cells.area).T
             for patch in (self.fixed, self.moving)
         )
         count = len(own), len(other), own.shape[1], other.shape[1]
@@ -161,16 +171,18 @@ class Grip:
 
     @cached_property
     def most_work(self) -> Array:
-        """(R,) The jaw force that a unit of each pressure stands for: 1 of the jaw that moves."""
+        """Jaw force (R,) that a unit of each pressure counts
+        as: 0 for the fixed jaw's, 1 for the moving jaw's.
+        """
         return np.repeat([0.0, 1.0], [len(self.fixed.edges), len(self.moving.edges)])
 
-    def forces_needed(self, loads: Array) -> list[float | None]:
-        """The least jaw force in N for each of some loads (N, 6) as :meth:`wrenches` has them.
+    def compute_forces_needed(self, loads: Array) -> list[float | None]:
+        """Return the least jaw force in N for each of loads (N, 6), wrenches as of :meth:`compute_wrenches`.
 
-        It is None for a load that no jaw force holds.
+        None for a load that no jaw force holds.
         """
         motions = MotionProgram(self)
-        return [motions.least_force(load) for load in loads]
+        return [motions.find_least_force(load) for load in loads]
 
 
 class HeldByFriction(Protocol):
@@ -178,11 +190,11 @@ class HeldByFriction(Protocol):
 
     Parameters
     ----------
-    pushing : wrenches (K, 6) of unit forces without friction.
-    pressing : wrenches (R, 6) of pressures.
-    rubbing : wrenches (C, D, 6) of unit forces of friction in each cell, in each direction.
-    bearing : the friction (C, R) that each cell bears per unit of each pressure.
-    most_work : (R,) the clamp force that a unit of each pressure stands for: 1 of what clamps, else 0.
+    pushing : (K, 6) wrenches of unit forces without friction.
+    pressing : (R, 6) wrenches of unit pressures.
+    rubbing : (C, D, 6) wrenches of unit friction forces in each cell, in each direction.
+    bearing : (C, R) friction force that each cell bears per unit of each pressure.
+    most_work : (R,) clamp force that a unit of each pressure counts as: 1 for what clamps, else 0.
     """
 
     @property
@@ -199,21 +211,22 @@ class HeldByFriction(Protocol):
 
 @define(eq=False)
 class MotionProgram:
-    """The motions of the part that what holds it resists, and which of them a load drives hardest.
+    """The linear program of the motion of the part that a load
+    drives hardest, dual to that of the least clamp force.
 
-    By duality the least clamp force is the largest power of the load on a motion (6,) against which each pressure that
-    does not clamp, with the friction that goes with it, does no work, those that clamp no more than 1 for a unit of
-    force, and forces without friction none. Friction takes in each cell the direction that works most, so that each
-    pressure stands for very many linear conditions. Those are added that the last motion breaks, until it breaks none;
-    loads of one grip share them.
+    The least clamp force is the largest power of the load on a motion (6,) subject to: each pressure that
+    does not clamp, with its friction, and each force without friction do no work against it; each pressure
+    that clamps at most 1 per unit. In each cell friction takes the direction that works most, so each
+    pressure stands for very many linear conditions. Those are added that the last motion breaks, until none
+    is broken; all loads of one grip share them.
 
     Parameters
     ----------
     grip : of the part.
-    conditions : (K, 6) forces of the program's rows.
-    answered : jaw forces that suffice for loads, by their bytes.
-    motions : (L, 6) that answered loads.
-    inverses : (L, 6, 6) of the forces of the six conditions that each of them meets.
+    conditions : (K, 6) coefficients of the program's rows.
+    answered : forces that suffice for loads, by the bytes of the rounded load.
+    motions : (L, 6) optimal motions of solved loads.
+    inverses : (L, 6, 6) of the six conditions that each of these motions meets.
     """
 
     grip: HeldByFriction
@@ -226,21 +239,27 @@ class MotionProgram:
     def __attrs_post_init__(self) -> None:
         free = self.grip.pushing
         below = np.full(len(free), -np.inf)
-        self.program = LinearProgram.of(free, np.zeros(6), below, np.zeros(len(free)), most=FARTHEST)
+        self.program = LinearProgram.from_matrix(free, np.zeros(6), below, np.zeros(len(free)), most=FARTHEST)
         self.conditions = free
 
-    def least_force(self, load: Array, enough: float = -np.inf) -> float | None:
+    def find_least_force(self, load: Array, enough: float = -np.inf) -> float | None:
         """Return the least clamp force in N that balances a load (6,); None where none does.
 
-        Where no more than ``enough`` is asked for, it may be more than the least, and at most that.
+        If the least is at most ``enough``, some force between the least and ``enough`` may be returned
+        instead.
         """
-        return self.driven_by(load, enough)[0]
+        return self.find_driven_motion(load, enough)[0]
 
-    def driven_by(self, load: Array, enough: float = -np.inf) -> tuple[float | None, Array]:
+    def find_driven_motion(self, load: Array, enough: float = -np.inf) -> tuple[float | None, Array]:
         """Return the least clamp force in N that balances a load (6,), and the motion (6,) whose power it is.
 
-        The force is None where none does; then the motion is one that no clamp force resists, but for a little. Where
-        no more than ``enough`` is asked for, the force may be more than the least, and at most that.
+        The force is None where none does; the motion is then one that no clamp force resists. If the least is
+        at most ``enough``, some force between the least and ``enough`` may be returned instead.
+
+        Raises
+        ------
+        WorkholdError
+            When the solver does not end.
         """
         size = float(np.abs(load).max())
         if size == 0.0:
@@ -249,7 +268,7 @@ class MotionProgram:
         driven = -load / size
         driven[np.abs(driven) < NEGLIGIBLE] = 0.0
         for _ in range(MOST_TURNS):
-            motion = self.program.with_costs(-driven)
+            motion = self.program.solve_with_costs(-driven)
             if motion is None:
                 break
             if float(driven @ motion) * size <= enough:
@@ -261,16 +280,19 @@ class MotionProgram:
             "the clamp force of a load was not found: report it with the part, the hardware and the load."
         )
 
-    def most_known(self, loads: Array) -> float:
-        """Return a jaw force in N that the hardest of some loads (N, 6) asks for at least."""
+    def bound_force(self, loads: Array) -> float:
+        """Return a lower bound in N of the largest clamp force
+        that the loads (N, 6) need, from motions known so far.
+        """
         return max(float((self.motions @ -loads.T).max(initial=0.0)), 0.0)
 
-    def least_forces(self, loads: Array, most: float = np.inf) -> Array:
-        """Return the least jaw force in N for each load (N, 6), infinite where none holds it.
+    def find_least_forces(self, loads: Array, most: float = np.inf) -> Array:
+        """Return the least clamp force in N for each load (N, 6), inf where none holds it.
 
-        A motion that meets six conditions is the answer for every load that is a sum of these conditions' forces, so
-        that one linear program answers all loads in that cone. Forces up to ``most`` may be more than the least. Once
-        one is above, all that are not known are NaN.
+        Forces up to ``most`` may be larger than the least. Once one is above ``most``, the rest stay NaN.
+
+        A motion that meets six conditions is the answer for every load in the cone of these conditions'
+        forces, so one linear program answers all loads in that cone.
         """
         keys = [load.tobytes() for load in loads.round(SAME_DIGITS)]
         # What only suffices must not stand for the least.
@@ -281,7 +303,7 @@ class MotionProgram:
         while len(left) and not (out > most).any():
             first = int(left[(driven[left] @ self.motions.T).max(axis=1, initial=0.0).argmax()])
             enough = most if most < np.inf else -np.inf
-            need, count = self.least_force(loads[first], enough), len(self.motions)
+            need, count = self.find_least_force(loads[first], enough), len(self.motions)
             out[first], left = (np.inf if need is None else need), left[left != first]
             self.answered[keys[first]] = float(out[first])
             if need is not None and need > enough:
@@ -290,20 +312,25 @@ class MotionProgram:
         return out
 
     def remember_cone(self, load: Array) -> None:
-        """Keep the motion that answered a load (6,) last, where the conditions that it meets determine it."""
-        rows = self.program.bounding_rows() if load.any() else None
+        """Store the last motion and its six conditions to answer more loads, where they determine it well."""
+        rows = self.program.find_bounding_rows() if load.any() else None
         if rows is None or np.linalg.cond(self.conditions[rows]) > MOST_CONDITION:
             return
         self.inverses = np.concatenate([self.inverses, np.linalg.inv(self.conditions[rows])[None]])
-        self.motions = np.concatenate([self.motions, self.program.solution()[None]])
+        self.motions = np.concatenate([self.motions, self.program.read_solution()[None]])
 
     @staticmethod
     def answer_in_cones(
         inverses: Array, motions: Array, driven: Array, left: NDArray[np.intp], out: Array
     ) -> NDArray[np.intp]:
-        """Write the forces of those of some loads (N, 6), against which the part is driven, that lie in cones (K, 6, 6).
+        """Write into ``out`` (N,) the forces of the loads that
+        lie in a known cone; return the indices of the others.
 
-        Return the numbers of the others.
+        Parameters
+        ----------
+        inverses, motions : (K, 6, 6) and (K, 6) of the cones.
+        driven : (N, 6) the loads, negated.
+        left : indices of the loads to look at.
         """
         if not len(inverses) or not len(left):
             return left
@@ -316,10 +343,7 @@ class MotionProgram:
         return np.asarray(left[~inside])
 
     def cut_off(self, motion: Array) -> bool:
-        """Adds the conditions that a motion (6,) breaks; whether there are any.
-
-        Forces on the part push it back, so that work is done against the motion by what they do along it.
-        """
+        """Add to the program the conditions that a motion (6,) breaks; return whether there are any."""
         grip = self.grip
         along = grip.rubbing @ motion
         chosen = along.argmax(axis=1)
@@ -333,16 +357,19 @@ class MotionProgram:
         return bool(broken.any())
 
 
-def is_pressed_all_over(fixed: Patch, moving: Patch) -> bool:
-    """Whether both jaws can press all over what they touch with equal resultants: their kerns meet."""
+def is_pressed_all_over(fixed: JawPatch, moving: JawPatch) -> bool:
+    """Return whether both jaws can press all over what they touch with equal and opposite forces.
+
+    So it is where their kerns, the sets of possible centres of pressure, meet.
+    """
     one, other = PressedPatch(fixed), PressedPatch(moving)
     return hulls_meet(one.centres, other.centres, KERN_SLACK)
 
 
-def find_least_peak_pressure(fixed: Patch, moving: Patch, force: float) -> float | None:
-    """The least that the largest pressure in MPa can be at a jaw force in N without a load.
+def find_least_peak_pressure(fixed: JawPatch, moving: JawPatch, force: float) -> float | None:
+    """Return the smallest possible largest pressure in MPa, at a jaw force in N and without loads.
 
-    It is None where a jaw touches along lines, whose pressure has no bound, and where the kerns do not meet.
+    None where a jaw touches along a line (unbounded pressure), and where it cannot press all over.
     """
     if fixed.is_line or moving.is_line or not is_pressed_all_over(fixed, moving):
         return None
@@ -350,12 +377,12 @@ def find_least_peak_pressure(fixed: Patch, moving: Patch, force: float) -> float
     own, other = patches
     counts, size = (
         (len(own.edges), len(other.edges)),
-        max(float(one.largest_pressure().max()) for one in patches),
+        max(float(one.compute_largest_pressures().max()) for one in patches),
     )
     middle = own.integrals[0, 1:] / own.integrals[0, 0]
     arms = [one.centres - middle for one in patches]
     span = max(1.0, *(float(np.abs(one).max()) for one in arms))
-    corners = [one.largest_pressure().T / size for one in patches]
+    corners = [one.compute_largest_pressures().T / size for one in patches]
     # Rows: the force of each jaw, the moments of both, and the pressure at each corner; the last column is the most.
     matrix = np.zeros((4 + sum(map(len, corners)), sum(counts) + 1))
     matrix[0, : counts[0]] = matrix[1, counts[0] : -1] = 1.0
@@ -370,14 +397,17 @@ def find_least_peak_pressure(fixed: Patch, moving: Patch, force: float) -> float
         np.concatenate([level - slack, below]),
         np.concatenate([level + slack, np.zeros(len(below))]),
     )
-    least = LinearProgram.of(matrix, np.eye(1, matrix.shape[1], matrix.shape[1] - 1)[0], lower, upper).least()
+    least = LinearProgram.from_matrix(
+        matrix, np.eye(1, matrix.shape[1], matrix.shape[1] - 1)[0], lower, upper
+    ).find_least_cost()
     return None if least is None else least * size * force
 
 
-def directed(low: float, high: float, steps: int = 32) -> Array:
-    """Unit vectors (N, 2), and a little longer ones, whose hull holds those of a range of directions in radians.
+def enclose_directions(low: float, high: float, steps: int = 32) -> Array:
+    """Return vectors (N, 2) whose convex hull contains the unit
+    vectors of directions from ``low`` to ``high`` in radians.
 
-    One direction is itself. The corners of a range lie on tangents of the circle, at most 0.5 % outside it.
+    They are at most 0.5 % longer than 1 with 32 ``steps`` per turn. For low = high it is that unit vector.
     """
     if high <= low:
         return np.array([[cos(low), sin(low)]])
@@ -391,8 +421,11 @@ def directed(low: float, high: float, steps: int = 32) -> Array:
     return np.vstack([ends, corners])
 
 
-def corners_of_load(load: Load, theta: float, position: Point, height: float) -> tuple[Array, Array]:
-    """Points (N, 3) in mm and forces (N, 3) in N, the worst of a load among them, of a part in a pose.
+def list_load_corners(load: Load, theta: float, position: Point, height: float) -> tuple[Array, Array]:
+    """Return points (N, 3) in mm and forces (N, 3) in N, in
+    the jaws' frame, whose hull contains every case of a load.
+
+    The load's moment is left out.
 
     Parameters
     ----------
@@ -401,7 +434,7 @@ def corners_of_load(load: Load, theta: float, position: Point, height: float) ->
     height : at which the load acts, in mm.
     """
     low, high = (radians(angle) + theta for angle in load.directions)
-    ways = directed(low, high) if load.force else np.zeros((1, 2))
+    ways = enclose_directions(low, high) if load.force else np.zeros((1, 2))
     points = np.array(load.points or ((0.0, 0.0),))
     c, s = cos(theta), sin(theta)
     x, y = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1]

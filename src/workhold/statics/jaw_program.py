@@ -1,12 +1,12 @@
-"""The jaw force that the tools of a program ask for, of a part held between two flat jaws by friction.
+"""The jaw force that the tools of a program require, for a part held between two flat jaws by friction.
 
-A tool presses at a place of its path with a force in the plane, along its axis, and with a torque either way round.
-The jaw force is convex in the load (``statics.friction``), and at one force the load is affine in the place. So of
-places in a box and of directions in a range the hardest are corners: those of the box, both ends of the range, and
-where the tangents at these meet, which is a little outside. Boxes and ranges are halved, the most promising first
-(branch and bound), unless their corners ask for no more than a single straight piece with a narrow range that is known.
-Arcs are cut into short ones, each inside the triangle of its chord and its tangents. So no force is understated, and
-none overstated by 1 %.
+A tool presses at a place of its path with a force in the plane, a force along its axis, and a torque either
+way round. The jaw force is convex in the load (``statics.friction``), and for one force the load is affine in
+the place. So of places in a box and directions in a range the worst are among the corners: those of the box,
+both ends of the range, and the point where the tangents at these meet, which is a little outside. Boxes and
+ranges are halved, the most promising first (branch and bound), until their corners need no more than a single
+straight piece with a narrow range that is known. Arcs are cut into short ones, each inside the triangle of
+its chord and tangents. So no force is understated, and none is overstated by 1 %.
 
 Reference: A. H. Land, A. G. Doig, *An automatic method of solving discrete programming problems*, Econometrica 28
 (1960).
@@ -25,14 +25,14 @@ from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.model.cutting_tool import ANY
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.program import Program
 from workhold.statics.friction import HeldByFriction, MotionProgram
 from workhold.statics.path_forces import EVERY, WITHIN
 from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
 from workhold.units import Unit
 
-__all__ = ["CuttingPieces", "PressedPart", "asked_words", "worst_of_program"]
+__all__ = ["CuttingPieces", "PressedPart", "describe_asked_force", "find_worst_move"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -49,16 +49,18 @@ CLIMBED = 1e-6
 
 @frozen(eq=False)
 class CuttingPieces:
-    """The N straight pieces of a program's path on which tools press, those of a tool and a kind of cut together.
+    """The N straight pieces of a program's path on which tools press, grouped by tool and kind of cut.
 
     Parameters
     ----------
-    move : (N,) number of the program's move.
-    group : (N,) number of the tool and the kind of cut, not falling.
-    start, end : (N, 3) where the force acts, in the part's coordinates and mm above its lower side.
-    force, torque : (N,) in N and N mm.
-    axial : (N, 2) least and greatest force along -z, in N.
-    middle, half : (N,) of the range of directions of the force, in radians; ``half`` is at most pi.
+    move : (N,) index of the program's move.
+    group : (N,) number of the tool and the kind of cut, ascending.
+    start, end : (N, 3) ends of the path of the force's point, x and y in the part's coordinates, z above its
+        lower side, in mm.
+    force, torque : (N,) in the plane, in N, and about z, in N mm.
+    axial : (N, 2) least and largest force along -z, in N.
+    middle, half : (N,) middle and half width of the range of directions of the force, in radians; half at
+        most pi.
     """
 
     move: IntArray
@@ -73,7 +75,9 @@ class CuttingPieces:
 
     @classmethod
     def from_program(cls, program: Program, thickness: float) -> CuttingPieces:
-        """Return the pieces of a program on a part of a thickness in mm; none without forces."""
+        """Return the pieces of a program on a part of this
+        thickness in mm; none where the program has no forces.
+        """
         forces, moves = program.forces, program.moves
         if forces is None:
             none, points = np.zeros(0), np.zeros((0, 3))
@@ -86,7 +90,7 @@ class CuttingPieces:
             np.column_stack([one[:, :2], np.clip(one[:, 2] + height, 0.0, thickness)])
             for one in (parts.start, parts.end)
         )
-        which, first, last, middle, half = straightened(start, end, parts.bulge)
+        which, first, last, middle, half = straighten_moves(start, end, parts.bulge)
         spread = EVERY if forces.direction == ANY else WITHIN
         move = own[which]
         half = np.where(forces.force[move] > 0.0, np.minimum(half + spread, pi), 0.0)
@@ -110,11 +114,12 @@ class CuttingPieces:
         return len(self.move)
 
 
-def straightened(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Array, Array, Array, Array]:
-    """Return straight pieces of moves with ends (M, 3) and bulges (M,), which hold arcs inside their hull.
+def straighten_moves(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Array, Array, Array, Array]:
+    """Return straight pieces of moves with ends (M, 3) and
+    bulges (M,); an arc lies in the hull of its pieces.
 
-    For each piece: the number of its move, its ends (N, 3), and the middle and half the range of the directions
-    against the feed in radians.
+    For each piece: index of its move, start and end (N, 3), and middle and half width of the range of
+    directions opposite to the feed, in radians.
     """
     chord = end[:, :2] - start[:, :2]
     round_ = (bulge != 0.0) & (chord != 0.0).any(axis=1)
@@ -131,7 +136,7 @@ def straightened(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Arra
         radius = np.where(round_, size / (2.0 * np.sin(np.abs(turn) / 2)), 0.0)[which]
 
     def after(number: Array) -> Array:
-        """Return the points (N, 3) of the moves after so many of their steps."""
+        """Return the points (N, 3) of the moves after ``number`` (N,) of their steps."""
         angle = number * step
         far = 2.0 * radius * np.sin(np.abs(angle) / 2)
         along = before + angle / 2
@@ -160,15 +165,15 @@ def straightened(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Arra
     )
 
 
-def asked_words(need: ProgramNeed, program: Program, unit: Unit) -> str:
-    """Say which jaw force a program asks for and where, in a sentence."""
+def describe_asked_force(need: ProgramJawForce, program: Program, unit: Unit) -> str:
+    """Return a sentence on the jaw force that a program needs, and where."""
     asked = AskedForce(need.force or 0.0, need.line, need.tool, None, find_cut_of_move(program, need.move))
     if need.force is None:
-        return f"No jaw force holds the part in {asked.place(unit)}."
-    return f"The program asks for a jaw force of {round_force_up(need.force, unit)}, in {asked.place(unit)}."
+        return f"No jaw force holds the part in {asked.describe_place(unit)}."
+    return f"The program asks for a jaw force of {round_force_up(need.force, unit)}, in {asked.describe_place(unit)}."
 
 
-class HeldPart(HeldByFriction, Protocol):
+class GrippedPart(HeldByFriction, Protocol):
     """A part that is held by friction, with the frame of its wrenches."""
 
     @property
@@ -181,36 +186,40 @@ class HeldPart(HeldByFriction, Protocol):
         """What moments are divided by, in mm."""
         ...
 
-    def wrenches(self, points: Array, forces: Array) -> Array:
+    def compute_wrenches(self, points: Array, forces: Array) -> Array:
         """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm."""
         ...
 
 
 @frozen(eq=False)
 class PressedPart:
-    """Pieces on a part that lies turned and moved between jaws or under straps, and the loads of some of them.
+    """A program's pieces on a part as it lies between jaws, and the loads that they make.
 
     Parameters
     ----------
     pieces : in the part's coordinates.
-    grip : of the part.
-    motions : that the grip resists.
+    grip : of the part between the jaws.
+    motions : the program that finds jaw forces for the grip.
     theta : by which the part is turned, in radians.
     position : by which it is then moved, in mm.
-    safety : by which loads are multiplied.
-    still : a wrench (6,) that acts besides, without that factor: the weight.
+    safety : factor on the loads.
     """
 
     pieces: CuttingPieces
-    grip: HeldPart
+    grip: GrippedPart
     motions: MotionProgram
     theta: float
     position: tuple[float, float]
     safety: float
     still: Array = field(factory=lambda: np.zeros(6))
 
-    def loads(self, chosen: IntArray, low: float, high: float) -> Array:
-        """Return wrenches (N, 6) whose hull has the loads of some pieces with directions between two, in radians."""
+    def make_loads(self, chosen: IntArray, low: float, high: float) -> Array:
+        """Return wrenches (N, 6) whose hull contains the loads of
+        pieces ``chosen`` with directions from ``low`` to ``high``.
+
+        The directions are in radians, in the part's coordinates; several pieces are replaced by their
+        bounding box.
+        """
         pieces = self.pieces
         force = pieces.force[chosen]
         if len(chosen) == 1:
@@ -240,7 +249,7 @@ class PressedPart:
         places = np.column_stack([points[at, :2] @ turn + self.position, points[at, 2]])
         forces = np.column_stack([across[way] @ turn, -axial[press]])
         grip = self.grip
-        rows = grip.wrenches(places, forces)
+        rows = grip.compute_wrenches(places, forces)
         rows[:, 5] += torques[twist] / grip.length
         return np.asarray(rows * self.safety + self.still)
 
@@ -256,8 +265,8 @@ class PressedPart:
         places = np.column_stack([level, ends[:, 2]])
         return places, middle, half, np.tile(pieces.axial, (2, 1)), force, torque
 
-    def hardest_against(self, motion: Array) -> tuple[Array, int]:
-        """Return the load (6,) that drives the part hardest along a motion (6,), and the piece that makes it."""
+    def find_hardest_load(self, motion: Array) -> tuple[Array, int]:
+        """Return the load (6,) that does the most work on a motion (6,), and the index of its piece."""
         pieces, grip = self.pieces, self.grip
         places, middle, half, axial, force, torque = self.ends
         # What a force at a place does along the motion: the motion of that place.
@@ -273,20 +282,21 @@ class PressedPart:
         power += torque * abs(motion[5]) / grip.length
         at = int(power.argmax())
         ahead = force[at] * np.array([cos(way[at]), sin(way[at])])
-        row = grip.wrenches(places[at][None], np.array([[*ahead, -press[at]]]))[0]
+        row = grip.compute_wrenches(places[at][None], np.array([[*ahead, -press[at]]]))[0]
         row[5] -= torque[at] * (1.0 if motion[5] > 0.0 else -1.0) / grip.length
         return row * self.safety + self.still, at % len(pieces)
 
     def climb(self) -> tuple[float, int, Array]:
-        """Return a large clamp force in N that a piece asks for, the piece, and the load: each leads to a harder one.
+        """Return a lower bound in N of the jaw force needed, and
+        the index of the piece that needs it; inf where none holds.
 
-        It is infinite where no clamp force holds a load.
+        From each of twelve motions, the hardest load and the motion that it drives are found alternately.
         """
         best, at, hardest = -inf, 0, np.zeros(6)
         for start in (*np.eye(6), *-np.eye(6)):
-            load, piece = self.hardest_against(start)
+            load, piece = self.find_hardest_load(start)
             reached = -1.0
-            while (force := float(self.motions.least_forces(load[None])[0])) > max(
+            while (force := float(self.motions.find_least_forces(load[None])[0])) > max(
                 reached * (1.0 + CLIMBED), reached
             ):
                 reached = force
@@ -295,11 +305,15 @@ class PressedPart:
                 if force == inf:
                     return best, at, hardest
                 motion = self.motions.motions[(self.motions.motions @ -load).argmax()]
-                load, piece = self.hardest_against(motion)
+                load, piece = self.find_hardest_load(motion)
         return best, at, hardest
 
-    def range_of(self, piece: int, low: float, high: float) -> tuple[float, float]:
-        """Return what a range of directions has in common with that of a piece, or the range itself."""
+    def intersect_range(self, piece: int, low: float, high: float) -> tuple[float, float]:
+        """Return the intersection of the range from ``low`` to
+        ``high``, in radians, with that of a piece's directions.
+
+        It is empty, with low > high, where they have nothing in common.
+        """
         half = float(self.pieces.half[piece])
         if half >= pi:
             return low, high
@@ -307,15 +321,21 @@ class PressedPart:
         middle = (low + high) / 2 + off
         return max(low, middle - half), min(high, middle + half)
 
-    def within(self, chosen: IntArray, low: float, high: float) -> IntArray:
-        """Return those of some pieces that press in a direction between two, in radians."""
+    def select_within(self, chosen: IntArray, low: float, high: float) -> IntArray:
+        """Return those of pieces ``chosen`` whose directions
+        meet the range from ``low`` to ``high``, in radians.
+        """
         half = self.pieces.half[chosen]
         off = np.abs((self.pieces.middle[chosen] - (low + high) / 2 + pi) % (2 * pi) - pi)
         reaches = (off <= half + (high - low) / 2) | (half >= pi)
         return np.asarray(chosen[reaches])
 
-    def halves(self, chosen: IntArray, low: float, high: float) -> list[tuple[IntArray, float, float]]:
-        """Return two parts that together are some pieces and directions."""
+    def halve(self, chosen: IntArray, low: float, high: float) -> list[tuple[IntArray, float, float]]:
+        """Return the pieces and range of directions split in two, as (pieces, low, high) each.
+
+        Pieces are split by place, or the range by its middle, whichever is coarser; a half range without
+        pieces is left out.
+        """
         pieces = self.pieces
         wide = float(pieces.force[chosen].max()) > 0.0 and high - low > NARROW
         if len(chosen) > 1:
@@ -330,30 +350,33 @@ class PressedPart:
         middle_way = (low + high) / 2
         parts = []
         for least, most in ((low, middle_way), (middle_way, high)):
-            inside = self.within(chosen, least, most)
+            inside = self.select_within(chosen, least, most)
             if len(inside):
                 parts.append((inside, least, most))
         return parts
 
 
-def worst_of_program(
-    grip: HeldPart,
+def find_worst_move(
+    grip: GrippedPart,
     pieces: CuttingPieces,
     program: Program,
     theta: float,
     position: tuple[float, float],
     safety: float,
     still: Array | None = None,
-) -> ProgramNeed | None:
-    """Return the clamp force that a program asks for and the move that does; None where it presses on nothing.
+) -> ProgramJawForce | None:
+    """Return the largest jaw force that a program needs, and its move; None where no tool presses on the
+    part.
+
+    In the returned object the force is None where no jaw force holds. It is never below the true one, and
+    less than 1 % above it.
 
     Parameters
     ----------
-    grip : of the part.
+    grip : of the part between the jaws.
     pieces : of the program.
-    theta, position : how the part is turned and moved from its drawing, in radians and mm.
+    theta, position : turn in radians and shift in mm of the part from its drawing.
     safety : factor on the loads.
-    still : a wrench (6,) that acts besides, without that factor; none if not given.
     """
     if not len(pieces):
         return None
@@ -365,9 +388,9 @@ def worst_of_program(
 
     def add(chosen: IntArray, low: float, high: float) -> None:
         if len(chosen) == 1:
-            low, high = placed.range_of(int(chosen[0]), low, high)
-        loads = placed.loads(chosen, low, high)
-        heappush(queue, (-motions.most_known(loads), len(chosen), next(number), chosen, low, high, loads))
+            low, high = placed.intersect_range(int(chosen[0]), low, high)
+        loads = placed.make_loads(chosen, low, high)
+        heappush(queue, (-motions.bound_force(loads), len(chosen), next(number), chosen, low, high, loads))
 
     for group in np.unique(pieces.group):
         own = np.flatnonzero(pieces.group == group)
@@ -376,7 +399,7 @@ def worst_of_program(
             continue
         for quarter in range(QUARTERS):
             low, high = (2 * pi / QUARTERS * (quarter + k) for k in (0, 1))
-            inside = placed.within(own, low, high)
+            inside = placed.select_within(own, low, high)
             if len(inside):
                 add(inside, low, high)
     # The hardest that a piece asks for, what all that was ruled out asks for at most, and the piece.
@@ -386,15 +409,15 @@ def worst_of_program(
         limit = best * (1.0 + GAP) if best > 0.0 else best
         is_piece = len(chosen) == 1 and (high - low <= NARROW + 1e-9 or pieces.force[chosen[0]] == 0.0)
         if is_piece or -known <= limit:
-            force = float(np.nanmax(motions.least_forces(loads, inf if is_piece else limit)))
+            force = float(np.nanmax(motions.find_least_forces(loads, inf if is_piece else limit)))
             if is_piece and force > best:
                 best, at = force, int(chosen[0])
             if is_piece or force <= limit:
                 most = max(most, force)
                 continue
-        for part in placed.halves(chosen, low, high):
+        for part in placed.halve(chosen, low, high):
             add(*part)
     move = int(pieces.move[at])
     moves = program.moves
     needed = None if best == inf else ceil(max(best, most) * 1e6) / 1e6
-    return ProgramNeed(needed, int(moves.line[move]), int(moves.tool[move]), move)
+    return ProgramJawForce(needed, int(moves.line[move]), int(moves.tool[move]), move)

@@ -1,4 +1,4 @@
-"""What to beware of in a fixture, and what counts against it: for sheet, terminal, page and order alike.
+"""Warnings and penalty points of fixtures, the same for sheet, terminal, page and ranking.
 
 Glossary
 --------
@@ -49,10 +49,10 @@ from workhold.model.quality import (
     list_figures_in_columns,
 )
 from workhold.model.requirements import Tolerance
-from workhold.statics.pins import limits_of
+from workhold.statics.pins import get_limits
 
 __all__ = [
-    "Judging",
+    "JudgingLimits",
     "is_astray",
     "is_beyond",
     "is_near_edge",
@@ -60,23 +60,23 @@ __all__ = [
     "is_unfit",
     "is_weak",
     "lets_go",
-    "unfit",
+    "are_unfit",
 ]
 
 Array = NDArray[np.float64]
 
 
 @frozen
-class Judging:
-    """What fixtures of one query are judged by.
+class JudgingLimits:
+    """Limits by which the fixtures of a query are judged.
 
     Parameters
     ----------
-    off : sum of the tolerances of peg and face in mm.
-    small_face : in mm; a face is small below it.
-    jaw_force : that the vise is closed with, in N; None where it is not known, and no peg is warned of that
-        lets go, or bends.
-    bending : largest bending stress of a pin in MPa, and farthest that pins may move the part in mm.
+    off : sum of the tolerances of peg and face, in mm.
+    small_face : size in mm below which a face is small.
+    jaw_force : that the vise is closed with, in N; None where not given, and then no peg that lets go or
+        bends is a warning.
+    bending : largest bending stress of a pin in MPa, and largest movement of the part by pins in mm.
     """
 
     off: float
@@ -85,18 +85,20 @@ class Judging:
     bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT)
 
     @classmethod
-    def of(
+    def from_toolkit(
         cls, length: float, toolkit: Toolkit, tolerance: Tolerance, jaw_force: float | None = None
-    ) -> Judging:
-        """Limits for a toolkit, a tolerance, and a jaw force in N if it is known.
+    ) -> JudgingLimits:
+        """Return the limits for a toolkit, a tolerance, and a jaw force in N if given.
 
-        The length L of the wrenches in mm is half the part's diameter and the radius of the largest peg.
+        ``length`` is L of the wrenches in mm: half the part's diameter plus the radius of the largest peg.
         """
         diameter = 2 * (length - max(carrier.peg_radius for carrier in toolkit.carriers))
-        return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force, limits_of(toolkit))
+        return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force, get_limits(toolkit))
 
-    def warnings(self, quality: Array, edges: Array) -> Array:
-        """Numbers of warnings (N,) from figures (N, 12) and contacts' distances from edges (N, 4)."""
+    def count_warnings(self, quality: Array, edges: Array) -> Array:
+        """Return numbers of warnings (N,) from figures of quality
+        (N, F) and contacts' distances from edges (N, P) in mm.
+        """
         count = is_near_edge(edges).sum(axis=1) + is_weak(quality[:, CLOSURE_MARGIN])
         count = (
             count
@@ -111,8 +113,8 @@ class Judging:
                 count = count + is_beyond(quality[:, PIN_MOVEMENT], movement)
         return np.asarray(count, np.float64)
 
-    def penalty(self, quality: Array) -> Array:
-        """Points (N,) against fixtures, from figures of quality (N, 12)."""
+    def compute_penalty(self, quality: Array) -> Array:
+        """Return penalty points (N,) from figures of quality (N, F); NaN where the location error is."""
         error = quality[:, LOCATION_ERROR]
         points = np.zeros(len(error))
         if self.off > 0.0:
@@ -128,45 +130,52 @@ class Judging:
 
 
 def is_near_edge(distance: Any) -> Any:
-    """Whether a contact is near an edge, from its distance in mm or an array of them."""
+    """Return whether a contact is near an edge, from its distance in mm, a number or an array."""
     return np.round(distance, FIGURE_DECIMALS) < NEAR_EDGE
 
 
 def is_weak(margin: Any) -> Any:
-    """Whether a closure is weak, from its margin or an array of them."""
+    """Return whether a closure is weak, from its margin, a number or an array."""
     return np.round(margin, FIGURE_DECIMALS) < WEAK_CLOSURE
 
 
 def is_strong(force: Any) -> Any:
-    """Whether a peg is strong, from its force per unit of jaw force or an array of them."""
+    """Return whether a peg carries much force, from its force per unit of jaw force, a number or an array."""
     return np.round(force, FIGURE_DECIMALS) > STRONG_PEG
 
 
 def is_astray(error: Any, off: float) -> Any:
-    """Whether location errors in mm, one or an array, are large; ``off`` sums the tolerances in mm."""
+    """Return whether a location error in mm, a number or an
+    array, is large; ``off`` is the sum of the tolerances in mm.
+    """
     return np.round(error, FIGURE_DECIMALS) > LARGE_LOCATION_ERROR * off
 
 
 def lets_go(needed: Any, jaw_force: float) -> Any:
-    """Whether a peg lets go at a jaw force, from the one needed or an array of them, all in N."""
+    """Return whether a peg lets go at a jaw force, from
+    the jaw force needed, a number or an array; all in N.
+    """
     return needed > jaw_force * (1.0 + NO_FORCE)
 
 
 def is_beyond(value: Any, limit: float) -> Any:
-    """Whether a bending stress or a movement by bent pegs, or an array of them, is beyond its limit."""
+    """Return whether a bending stress or a movement by
+    bent pegs, a number or an array, is above its limit.
+    """
     return np.round(value, FIGURE_DECIMALS) > limit
 
 
 def is_unfit(margin: Any, error: Any, off: float) -> Any:
-    """Whether closure margin and location error (mm), or arrays of them, rule a fixture out of a workshop.
+    """Return whether a closure margin and a location error in
+    mm, numbers or arrays, make a fixture unfit for a workshop.
 
-    ``off`` is the sum of the tolerances of peg and face in mm. What is no number is unfit.
+    ``off`` is the sum of the tolerances of peg and face in mm. NaN is unfit.
     """
     closes = np.round(margin, FIGURE_DECIMALS) >= UNFIT_CLOSURE
     return np.logical_not(closes & (np.round(error, FIGURE_DECIMALS) <= UNFIT_LOCATION_ERROR * off))
 
 
-def unfit(quality: Array, tolerance: Tolerance) -> NDArray[np.bool_]:
-    """Which fixtures (N,) are none for a workshop, from figures of quality (N, 12)."""
+def are_unfit(quality: Array, tolerance: Tolerance) -> NDArray[np.bool_]:
+    """Return which fixtures (N,) are unfit for a workshop, from figures of quality (N, F)."""
     off = tolerance.peg + tolerance.face
     return np.asarray(is_unfit(quality[:, CLOSURE_MARGIN], quality[:, LOCATION_ERROR], off))

@@ -1,6 +1,6 @@
 """Linear programs, minimize c . x subject to l <= A x <= u, solved by HiGHS.
 
-Of programs that differ in costs, or to which rows are added, each goes on from the basis of the last.
+When costs change or rows are added, the solver continues from the last basis.
 
 Reference: Q. Huangfu, J. A. J. Hall, *Parallelizing the dual revised simplex method*, Mathematical Programming
 Computation 10 (2018).
@@ -32,30 +32,33 @@ SETTINGS = {
 
 @frozen(eq=False)
 class LinearProgram:
-    """A linear program whose costs change, and to which rows are added.
+    """A linear program, minimize c . x subject to l <= A x
+    <= u, whose costs can change and that can get more rows.
 
     Parameters
     ----------
-    solver : HiGHS, which has the program.
+    solver : HiGHS, which holds the program.
     """
 
     solver: Any
 
     @classmethod
-    def of(
+    def from_matrix(
         cls, matrix: Array, costs: Array, lower: Array, upper: Array, most: float | None = None
     ) -> LinearProgram:
-        """The program of a matrix (M, N), costs (N,) and bounds of rows (M,), infinite where there is none.
+        """Return the program of a matrix (M, N), costs (N,)
+        and bounds of rows (M,), -inf or inf where unbounded.
 
-        ``most`` is the largest size of each x, of either sign; None where each is 0 or more.
+        ``most`` bounds each x to [-most, most]; with None each x is 0 or more.
         """
-        # It takes a moment to load, and is needed where a program is solved alone.
+        # Slow to import, and only needed where a program is solved.
         import highspy
 
         class SilentSolver(highspy.Highs):
-            """HiGHS, which else prints what it is as soon as it listens to callbacks."""
+            """HiGHS without output, which it would otherwise print when callbacks are enabled."""
 
             def enableCallbacks(self) -> None:  # noqa: N802
+                """Enable callbacks with the output off."""
                 self.setOptionValue("output_flag", False)
                 super().enableCallbacks()  # type: ignore[no-untyped-call]
 
@@ -77,8 +80,8 @@ class LinearProgram:
         solver.passModel(model)
         return cls(solver)
 
-    def least(self) -> float | None:
-        """The least cost; None where there is none."""
+    def find_least_cost(self) -> float | None:
+        """Solve the program; return the least cost, None where it is infeasible or unbounded."""
         import highspy
 
         self.solver.run()
@@ -86,10 +89,11 @@ class LinearProgram:
             return None
         return float(self.solver.getInfo().objective_function_value)
 
-    def bounding_rows(self) -> NDArray[np.int64] | None:
-        """Return the numbers of the rows that bound the last solution from above, as many as there are columns.
+    def find_bounding_rows(self) -> NDArray[np.int64] | None:
+        """Return the indices of the rows at their upper bound
+        in the last solution, if they are as many as columns.
 
-        It is None where a bound of a column does instead of a row.
+        None if they are fewer, as bounds of columns are active, too.
         """
         import highspy
 
@@ -99,7 +103,7 @@ class LinearProgram:
         return np.array(rows) if len(rows) == len(basis.col_status) else None
 
     def add_rows(self, rows: Array, upper: Array) -> None:
-        """Adds rows (K, N) that are at most so much (K,)."""
+        """Add rows (K, N) with upper bounds (K,) and no lower ones."""
         import highspy
 
         count, columns = rows.shape
@@ -108,8 +112,8 @@ class LinearProgram:
         lower = np.full(count, -highspy.kHighsInf)
         self.solver.addRows(count, lower, upper, count * columns, starts, indices, rows.ravel())
 
-    def with_costs(self, costs: Array) -> Array | None:
-        """The x of least cost for other costs (N,); None where there is none."""
+    def solve_with_costs(self, costs: Array) -> Array | None:
+        """Set new costs (N,) and solve; return the optimal x (N,), None where infeasible or unbounded."""
         import highspy
 
         columns = np.arange(len(costs), dtype=np.int32)
@@ -117,8 +121,8 @@ class LinearProgram:
         self.solver.run()
         if self.solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
             return None
-        return self.solution()
+        return self.read_solution()
 
-    def solution(self) -> Array:
-        """Return the x (N,) of the last run."""
+    def read_solution(self) -> Array:
+        """Return the x (N,) of the last solution."""
         return np.array(self.solver.getSolution().col_value)

@@ -49,17 +49,17 @@ from workhold.limits import MOST_FRICTION, convert_real, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
-from workhold.statics.contact_matrix import ContactMatrices, Touched
+from workhold.statics.contact_matrix import ContactMatrices, TouchableFeatures
 
 __all__ = [
     "LoadCase",
-    "Worst",
+    "WorstLoad",
     "make_cone_edges",
     "find_contacts_on_part",
     "compute_needed_jaw_forces",
-    "jaw_stiffness",
+    "read_jaw_stiffness",
     "describe_jaw",
-    "load_cases",
+    "compute_load_cases",
     "compute_shared_forces",
 ]
 
@@ -67,8 +67,8 @@ Array = NDArray[np.float64]
 STIFFNESS = {"screw": inf, "constant": 0.0}
 
 
-def jaw_stiffness(jaw: str | float) -> float:
-    """How many times as stiff as one contact the closed jaw is.
+def read_jaw_stiffness(jaw: str | float) -> float:
+    """Return the stiffness of a closed jaw, relative to that of one contact.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def jaw_stiffness(jaw: str | float) -> float:
 
 
 def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
-    """What a jaw, or a clamp, is, for people.
+    """Return a phrase on what kind of jaw or clamp a stiffness stands for.
 
     >>> from workhold import Plate, Vise
     >>> describe_jaw(0.0, Plate(pitch=20, peg_radius=5)), describe_jaw(5.0, Vise(pitch=10, columns=2, peg_radius=3))
@@ -114,10 +114,13 @@ def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
 
 
 def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
-    """Peg forces (..., P, 3) per unit of g_x, g_y and moment behind jaws of a stiffness.
+    """Return peg forces (..., P, 3) per unit of g_x, g_y and moment, with jaws of a stiffness.
 
-    ``free`` (..., P, 3) are the same for a jaw that keeps its force, ``closing`` (..., P, M) the peg forces
-    per unit of the force of each jaw or clamp, H.
+    Parameters
+    ----------
+    free : (..., P, 3) peg forces per unit of load with a jaw that keeps its force.
+    closing : (..., P, M) peg forces per unit of the force of each jaw or clamp, H.
+    stiffness : of a jaw, relative to that of a contact; 0 returns ``free``, inf is a locked jaw.
     """
     if stiffness == 0:
         return free
@@ -127,14 +130,17 @@ def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Arra
 
 
 def compute_needed_jaw_forces(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
-    """Jaw forces (N,) in N above which no peg of a screw vise lets go under any load; never negative.
+    """Return jaw forces (N,) in N above which no peg of a screw vise lets go under any load; at least 0.
 
     Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of
     their forces, at the working ratio, and what is taken from f0 is its part in the plane of both.
 
-    The inverses (N, 4, P) of the contact matrices have h in their last rows. ``closing`` (N, P, M) are peg
-    forces per unit of the force of each jaw or clamp, and ``length`` is L in mm. Loads (M, 11) are rows of
-    ``kernels.contact.quality``.
+    Parameters
+    ----------
+    inverses : (N, 4, P) inverses of the contact matrices, h in the last row.
+    closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
+    length : L in mm.
+    loads : (M, 11) rows of ``kernels.contact.quality``.
     """
     held = inverses[:, 3]
     back = np.swapaxes(closing, 1, 2)
@@ -153,18 +159,27 @@ def compute_needed_jaw_forces(inverses: Array, closing: Array, length: float, lo
 
 
 def find_touched_points(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> tuple[Array, Array]:
-    """Where pegs touch the part and its outward unit normals there, (P, 2) each, in the part's frame, in mm."""
-    touched = Touched.of(workpiece, toolkit)
+    """Return the points (P, 2) in mm at which pegs touch the
+    part, and outward unit normals (P, 2), in the part's frame.
+    """
+    touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
     points, normals, *_ = find_contacts_on_part(
-        fixture, workpiece, toolkit, touched, touched.of_fixture(fixture, toolkit)
+        fixture, workpiece, toolkit, touched, touched.compute_for_fixture(fixture, toolkit)
     )
     return points + touched.center, normals
 
 
 def find_contacts_on_part(
-    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, touched: Touched, matrices: ContactMatrices
+    fixture: Fixture,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    touched: TouchableFeatures,
+    matrices: ContactMatrices,
 ) -> tuple[Array, Array, Array, Array]:
-    """Contacts, normals, movers and clamping directions of a fixture, as :func:`make_cone_edges` takes them.
+    """Return the first four arguments of :func:`make_cone_edges` for a fixture.
+
+    They are contact points (P, 2) relative to the part's centre, normals (P, 2), moving (P,) and against (P,
+    2).
 
     Parameters
     ----------
@@ -182,14 +197,16 @@ def find_contacts_on_part(
 def make_cone_edges(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> tuple[Array, Array]:
-    """Wrenches (2 P, 3) of the edges of friction cones, and how much each pushes what moves back (2 P,).
+    """Return wrenches (2 P, 3) of the edges of friction cones, and
+    shares (2 P,) by which each pushes the moving carrier back.
 
     Parameters
     ----------
-    contacts : (P, 2) contact points about c in mm (with friction they are not the peg centres).
+    contacts : (P, 2) contact points relative to the part's centre, in mm (with friction they are not the peg
+        centres).
     normals : (P, 2) outward unit normals.
     moving : (P,) 1 for pegs on the carrier that moves, 0 for others.
-    against : (2,) unit vector in the part's frame against which that carrier clamps, or (P, 2) for each peg.
+    against : (2,) unit vector in the part's frame opposite to the clamping direction, or (P, 2) for each peg.
     friction : the coefficient mu.
     length : L in mm, which moments are divided by.
     """
@@ -205,11 +222,11 @@ def make_cone_edges(
 def list_possible_motions(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> Array:
-    """Corners (M, 3) of the dual polytope: jaw force per unit of (g_x, g_y, moment); see :func:`make_cone_edges`.
+    """Return the corners (M, 3) of the dual polytope: jaw force in N per unit of (g_x, g_y, moment in N mm).
 
-    The jaw force needed for a load is the largest product with it, or 0 if that is negative. There are no
-    corners where friction alone could jam the part between pegs of one carrier: then no load needs any jaw
-    force.
+    The parameters are those of :func:`make_cone_edges`. The jaw force needed for a load is the largest
+    product with it, at least 0. No corners mean that friction alone can jam the part between pegs of one
+    carrier, so no load needs any jaw force.
     """
     wrenches, share = make_cone_edges(contacts, normals, moving, against, friction, length)
     corners = []
@@ -223,15 +240,15 @@ def list_possible_motions(
 
 
 @frozen
-class Worst:
-    """Where and in which direction a load is worst.
+class WorstLoad:
+    """The point and direction at which a load is worst.
 
     Parameters
     ----------
-    value : how bad it is there, in N.
+    value : the worst force there, in N.
     peg : index of the peg concerned, in the fixture's order.
     point : where the load acts, in mm in the part's coordinates; the part's centre for a moment alone.
-    direction : in degrees in the part's frame, in [0, 360).
+    direction : of the load, in degrees in the part's frame, in [0, 360).
     """
 
     value: float
@@ -254,7 +271,7 @@ class LoadCase:
     smallest, largest : of each peg's force, in the fixture's order. Where a force is negative the peg would
         have to pull: it lets go, and the forces given are no longer those that act.
     reaction : the largest peg force with as little clamping as keeps all forces from being negative (the
-        figure of quality ``load_reaction``).
+        figure of quality ``compute_load_reaction``).
     needed : the jaw force above which no peg lets go, and the peg that does below it; never negative.
     needed_with_friction : the jaw force above which Coulomb friction could hold the part, None where no
         friction was given. Optimistic: with friction, statics does not determine the forces, and this is
@@ -267,8 +284,8 @@ class LoadCase:
     jaw_force: float
     smallest: tuple[float, ...]
     largest: tuple[float, ...]
-    reaction: Worst
-    needed: Worst
+    reaction: WorstLoad
+    needed: WorstLoad
     needed_with_friction: float | None
 
     @property
@@ -277,7 +294,7 @@ class LoadCase:
         return min(self.smallest) >= -NO_FORCE * max(self.largest)
 
 
-def load_cases(
+def compute_load_cases(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -286,7 +303,7 @@ def load_cases(
     friction: float | None = None,
     jaw: str | float = "screw",
 ) -> tuple[LoadCase, ...]:
-    """What each of some loads does to a fixture; each acts by itself.
+    """Return the effect of each load, acting by itself, on a fixture.
 
     Parameters
     ----------
@@ -318,8 +335,8 @@ def load_cases(
         raise InputError(
             f"friction {friction:g} is beyond {MOST_FRICTION:g}: give the coefficient, such as 0.15."
         )
-    stiffness, touched = jaw_stiffness(jaw), Touched.of(workpiece, toolkit)
-    contact_matrices = touched.of_fixture(fixture, toolkit)
+    stiffness, touched = read_jaw_stiffness(jaw), TouchableFeatures.from_workpiece(workpiece, toolkit)
+    contact_matrices = touched.compute_for_fixture(fixture, toolkit)
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.contact.contact_matrix.
     forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
     # The jaw was closed before the load came, so its own column stays.
@@ -329,7 +346,7 @@ def load_cases(
         on_part = find_contacts_on_part(fixture, workpiece, toolkit, touched, contact_matrices)
         motions = list_possible_motions(*on_part, friction, touched.length)
     center = (float(touched.center[0]), float(touched.center[1]))
-    needs = [needed(forces, load, center) for load in loads]
+    needs = [find_needed_force(forces, load, center) for load in loads]
     if jaw_force is None:
         jaw_force = max((worst.value for worst in needs), default=0.0)
     jaw_force = float(jaw_force)
@@ -344,16 +361,16 @@ def load_cases(
             largest=tuple(
                 float(find_largest_push(row, load, center).value + jaw_force * row[3]) for row in forces
             ),
-            reaction=reaction(forces, load, center),
+            reaction=find_largest_reaction(forces, load, center),
             needed=need,
-            needed_with_friction=with_friction(motions, load, center, need, stiffness),
+            needed_with_friction=find_force_with_friction(motions, load, center, need, stiffness),
         )
         for load, need in zip(loads, needs, strict=True)
     )
 
 
-def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[float, float]:
-    """Largest x cos + y sin over a range of directions in degrees, and the direction in [0, 360) it is at."""
+def find_largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[float, float]:
+    """Return the largest x cos t + y sin t for t in a range of degrees, and that t in [0, 360)."""
     low, high = directions
     peak = low + (degrees(atan2(y, x)) - low) % 360.0
     candidates = [low, high, peak] if peak <= high else [low, high]
@@ -361,29 +378,42 @@ def largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[
     return (hypot(x, y) if direction == peak else value), direction % 360.0
 
 
-def find_largest_push(coefficients: Array, load: Load, center: tuple[float, float], peg: int = 0) -> Worst:
-    """Where a load makes (g_x, g_y, moment) . coefficients, the push on a peg, largest, and that value."""
+def find_largest_push(
+    coefficients: Array, load: Load, center: tuple[float, float], peg: int = 0
+) -> WorstLoad:
+    """Return where a load makes the product (g_x, g_y, moment)
+    . coefficients largest, over its points and directions.
+
+    The moment includes that of the force about ``center``. ``peg`` is only copied into the result.
+    """
     a, b, c = (float(value) for value in coefficients[:3])
-    worst: Worst | None = None
+    worst: WorstLoad | None = None
     for x, y in load.points or (center,):
         dx, dy = x - center[0], y - center[1]
-        value, direction = largest_value(a - dy * c, b + dx * c, load.directions)
+        value, direction = find_largest_value(a - dy * c, b + dx * c, load.directions)
         total = load.force * value + load.moment * c
         if worst is None or total > worst.value:
-            worst = Worst(total, peg, (x, y), direction)
+            worst = WorstLoad(total, peg, (x, y), direction)
     assert worst is not None
     return worst
 
 
-def needed(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """Jaw force so that no peg lets go: the largest -f0_i / h_i over pegs, points and directions."""
+def find_needed_force(forces: Array, load: Load, center: tuple[float, float]) -> WorstLoad:
+    """Return the jaw force below which a peg lets go under
+    a load: the largest -f0_i / h_i, at least 0, and where.
+
+    ``forces`` (P, 4) are peg forces per unit of g_x, g_y, moment and jaw force.
+    """
     pushes = (find_largest_push(-row / row[3], load, center, peg) for peg, row in enumerate(forces))
     worst = max(pushes, key=lambda push: push.value)
     return evolve(worst, value=max(worst.value, 0.0))
 
 
-def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
-    """Largest peg force with the least clamping (Brost & Goldberg 1996, ``kernels.contact.quality``)."""
+def find_largest_reaction(forces: Array, load: Load, center: tuple[float, float]) -> WorstLoad:
+    """Return the largest peg force under a load, with as little clamping as keeps all contacts, and where.
+
+    ``forces`` (P, 4) are as in :func:`needed` (Brost & Goldberg 1996, ``kernels.contact.quality``).
+    """
     pairs = permutations(range(len(forces)), 2)
     return max(
         (
@@ -394,12 +424,12 @@ def reaction(forces: Array, load: Load, center: tuple[float, float]) -> Worst:
     )
 
 
-def with_friction(
-    motions: Array | None, load: Load, center: tuple[float, float], need: Worst, stiffness: float
+def find_force_with_friction(
+    motions: Array | None, load: Load, center: tuple[float, float], need: WorstLoad, stiffness: float
 ) -> float | None:
-    """Jaw force needed with friction: a load's largest work on the possible motions, never negative.
+    """Return the jaw force needed with friction: the largest work of the load on the motions, at least 0.
 
-    It is at most the force without friction, which a locked jaw may undercut; None where motions are.
+    None if ``motions`` is None. With a jaw of some stiffness, at most the force ``need`` without friction.
     """
     if motions is None:
         return None

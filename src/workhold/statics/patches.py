@@ -1,9 +1,10 @@
 """Pressure on flat faces that touch: affine on a patch, nowhere negative, its force and moment as exact integrals.
 
-Two flat and stiff faces on an elastic bed press on each other with p = a + b u + c v, u along the jaw and v upward.
-No part of a patch lets go where p is not negative at its corners. Such pressures are a cone, whose edges are those
-that vanish along one side of the convex hull of the corners: every other one is a sum of these. Where the resultants
-of pressures can act is the kern, the hull of where those of the edges do (the middle third of a rectangle's height).
+Two flat and stiff faces on an elastic bed press on each other with p = a + b u + c v, u along the jaw and v
+upward. The faces stay in contact everywhere if p is not negative at the corners. Such pressures form a cone.
+Its edges are the pressures that vanish along one side of the convex hull of the corners; every other one is a
+sum of these. The kern is the set of possible centres of pressure: the convex hull of those of the edges (the
+middle third of a rectangle's height).
 """
 
 from __future__ import annotations
@@ -20,25 +21,26 @@ from numpy.typing import NDArray
 
 from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.segment import Point
-from workhold.model.jaw_hold import Patch, Rectangle
+from workhold.model.jaw_hold import JawPatch, Rectangle
 
-__all__ = ["Cells", "PressedPatch", "PressedPolygon", "hulls_meet"]
+__all__ = ["PatchCells", "PressedPatch", "PressedPolygon", "hulls_meet"]
 
 Array = NDArray[np.float64]
 # Cells of a rectangle along the jaw and upward; of a line, upward.
 CELLS_ALONG, CELLS_UP, CELLS_OF_LINE = 6, 4, 6
-# Cells of a foot, about so many, and the part of a whole one below which a piece is rounding.
+# Approximate number of cells of a foot, and the part of a whole cell below which a piece is dropped as
+# rounding.
 CELLS_OF_FOOT, LEAST_CELL = 50, 1e-9
 
 
 @frozen(eq=False)
-class Cells:
+class PatchCells:
     """The cells of a patch, in which friction acts.
 
     Parameters
     ----------
     centre : (C, 2) in mm.
-    area : (C,) in mm², of a line in mm.
+    area : (C,) in mm²; of a line in mm.
     """
 
     centre: Array
@@ -46,53 +48,56 @@ class Cells:
 
 
 class PressedFace(ABC):
-    """A flat face with the pressures that it can bear, whatever its outline."""
+    """A flat face with the pressures p = a + b u + c v >= 0 that it can bear, whatever its outline."""
 
     @property
     @abstractmethod
     def corners(self) -> list[Point]:
-        """The corners of its convex hull, counter-clockwise; two where it is one upright line."""
+        """Corners of the convex hull in mm, counter-clockwise; two for an upright line."""
 
     @property
     @abstractmethod
     def integrals(self) -> Array:
-        """The integrals (3, 3) over the face of the products of 1, u and v."""
+        """Integrals (3, 3) over the face of the products of 1, u and v."""
 
     @cached_property
     def edges(self) -> Array:
-        """The pressures (R, 3), a, b and c of each, that are the edges of the cone, each with unit force."""
-        return pressure_edges(self.corners, self.integrals[0])
+        """Extreme pressures (R, 3): coefficients a, b, c of each,
+        with unit total force; all others are positive combinations.
+        """
+        return compute_pressure_edges(self.corners, self.integrals[0])
 
     @cached_property
     def centres(self) -> Array:
-        """Where the resultants (R, 2) of these pressures act; their hull is the kern."""
+        """Centres of pressure (R, 2) in mm of ``edges``; their hull is the kern."""
         return np.asarray((self.edges @ self.integrals)[:, 1:])
 
-    def pressure(self, points: Array) -> Array:
-        """The pressures (R, N) of the edges at points (N, 2), none below 0."""
+    def compute_pressures(self, points: Array) -> Array:
+        """Return the pressures (R, N) of each of ``edges`` at points (N, 2), clipped to 0 or more."""
         return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
 
 
 @frozen(eq=False)
 class PressedPatch(PressedFace):
-    """A patch with the pressures that it can bear."""
+    """A patch of a jaw with the pressures that it can bear; u along the jaw, v upward."""
 
-    patch: Patch
+    patch: JawPatch
 
     @property
     def rectangles(self) -> tuple[Rectangle, ...]:
+        """Rectangles (x0, x1, z0, z1) of the patch, in mm."""
         return self.patch.rectangles
 
     @cached_property
     def corners(self) -> list[Point]:
-        """The corners of the hull of the patch; two where it is one upright line."""
+        """Corners of the convex hull in mm, counter-clockwise; two for an upright line."""
         return compute_convex_hull(
             (x, z) for x0, x1, z0, z1 in self.rectangles for x in (x0, x1) for z in (z0, z1)
         )
 
     @cached_property
     def integrals(self) -> Array:
-        """The integrals (3, 3) over the patch of the products of 1, u and v."""
+        """Integrals (3, 3) over the patch of the products of 1, u and v."""
         total = np.zeros((3, 3))
         for x0, x1, z0, z1 in self.rectangles:
             width, height = x1 - x0, z1 - z0
@@ -102,7 +107,8 @@ class PressedPatch(PressedFace):
         return total
 
     @cached_property
-    def cells(self) -> Cells:
+    def cells(self) -> PatchCells:
+        """Cells of the rectangles, 6 along the jaw by 4 upward in each; 6 on a line."""
         centres, areas = list[tuple[float, float]](), list[float]()
         for x0, x1, z0, z1 in self.rectangles:
             along, up = (1, CELLS_OF_LINE) if self.patch.is_line else (CELLS_ALONG, CELLS_UP)
@@ -112,16 +118,17 @@ class PressedPatch(PressedFace):
                 for m in range(up):
                     centres.append((x0 + (k + 0.5) * width, z0 + (m + 0.5) * height))
                     areas.append(area)
-        return Cells(np.array(centres), np.array(areas))
+        return PatchCells(np.array(centres), np.array(areas))
 
-    def largest_pressure(self) -> Array:
-        """The pressures (R, K) of the edges at the corners of the hull."""
-        return self.pressure(np.array(self.corners))
+    def compute_largest_pressures(self) -> Array:
+        """Return the pressures (R, K) of each of ``edges`` at the corners of the hull."""
+        return self.compute_pressures(np.array(self.corners))
 
 
 @frozen(eq=False)
 class PressedPolygon(PressedFace):
-    """A flat face of any outline with the pressures that it can bear, such as the foot of a part on a plate.
+    """A flat face of any outline with the pressures that it
+    can bear, such as the lower side of a part on a plate.
 
     Parameters
     ----------
@@ -132,17 +139,17 @@ class PressedPolygon(PressedFace):
 
     @cached_property
     def corners(self) -> list[Point]:
-        """The corners of its convex hull, counter-clockwise."""
+        """Corners of the convex hull in mm, counter-clockwise."""
         return compute_convex_hull((float(x), float(y)) for loop in self.loops for x, y in loop)
 
     @cached_property
     def integrals(self) -> Array:
-        """The integrals (3, 3) over the face of the products of 1, u and v."""
-        return sum((polygon_integrals(loop) for loop in self.loops), np.zeros((3, 3)))
+        """Integrals (3, 3) over the face of the products of 1, u and v."""
+        return sum((integrate_polygon(loop) for loop in self.loops), np.zeros((3, 3)))
 
     @cached_property
-    def cells(self) -> Cells:
-        """What squares of a grid have of the face, some 50 of them; their centres are those of area."""
+    def cells(self) -> PatchCells:
+        """Pieces of the face in the squares of a grid, about 50; each with its centre of area."""
         points = np.vstack(self.loops)
         low, high = points.min(axis=0), points.max(axis=0)
         side = sqrt(float(self.integrals[0, 0]) / CELLS_OF_FOOT)
@@ -153,15 +160,16 @@ class PressedPolygon(PressedFace):
             corner = low + size * place
             total = np.zeros((3, 3))
             for loop in self.loops:
-                total += polygon_integrals(cut_to_box(loop, corner, corner + size))
+                total += integrate_polygon(cut_to_box(loop, corner, corner + size))
             if total[0, 0] > LEAST_CELL * size.prod():
                 centres.append(total[0, 1:] / total[0, 0])
                 areas.append(float(total[0, 0]))
-        return Cells(np.array(centres), np.array(areas))
+        return PatchCells(np.array(centres), np.array(areas))
 
 
-def pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
-    """The edges (R, 3) of the cone of pressures that are not negative at the corners of a hull, each with unit force.
+def compute_pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
+    """Return the extreme pressures (R, 3) of those that are not
+    negative at a hull's corners, each with unit total force.
 
     Parameters
     ----------
@@ -180,10 +188,12 @@ def pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
     return np.asarray(pressures / (pressures @ integral)[:, None])
 
 
-def polygon_integrals(loop: Array) -> Array:
-    """The integrals (3, 3) of the products of 1, u and v over a polygon (N, 2), negative where it runs clockwise.
+def integrate_polygon(loop: Array) -> Array:
+    """Return the integrals (3, 3) of the products of 1, u and
+    v over a polygon (N, 2); negative for a clockwise one.
 
-    Each side makes a triangle with the first corner, over which squares have their exact mean at the middles of sides.
+    Each side makes a triangle with the first corner; the mean at the middles of a triangle's sides is exact
+    for these.
     """
     total = np.zeros((3, 3))
     if len(loop) < 3:
@@ -200,9 +210,10 @@ def polygon_integrals(loop: Array) -> Array:
 
 
 def cut_to_box(loop: Array, low: Array, high: Array) -> Array:
-    """What of a polygon (N, 2) lies within a box, by one side of it after the other (Sutherland & Hodgman).
+    """Return the polygon (K, 2) that is left of a polygon (N, 2)
+    in the box from ``low`` to ``high`` (Sutherland & Hodgman).
 
-    Pieces that fall apart stay joined along the border, where they have no area.
+    Separate pieces stay joined along the border by sides without area. Empty where nothing is inside.
     """
     for axis in (0, 1):
         for level, way in ((low[axis], 1.0), (high[axis], -1.0)):
@@ -221,10 +232,10 @@ def cut_to_box(loop: Array, low: Array, high: Array) -> Array:
 
 
 def hulls_meet(one: Array, other: Array, slack: float) -> bool:
-    """Whether the convex hulls of two sets of points (N, 2) and (M, 2) meet, or miss each other by ``slack`` in mm.
+    """Return whether the convex hulls of points (N, 2) and (M, 2) meet, or are at most ``slack`` mm apart.
 
-    Two convex sets that miss each other lie apart in the direction of a normal of one of their sides; of sets
-    without an area also along these, or from one point to the other.
+    Convex sets that are apart are so along the normal of a side of one of them; sets without area also along
+    a side, or from one point to the other.
 
     >>> hulls_meet(np.array([[0, 0], [2, 0], [0, 2]]), np.array([[1.5, 1.5], [1.5, 3]]), 1e-9)
     False

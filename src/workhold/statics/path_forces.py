@@ -1,4 +1,4 @@
-"""Where along a program the force of a tool is worst for something that depends on it linearly.
+"""The place along a program at which the force of a tool is worst for a quantity that is linear in it.
 
 A contact's force is linear in the load, and so is the jaw force that keeps it: a g_x + b g_y + c m. A tool at
 p presses with F in a direction phi at its periphery. Its moment is that of F at p and a torque between -T
@@ -21,14 +21,15 @@ Left is -s c r cos delta, which is greatest at delta = 0 or at |delta| = h. So a
 most three places within it. With any direction, h = pi, there are two: V is F |c| times the distance of p
 from the point where V is T |c|, greatest straight beyond the centre.
 
-*Blocks.* Pieces are looked at in blocks. No point of a block exceeds V at the middle of its circle, with the
-largest F and T, and F |c| times its radius more. Blocks that cannot hold the greatest value are passed over.
+*Blocks.* Pieces are evaluated in blocks. For a block with a circle around it, an upper bound of V is the
+value at the circle's centre with the block's largest F and T, plus F |c| times the circle's radius. Blocks
+that cannot contain the largest value are skipped.
 
 *Hulls.* For one range of directions V = F v(p), with v convex in p, as T is F times the tool's radius. Take
-points of the path with as large a force and the same directions, and their hull. What lies inside it, or on
-it, exceeds all of them nowhere but where V < 0. There not cutting is worse, V = 0, which counts along with
-the path. An arc lies inside where a polygon around it does. So hulls are built, the largest forces first, and
-what lies inside what came before is left out.
+the convex hull of points of the path with at least as large a force and the same directions. A point inside
+or on it has a larger V than all of these only where V < 0, and there an idle tool, V = 0, is worse, which
+always counts. An arc lies inside if a polygon around it does. So hulls are built from the largest forces
+down, and pieces inside the hull of earlier ones are left out.
 
 References: G. B. Dantzig, *Linear Programming and Extensions*, 1963, for extremes at corners; A. H. Land and
 A. G. Doig, Econometrica 28 (1960), for the blocks.
@@ -45,33 +46,33 @@ from numpy.typing import NDArray
 
 from workhold.geometry.hull import compute_convex_hull, compute_half_hull
 from workhold.model.cutting_tool import ANY
-from workhold.model.moves import Stretches
+from workhold.model.moves import MoveStretches
 from workhold.model.program import Program
 
-__all__ = ["COLUMNS", "EVERY", "WITHIN", "PathForces", "WorstPlace", "list_all_pieces", "path_forces"]
+__all__ = ["COLUMNS", "EVERY", "WITHIN", "PathForces", "WorstPlace", "list_all_pieces", "list_path_forces"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-# Radians: half the range of directions about against the feed, and of any.
+# Radians. Half the range of directions about that opposite to the feed, and half a turn for any direction.
 WITHIN, EVERY = pi / 3, pi
-# Pieces of a block, and numbers that are worked out together.
+# Number of pieces in a block, and of numbers that are computed together.
 BLOCK, AT_ONCE = 32, 1 << 20
-# A bound is rounded by less than this part of it.
+# Relative rounding error of a bound, at most.
 SURELY = 1e-12
 COLUMNS = ("move", "force", "torque", "x", "y", "radius", "start", "sweep", "against")
 
 
 @frozen(eq=False)
 class WorstPlace:
-    """Where each of N quantities is worst.
+    """Where along a program each of N quantities is largest.
 
     Parameters
     ----------
-    value : (N,) the greatest, 0 or more: the tool may do nothing as well.
-    which, move : (N,) number of the function of each row that is greatest there, and of the program's move;
-        -1 where it is worst to do nothing.
+    value : (N,) the largest value, at least 0, since the tool may be idle.
+    which : (N,) index of the function of the row that is largest there; -1 where 0 is the largest.
+    move : (N,) index of the program's move; -1 where 0 is the largest.
     """
 
     value: Array
@@ -81,17 +82,19 @@ class WorstPlace:
 
 @frozen(eq=False)
 class PathForces:
-    """The K pieces of a path that can be worst: points, and arcs without their ends.
+    """The K pieces of a path at which a linear function of the
+    load can be largest: points, and arcs without their ends.
 
     Parameters
     ----------
-    move : (K,) number of the program's move, of several that do the same the first.
+    move : (K,) index of the program's move; of equal ones the first.
     force, torque : (K,) in N and N mm.
-    x, y : (K,) the point, or the centre of the arc, about the point that moments are taken about, in mm.
-    radius : (K,) of the arc; 0 of a point.
-    start, sweep : (K,) angle of the arc's start, and by how much it turns, in radians.
-    against : (K,) direction against the feed at a point, in radians.
-    spread : half the range of directions about it, in radians; pi for any.
+    x, y : (K,) the point, or the centre of the arc, relative to the point that moments are taken about, in
+        mm.
+    radius : (K,) of the arc; 0 for a point.
+    start, sweep : (K,) angle at which the arc starts, and signed angle by which it turns, in radians.
+    against : (K,) direction opposite to the feed at a point, in radians.
+    spread : half width of the range of directions about it, in radians; pi for any direction.
     """
 
     move: IntArray
@@ -104,20 +107,20 @@ class PathForces:
     sweep: Array
     against: Array
     spread: float
-    blocks: Blocks = field(init=False)
+    blocks: PieceBlocks = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        object.__setattr__(self, "blocks", Blocks.of(self))
+        object.__setattr__(self, "blocks", PieceBlocks.from_pieces(self))
 
     def __len__(self) -> int:
         return len(self.move)
 
     def take(self, chosen: Mask | IntArray) -> PathForces:
-        """Some of the pieces, in the order given."""
+        """Return the pieces that a mask or an index array selects."""
         return evolve(self, **{name: getattr(self, name)[chosen] for name in COLUMNS})
 
-    def worst(self, functions: Array) -> WorstPlace:
-        """Where the greatest of some functions of the load is greatest, and which of them it is.
+    def find_worst(self, functions: Array) -> WorstPlace:
+        """Return, for each row of functions of the load, the largest value along the path, and where.
 
         Parameters
         ----------
@@ -129,32 +132,42 @@ class PathForces:
         step = max(AT_ONCE // max(each * count, 1), 1)
         for first in range(0, rows if count else 0, step):
             part = slice(first, min(first + step, rows))
-            self.search(functions[part], found, first)
+            self.search_rows(functions[part], found, first)
         return found
 
-    def search(self, functions: Array, found: WorstPlace, first: int) -> None:
-        """Looks for the worst of some rows of functions (N, J, 3), and writes it from row ``first`` on."""
+    def search_rows(self, functions: Array, found: WorstPlace, first: int) -> None:
+        """Search for the worst places of rows of functions (R, J,
+        3), and write them into ``found`` from row ``first`` on.
+        """
         rows, each = functions.shape[:2]
-        bounds = self.blocks.bounds(functions.reshape(-1, 3), self.spread).reshape(rows, -1)
+        bounds = self.blocks.compute_bounds(functions.reshape(-1, 3), self.spread).reshape(rows, -1)
         bounds *= 1.0 + SURELY
         blocks = bounds.shape[1] // each
         # The most promising block of each row first; then all that may still hold more.
         likely = bounds.argmax(axis=1)
-        self.look(functions, np.arange(rows), likely, blocks, found, first)
+        self.search_blocks(functions, np.arange(rows), likely, blocks, found, first)
         known = found.value[first : first + rows]
         bounds[np.arange(rows), likely] = -np.inf
         row, place = np.nonzero(bounds > known[:, None])
-        # Those that promise more come first, so that ties go to the same place however many rows there are.
+        # The order is by bounds, so that ties go to the same place whatever the number of rows.
         for begin in range(0, len(row), step := max(AT_ONCE // BLOCK, 1)):
             part = slice(begin, begin + step)
-            self.look(functions, row[part], place[part], blocks, found, first)
+            self.search_blocks(functions, row[part], place[part], blocks, found, first)
 
-    def look(
+    def search_blocks(
         self, functions: Array, row: IntArray, place: IntArray, blocks: int, found: WorstPlace, first: int
     ) -> None:
-        """Works out blocks (Q,) of rows (Q,) of functions, and keeps what is worse than what was found."""
+        """Evaluate one block for each query, and write into ``found`` what is larger than what is there.
+
+        Parameters
+        ----------
+        row : (Q,) row of ``functions``.
+        place : (Q,) index of the function in its row, times ``blocks``, plus the index of the block.
+        blocks : how many blocks there are.
+        first : row of ``found`` that row 0 of ``functions`` belongs to.
+        """
         which, block = np.divmod(place, blocks)
-        values, piece = self.blocks.values(self, functions[row, which], block)
+        values, piece = self.blocks.find_greatest(self, functions[row, which], block)
         # Of one row the worst; of several that tie, the first function and the first move.
         order = np.lexsort((self.move[piece], which, -values, row))
         leading = order[np.concatenate([[True], np.diff(row[order]) > 0])] if len(order) else order
@@ -164,8 +177,10 @@ class PathForces:
         found.value[at], found.which[at] = values[leading], which[leading]
         found.move[at] = self.move[piece[leading]]
 
-    def at(self, a: Array, b: Array, c: Array, piece: IntArray) -> Array:
-        """V of pieces (...) for coefficients (...), minus infinite within an arc that holds no extreme."""
+    def evaluate(self, a: Array, b: Array, c: Array, piece: IntArray) -> Array:
+        """Return the largest V (...) at pieces (...) for coefficients
+        a, b, c (...); -inf in an arc without an inner extreme.
+        """
         force, torque, radius = self.force[piece], self.torque[piece], self.radius[piece]
         x, y = a - self.y[piece] * c, b + self.x[piece] * c
         size = np.hypot(x, y)
@@ -173,16 +188,21 @@ class PathForces:
         if self.spread >= EVERY:
             largest = size
         else:
-            largest = largest_within(x, y, size, self.against[piece], self.spread)
+            largest = find_largest_within(x, y, size, self.against[piece], self.spread)
         out = np.where(straight, force * largest, -np.inf)
         # Only arcs are left.
         arc = np.nonzero(~straight)
         if len(arc[0]):
-            out[arc] = force[arc] * self.within(x[arc], y[arc], size[arc], c[arc], piece[arc])
+            out[arc] = force[arc] * self.evaluate_within_arcs(x[arc], y[arc], size[arc], c[arc], piece[arc])
         return np.asarray(out + torque * np.abs(c))
 
-    def within(self, x: Array, y: Array, size: Array, c: Array, piece: IntArray) -> Array:
-        """The greatest value (Q,) for F = 1 and T = 0 within arcs."""
+    def evaluate_within_arcs(self, x: Array, y: Array, size: Array, c: Array, piece: IntArray) -> Array:
+        """Return the largest inner extreme (Q,) of V on arcs for F = 1 and T = 0; -inf where there is none.
+
+        Parameters
+        ----------
+        x, y, size : (Q,) a - m_y c, b + m_x c for the arc's centre m, and the length of that vector.
+        """
         sweep = self.sweep[piece]
         sense = np.sign(sweep)
         peak, best = np.arctan2(y, x), np.full(len(x), -np.inf)
@@ -195,8 +215,11 @@ class PathForces:
         return best
 
 
-def largest_within(x: Array, y: Array, size: Array, middle: Array, half: Array | float) -> Array:
-    """Largest x cos + y sin (...) over directions within half of the middle; ``size`` is that over all."""
+def find_largest_within(x: Array, y: Array, size: Array, middle: Array, half: Array | float) -> Array:
+    """Return the largest x cos t + y sin t (...) for t within ``half`` of ``middle``, in radians.
+
+    ``size`` is hypot(x, y).
+    """
     along = x * np.cos(middle) + y * np.sin(middle)
     across = np.abs(y * np.cos(middle) - x * np.sin(middle))
     at_end = along * np.cos(half) + across * np.sin(half)
@@ -204,15 +227,16 @@ def largest_within(x: Array, y: Array, size: Array, middle: Array, half: Array |
 
 
 @frozen(eq=False)
-class Blocks:
-    """Runs of pieces, each in a circle; see :class:`PathForces`.
+class PieceBlocks:
+    """Runs of consecutive pieces, each with a circle around it, for bounds; see :class:`PathForces`.
 
     Parameters
     ----------
-    first : (B,) first piece of each.
-    x, y, reach : (B,) circle that all of the block's points are in.
-    force, torque : (B,) the largest.
-    against, half : (B,) middle of the directions against the feed and half their range, in radians.
+    first : (B,) index of the first piece of each.
+    x, y, reach : (B,) centre and radius in mm of a circle that contains the block's points.
+    force, torque : (B,) the largest in the block.
+    against, half : (B,) middle and half width of the range of the force's directions in the block, in
+        radians.
     """
 
     first: IntArray
@@ -225,7 +249,8 @@ class Blocks:
     half: Array
 
     @classmethod
-    def of(cls, pieces: PathForces) -> Blocks:
+    def from_pieces(cls, pieces: PathForces) -> PieceBlocks:
+        """Return the blocks of :data:`BLOCK` consecutive pieces each."""
         first = np.arange(0, len(pieces), BLOCK)
         if not len(first):
             return cls(first, *(np.zeros(0) for _ in range(7)))
@@ -253,43 +278,49 @@ class Blocks:
             np.minimum(np.maximum.reduceat(apart, first) + pieces.spread, pi),
         )
 
-    def bounds(self, functions: Array, spread: float) -> Array:
-        """What no piece of a block exceeds, (N, B), for functions (N, 3)."""
+    def compute_bounds(self, functions: Array, spread: float) -> Array:
+        """Return upper bounds (N, B) of functions (N, 3) over the pieces of each block."""
         a, b, c = (functions[:, k, None] for k in range(3))
         x, y = a - self.y * c, b + self.x * c
         largest = np.hypot(x, y)
         if spread < EVERY:
-            narrow = largest_within(x, y, largest, self.against, self.half)
+            narrow = find_largest_within(x, y, largest, self.against, self.half)
             largest = np.where(self.half < EVERY, narrow, largest)
-        # A force that can be smaller helps where the value is negative.
+        # Where the value is negative, no force is larger.
         largest = np.maximum(largest + self.reach * np.abs(c), 0.0)
         return np.asarray(self.force * largest + self.torque * np.abs(c))
 
-    def values(self, pieces: PathForces, functions: Array, block: IntArray) -> tuple[Array, IntArray]:
-        """The greatest value in blocks (Q,) for functions (Q, 3), and at which piece."""
+    def find_greatest(self, pieces: PathForces, functions: Array, block: IntArray) -> tuple[Array, IntArray]:
+        """Return the largest value (Q,) of functions (Q,
+        3) in blocks (Q,), and the index (Q,) of the piece.
+        """
         piece = np.minimum(self.first[block][:, None] + np.arange(BLOCK), len(pieces) - 1)
         a, b, c = (np.broadcast_to(functions[:, k, None], piece.shape) for k in range(3))
-        values = pieces.at(a, b, c, piece)
+        values = pieces.evaluate(a, b, c, piece)
         best = values.argmax(axis=1)
         rows = np.arange(len(block))
         return values[rows, best], piece[rows, best]
 
 
-# Points of the first run and of a first hull, and forces that are taken by themselves.
+# Number of points in the first run and hull, and the most different forces that have a run of their own.
 FIRST, MOST_LEVELS = 256, 64
 
 
 @lru_cache(maxsize=8)
-def path_forces(program: Program, center: tuple[float, float]) -> PathForces:
-    """The pieces of a program that can be worst, about a point in mm; none without forces."""
+def list_path_forces(program: Program, center: tuple[float, float]) -> PathForces:
+    """Return the pieces of a program at which forces can be worst, with moments about ``center`` in mm;
+    cached.
+
+    There are no pieces without cutting forces.
+    """
     pieces = list_all_pieces(program, center)
     return drop_inner_pieces(drop_lesser_torques(pieces))
 
 
 def list_all_pieces(program: Program, center: tuple[float, float]) -> PathForces:
-    """Both ends of every stretch with a force, and the insides of arcs."""
+    """Return both ends of every stretch with a force, and the insides of arcs, in the order of moves."""
     forces = program.forces
-    stretches = Stretches((), (), ()) if forces is None else forces.stretches
+    stretches = MoveStretches((), (), ()) if forces is None else forces.stretches
     does, moves = stretches.move, program.moves.cut_to(stretches)
     start, end = (one[:, :2] - np.array(center) for one in (moves.start, moves.end))
     chord, bulge = end - start, moves.bulge
@@ -324,7 +355,7 @@ def list_all_pieces(program: Program, center: tuple[float, float]) -> PathForces
 
 
 def drop_lesser_torques(pieces: PathForces) -> PathForces:
-    """The pieces, of those that have a torque alone only the first with the largest."""
+    """Return the pieces with a force, and of those with a torque alone only the one with the largest."""
     alone = np.flatnonzero(pieces.force == 0.0)
     kept = pieces.force > 0.0
     if len(alone):
@@ -333,7 +364,11 @@ def drop_lesser_torques(pieces: PathForces) -> PathForces:
 
 
 def drop_inner_pieces(pieces: PathForces) -> PathForces:
-    """The pieces without those that lie inside the hull of others as strong, see the head of this module."""
+    """Return the pieces without those inside the hull of
+    others with as large a force; see the head of this module.
+
+    Only pieces with the same ratio of torque to force and the same directions are compared.
+    """
     pushing = np.flatnonzero(pieces.force > 0.0)
     # Of one tool the torque is in proportion to the force.
     rows = np.round(np.stack([pieces.torque / np.where(pieces.force > 0.0, pieces.force, 1.0)] * 2), 9)[
@@ -357,14 +392,18 @@ def drop_inner_pieces(pieces: PathForces) -> PathForces:
     for members in groups if len(order) else ():
         kept.append(select_outer_pieces(pieces, members))
     chosen = np.concatenate(kept)
-    # Neighbours stand in one block: on the hull by where they are, of others by when they come.
+    # Neighbours are put in one block: by angle around the middle for points of hulls, else by their order in
+    # the program.
     x, y = pieces.x[chosen], pieces.y[chosen]
     around = np.arctan2(y - y.sum() / max(len(y), 1), x - x.sum() / max(len(x), 1))
     return pieces.take(chosen[np.lexsort((chosen, around))] if pieces.spread >= EVERY else np.sort(chosen))
 
 
 def select_outer_pieces(pieces: PathForces, order: IntArray) -> IntArray:
-    """Pieces of one tool, the largest force first, without those inside the hull of what is before them."""
+    """Return the indices of those pieces that are not inside the hull of pieces before them in ``order``.
+
+    ``order`` are indices of one tool's pieces, by descending force.
+    """
     levels = np.flatnonzero(np.diff(pieces.force[order])) + 1
     # Many forces are taken in runs that double in length.
     runs = levels if len(levels) <= MOST_LEVELS else FIRST << np.arange(24)
@@ -373,23 +412,23 @@ def select_outer_pieces(pieces: PathForces, order: IntArray) -> IntArray:
     for run in np.split(order, runs[runs < len(order)]):
         points, arcs = run[is_point[run]], run[~is_point[run]]
         alike = pieces.force[run[0]] == pieces.force[run[-1]]
-        points = points[~inside(hull, pieces.x[points], pieces.y[points])]
-        arcs = arcs[~inside(hull, *enclose_arcs(pieces, arcs)).all(axis=1)]
-        points = corners_of(pieces, points) if alike else points
+        points = points[~are_inside_hull(hull, pieces.x[points], pieces.y[points])]
+        arcs = arcs[~are_inside_hull(hull, *enclose_arcs(pieces, arcs)).all(axis=1)]
+        points = select_hull_corners(pieces, points) if alike else points
         places = np.stack([pieces.x[points], pieces.y[points]], axis=1)
-        hull = hull_of(np.concatenate([hull, places, on_arcs(pieces, arcs)]))
+        hull = compute_hull(np.concatenate([hull, places, sample_arcs(pieces, arcs)]))
         if alike:
             # What is a corner of the hull is needed; an arc that has one is not inside.
             corners = {(x, y) for x, y in hull.tolist()}
             corner = np.array([place in corners for place in map(tuple, places.tolist())], np.bool_)
-            points = points[corner | ~inside(hull, *places.T)]
-            arcs = arcs[~inside(hull, *enclose_arcs(pieces, arcs)).all(axis=1)]
+            points = points[corner | ~are_inside_hull(hull, *places.T)]
+            arcs = arcs[~are_inside_hull(hull, *enclose_arcs(pieces, arcs)).all(axis=1)]
         kept += [points, arcs]
     return np.concatenate([*kept, np.zeros(0, np.int64)])
 
 
-def on_arcs(pieces: PathForces, arcs: IntArray) -> Array:
-    """Points (Q, 2) of arcs."""
+def sample_arcs(pieces: PathForces, arcs: IntArray) -> Array:
+    """Return 15 points on each of some arcs, (Q, 2) in all, in mm."""
     share = np.linspace(0.0, 1.0, 17)[1:-1]
     angle = pieces.start[arcs][:, None] + pieces.sweep[arcs][:, None] * share
     far = pieces.radius[arcs][:, None]
@@ -398,7 +437,9 @@ def on_arcs(pieces: PathForces, arcs: IntArray) -> Array:
 
 
 def enclose_arcs(pieces: PathForces, arcs: IntArray) -> tuple[Array, Array]:
-    """Corners (Q, 6) of polygons around arcs of half a turn or less: their ends and where tangents meet."""
+    """Return x (Q, 6) and y (Q, 6) in mm of polygons around arcs
+    of half a turn or less: ends and meeting points of tangents.
+    """
     start, sweep, radius = pieces.start[arcs], pieces.sweep[arcs], pieces.radius[arcs]
     share = np.array([0.0, 1 / 8, 3 / 8, 5 / 8, 7 / 8, 1.0])
     angle = start[:, None] + sweep[:, None] * share
@@ -407,12 +448,12 @@ def enclose_arcs(pieces: PathForces, arcs: IntArray) -> tuple[Array, Array]:
     return pieces.x[arcs][:, None] + far * np.cos(angle), pieces.y[arcs][:, None] + far * np.sin(angle)
 
 
-def corners_of(pieces: PathForces, members: IntArray) -> IntArray:
-    """The points that are corners of their hull; of several in one place the first."""
+def select_hull_corners(pieces: PathForces, members: IntArray) -> IntArray:
+    """Return the indices of the points that are corners of the hull of all; of coincident ones the first."""
     if len(members) <= 2:
         return members
     points = np.stack([pieces.x[members], pieces.y[members]], axis=1)
-    corners = {(x, y) for x, y in hull_of(points).tolist()}
+    corners = {(x, y) for x, y in compute_hull(points).tolist()}
     first: dict[tuple[float, float], int] = {}
     for number, (x, y) in enumerate(points.tolist()):
         if (x, y) in corners:
@@ -420,23 +461,24 @@ def corners_of(pieces: PathForces, members: IntArray) -> IntArray:
     return members[sorted(first.values())]
 
 
-def hull_of(points: Array) -> Array:
-    """The corners (H, 2) of the hull of points."""
+def compute_hull(points: Array) -> Array:
+    """Return the corners (H, 2) of the convex hull of points (N, 2), counter-clockwise."""
     if len(points) > FIRST:
         angle = np.arange(64) * (2 * pi / 64)
         ways = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        around = hull_of(points[np.unique([int((points @ way).argmax()) for way in ways])])
-        points = np.concatenate([around, points[~inside(around, *points.T)]])
+        around = compute_hull(points[np.unique([int((points @ way).argmax()) for way in ways])])
+        points = np.concatenate([around, points[~are_inside_hull(around, *points.T)]])
     return np.array(compute_convex_hull(map(tuple, points.tolist()))).reshape(-1, 2)
 
 
-def inside(hull: Array, x: Array, y: Array) -> Mask:
-    """Which points (...) lie inside a hull of corners (H, 2), or on its border."""
+def are_inside_hull(hull: Array, x: Array, y: Array) -> Mask:
+    """Return which points (...) lie inside or on the convex hull with corners (H, 2); none if H < 3."""
     if len(hull) < 3:
         return np.zeros(x.shape, np.bool_)
     ordered = sorted(map(tuple, hull.tolist()))
     low, high = np.array(compute_half_hull(ordered)), np.array(compute_half_hull(ordered[::-1]))[::-1]
-    # Upright sides are ends of one of the two: the first of the upper one, the last of the lower one.
+    # Upright sides are left out, as ``interp`` needs different x: the last point of the lower chain, the
+    # first of the upper.
     low, high = low[: len(low) - (low[-1, 0] == low[-2, 0])], high[int(high[0, 0] == high[1, 0]) :]
     within = (x >= ordered[0][0]) & (x <= ordered[-1][0])
     return np.asarray(within & (y >= np.interp(x, *low.T)) & (y <= np.interp(x, *high.T)))

@@ -1,4 +1,4 @@
-"""How far pegs bend, how hard that stresses them, and what it moves the part by (docs/quality.md, "Pins bend").
+"""The deflection and stress of pegs, and the movement of the part by them (docs/quality.md, "Pins bend").
 
 Each peg is a cantilever, built in at the face of its plate, a round section of its diameter d. The part presses on
 it with F at the height a above the plate: at the middle of the run of heights on which the peg can press, or, at
@@ -7,10 +7,10 @@ coefficient 9/10 of a circle)
 
     deflection = F a³ / (3 E I) + 10 F a / (9 G A),   stress = 32 F a / (π d³),   I = π d⁴ / 64,   A = π d² / 4 .
 
-Tips of clamps and walls are taken as rigid; a clamp follows its locators all the same, and its stroke alone takes
-up that it gives way. Pegs give way along their normals, away from the part. What that moves the part by follows
-from the inverse of the contact matrix, as for the location error; but here all pegs give way at once by what they
-give way, not by what they might.
+Tips of clamps and walls count as rigid: a clamp follows its locators, and its stroke takes up its own
+deflection. Pegs deflect along their normals, away from the part. The movement of the part follows from the
+inverse of the contact matrix, as for the location error; but here all pegs deflect at once, by known amounts,
+instead of by unknown errors.
 
 By hand: Ø 6 mm, 38 mm high, 500 N: 0.694 mm, of which 0.685 mm is bending, and 896 MPa.
 """
@@ -33,11 +33,18 @@ from workhold.conventions import (
 )
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.solid import run_at
+from workhold.model.solid import interpolate_run
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices
 
-__all__ = ["BentPins", "PinRuns", "compute_bent_pins", "compute_deflections", "limits_of", "stresses"]
+__all__ = [
+    "BentPins",
+    "PinRuns",
+    "compute_bent_pins",
+    "compute_deflections",
+    "get_limits",
+    "compute_stresses",
+]
 
 Array = NDArray[np.float64]
 # Numbers looked at together: fixtures times corners of the silhouette.
@@ -45,11 +52,13 @@ AT_ONCE = 1 << 20
 
 
 def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
-    """How far cantilevers give way in mm where they are pressed, numbers or arrays of them.
+    """Return the deflections in mm of round steel cantilevers where they are pressed, numbers or arrays.
 
     Parameters
     ----------
-    force, height, diameter : in N, in mm above where they are built in, and in mm.
+    force : in N.
+    height : of the force above where the cantilever is built in, in mm.
+    diameter : in mm.
 
     Examples
     --------
@@ -61,8 +70,9 @@ def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
     return bending + 10 * force * height / (9 * SHEAR_MODULUS * area)
 
 
-def stresses(force: Any, height: Any, diameter: Any) -> Any:
-    """Largest bending stresses of cantilevers in MPa, see :func:`compute_deflections`.
+def compute_stresses(force: Any, height: Any, diameter: Any) -> Any:
+    """Return the largest bending stresses in MPa of
+    cantilevers; parameters as of :func:`compute_deflections`.
 
     >>> round(stresses(500.0, 38.0, 6.0))
     896
@@ -70,8 +80,10 @@ def stresses(force: Any, height: Any, diameter: Any) -> Any:
     return 32 * force * height / (pi * diameter**3)
 
 
-def limits_of(toolkit: Toolkit) -> tuple[float, float]:
-    """The largest stress in MPa and the farthest movement in mm that pins of a toolkit may have unremarked."""
+def get_limits(toolkit: Toolkit) -> tuple[float, float]:
+    """Return the largest stress in MPa and the largest movement
+    in mm that a toolkit's pins may have without a warning.
+    """
     own = toolkit.pins
     stress, movement = (None, None) if own is None else (own.stress_limit, own.movement_limit)
     return (
@@ -82,12 +94,12 @@ def limits_of(toolkit: Toolkit) -> tuple[float, float]:
 
 @frozen(eq=False)
 class PinRuns:
-    """The runs of heights in mm on which pegs of N fixtures press, above the plates.
+    """The ranges of heights above the plates, in mm, at which pegs of N fixtures can be pressed.
 
     Parameters
     ----------
-    low, high : (N, P), NaN of what is no peg in a hole of a plate, and where they are not known.
-    diameter : (N, P) in mm, NaN of what is no peg.
+    low, high : (N, P); NaN for contacts that are no pegs in holes of a plate, and where not known.
+    diameter : (N, P) in mm; NaN for contacts that are no pegs.
     """
 
     low: Array
@@ -95,7 +107,7 @@ class PinRuns:
     diameter: Array
 
     @classmethod
-    def of(
+    def from_fixtures(
         cls,
         faces: NDArray[Any],
         carriers: NDArray[Any],
@@ -105,14 +117,14 @@ class PinRuns:
         pressed_up_to: float | None,
         lift: float = 0.0,
     ) -> PinRuns:
-        """The runs of some fixtures.
+        """Return the ranges of heights of some fixtures' pegs.
 
         Parameters
         ----------
         faces, carriers : (N, P) numbers of the faces touched, and of the pegs' carriers.
-        points : (N, P, 2) peg centres about the centre of the part, in the part's frame, in mm.
-        pressed_up_to : up to which height pegs press on a prism, in mm; None where nobody knows, and of a solid.
-        lift : how far the part lies above the plates, in mm.
+        points : (N, P, 2) peg centres relative to the centre of the part, in the part's frame, in mm.
+        pressed_up_to : height in mm up to which pegs press on a prism; None where not known, and for a solid.
+        lift : height of the part above the plates, in mm.
         """
         each = np.array([2 * c.peg_radius if c.has_lattice else np.nan for c in toolkit.carriers])
         diameter = each.take(carriers)
@@ -128,12 +140,16 @@ class PinRuns:
 
     @property
     def middle(self) -> Array:
-        """The heights (N, P) at their middle."""
+        """Middles (N, P) of the ranges of heights, in mm."""
         return (self.low + self.high) / 2
 
 
 def find_runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
-    """The lower and the upper ends (N, P) of the runs that hold the bands of faces, where pegs touch them."""
+    """Return the lowest and the highest heights (N, P) in mm at
+    which pegs can press on faces of a solid; NaN for faces without.
+
+    ``faces`` is (N, P), ``points`` (N, P, 2) in the part's coordinates.
+    """
     numbered = workpiece.numbered
     bands = [(np.nan, np.nan) if band is None else band for band in numbered.bands]
     low, high = (np.array(ends, np.float64).take(faces) for ends in zip(*bands, strict=True))
@@ -145,12 +161,15 @@ def find_runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece)
         at = np.nonzero(faces == face.number)
         if not len(at[0]):
             continue
-        low[at], high[at] = runs_along(face.segments, points[at], workpiece)
+        low[at], high[at] = find_runs(face.segments, points[at], workpiece)
     return low, high
 
 
-def runs_along(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
-    """The runs (N,) at points (N, 2) of a face that has some segments, over one of which runs slide."""
+def find_runs(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
+    """Return the lowest and the highest heights (N,) in mm at points (N, 2) of one face with these segments.
+
+    Where the face's range of heights varies along a segment, that at the point is taken.
+    """
     numbered = workpiece.numbered
     parameters = np.array([compute_parameters(numbered.segments[k], points) for k in segments])
     extents = np.array([numbered.segments[k].half_extent for k in segments])
@@ -165,25 +184,25 @@ def runs_along(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -
         against = -1.0 if isinstance(segment, Arc) and segment.sign < 0 else 1.0
         shares = (against * parameters[place, here] / segment.half_extent + 1.0) / 2.0
         for one, share in zip(here.tolist(), shares.tolist(), strict=True):
-            ends = run_at(rows, share)
+            ends = interpolate_run(rows, share)
             own = band or ends
             low[one], high[one] = max(min(ends[0], own[0]), 0.0), max(ends[1], own[1])
     return low, high
 
 
 def compute_parameters(segment: Segment, points: Array) -> Array:
-    """Parameters (N,) on a segment of points (N, 2)."""
-    return np.array([segment.parameter((x, y)) for x, y in points.tolist()])
+    """Return the parameters (N,) on a segment of points (N, 2), see ``Segment.parameter``."""
+    return np.array([segment.find_parameter((x, y)) for x, y in points.tolist()])
 
 
 @frozen(eq=False)
 class BentPins:
-    """How far the pegs of N fixtures bend with the force at some heights.
+    """How far the pegs of N fixtures bend with forces at given heights.
 
     Parameters
     ----------
-    deflection, stress : (N, P) in mm and MPa, NaN of what is no peg.
-    movement : (N,) the farthest that a point of the silhouette moves, in mm.
+    deflection, stress : (N, P) in mm and MPa; NaN for contacts that are no pegs.
+    movement : (N,) largest movement of a point of the silhouette, in mm.
     """
 
     deflection: Array
@@ -199,22 +218,31 @@ def compute_bent_pins(
     length: float,
     extremes: tuple[Array, Array],
 ) -> BentPins:
-    """How far pegs bend, and what that moves the part by.
+    """Return how far pegs bend, and by how much that moves the part.
 
-    Diameters of the pegs (N, P), and heights of the forces on them above their plates, are in mm, NaN of
-    others. A jaw force is in N; None is for each kN. ``length`` is L in mm. For the extremes of the
-    silhouette see ``statics.quality.extremes``.
+    Parameters
+    ----------
+    diameters : (N, P) of pegs, in mm; NaN for other contacts.
+    heights : (N, P) of the forces above the pegs' plates, in mm.
+    jaw_force : in N; None for figures for each kN.
+    length : L in mm.
+    extremes : of the silhouette, see ``statics.quality.extremes``.
     """
     force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[:, 3, :])
     deflection = np.asarray(compute_deflections(force, heights, diameters))
     gives_way = np.where(np.isnan(diameters), 0.0, deflection)
     moves = np.einsum("nkp,np->nk", contacts.inverses[:, :3, :], gives_way)
     moves[:, 2] /= length
-    return BentPins(deflection, np.asarray(stresses(force, heights, diameters)), farthest(moves, *extremes))
+    return BentPins(
+        deflection,
+        np.asarray(compute_stresses(force, heights, diameters)),
+        find_farthest_movements(moves, *extremes),
+    )
 
 
-def farthest(moves: Array, corners: Array, arcs: Array) -> Array:
-    """The farthest movements (N,) of a point of the silhouette, from shifts of its centre and turns (N, 3).
+def find_farthest_movements(moves: Array, corners: Array, arcs: Array) -> Array:
+    """Return the largest movement (N,) in mm of a point of the
+    silhouette, given (shift x, shift y, turn) (N, 3) in mm and rad.
 
     A point q about the centre moves by v + t (-q_y, q_x): farthest at a corner, or inside a convex arc about m
     where the turn adds to the movement of m, there by |v(m)| + r |t| (``kernels.contact.quality``).

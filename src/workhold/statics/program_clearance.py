@@ -14,15 +14,22 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept, find_swept_below, find_swept_beside_carrier, path_of
+from workhold.contact.swept import SweptSpans, find_span_path, find_swept_below, find_swept_beside_carrier
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.fixture_table import FixtureTable, compute_peg_places
 from workhold.model.program import PathVertex, Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["NearestMove", "Passing", "element_name", "find_nearest_moves", "find_nearest_passing", "renamed"]
+__all__ = [
+    "NearestMove",
+    "ToolClearance",
+    "name_element",
+    "find_nearest_moves",
+    "find_nearest_passing",
+    "rename_element",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,10 +41,11 @@ class NearestMove:
 
     Parameters
     ----------
-    clearance : (N,) in mm, infinite where nothing is swept at such heights.
-    line, tool : (N,) of the program, -1 there.
-    contact : (N,) number of the contact that it comes near to: of a peg, a clamp, or an end on a wall.
-    span, low : (N,) number of the span of what is swept, and whether that is what is swept below the part.
+    clearance : (N,) in mm, negative for a collision; inf where nothing is swept at these heights.
+    line, tool : (N,) line and tool number of the program; -1 where the clearance is inf.
+    contact : (N,) index of the nearest contact: a peg, a clamp, or an end on a wall.
+    span : (N,) index of the swept span; -1 where there is none.
+    low : (N,) whether the span is of what is swept below the part.
     """
 
     clearance: Array
@@ -51,16 +59,21 @@ class NearestMove:
 def find_nearest_moves(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, program: Program, peg_height: float
 ) -> NearestMove:
-    """Where the tools of a program come nearest to each fixture of a table; ``peg_height`` in mm."""
+    """Return where the tools of a program come nearest to what holds the part, for each fixture of a table.
+
+    Parameters
+    ----------
+    peg_height : height in mm up to which pegs reach; what tools sweep above it does not count.
+    """
     count = len(table)
     line, tool, contact, span = (np.full(count, -1) for _ in range(4))
     found = NearestMove(np.full(count, inf), line, tool, contact, span, np.zeros(count, np.bool_))
-    x, y = peg_places(table, toolkit, workpiece)
+    x, y = compute_peg_places(table, toolkit, workpiece)
     bolts = toolkit.compute_hole_places(table.arrangement, table.column, table.row, np.zeros(count))
     carriers = toolkit.find_peg_carriers(table.arrangement)
 
     def seen(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
-        """Places (R, 2) of a contact of some rows in the part's coordinates."""
+        """Return the places (R, 2) of contact ``k`` of some rows in the part's coordinates, in mm."""
         dx, dy = (values[rows, k] - table.position[rows, axis] for axis, values in enumerate(points))
         return np.stack(rotate_vectors(dx, dy, -table.theta[rows]), axis=1)
 
@@ -71,30 +84,30 @@ def find_nearest_moves(
                 find_swept_beside_carrier(program, peg_height, carrier),
             )
             if not carrier.contact.is_placed:
-                take(found, rows, k, swept, *beside_wall(table, rows, swept))
+                take(found, rows, k, swept, *find_reach_to_wall(table, rows, swept))
                 continue
             centers = seen((x, y), rows, k)
             behind = seen(bolts, rows, k) if carrier.has_body_behind else centers
-            reach, span = swept.nearest(centers, behind)
+            reach, span = swept.find_nearest_spans(centers, behind)
             take(found, rows, k, swept, reach - carrier.peg_radius, span)
             if carrier.body_radius > carrier.peg_radius:
                 below = find_swept_below(program, 0.0)
-                reach, span = below.nearest(centers, centers)
+                reach, span = below.find_nearest_spans(centers, centers)
                 take(found, rows, k, below, reach - carrier.body_radius, span, below=True)
     return found
 
 
 @frozen
-class Passing:
+class ToolClearance:
     """Where the tools of a program come nearest to one fixture.
 
     Parameters
     ----------
-    distance : from the nearest of what holds the part, in mm.
+    distance : to the nearest element that holds the part, in mm.
     line, tool : of the program.
-    element : what it is near to, such as "peg L-A1".
-    contact : number of that among the contacts.
-    path : of the tool's axis there, one segment, arc or point in the part's coordinates, mm.
+    element : name of that element, such as "peg L-A1".
+    contact : its index among the contacts.
+    path : of the tool's axis there: one segment, arc or point in the part's coordinates, mm.
     radius : of the tool's cylinder there, in mm.
     """
 
@@ -106,13 +119,15 @@ class Passing:
     path: tuple[PathVertex, ...]
     radius: float
 
-    def in_holes(self, before: Sequence[str], after: Sequence[str]) -> Passing:
-        """The passing with the holes of contacts renamed, contact by contact."""
-        return evolve(self, element=renamed(self.element, before, after))
+    def rename_holes(self, before: Sequence[str], after: Sequence[str]) -> ToolClearance:
+        """Return a copy with the holes in ``element``
+        renamed; the k-th name before becomes the k-th after.
+        """
+        return evolve(self, element=rename_element(self.element, before, after))
 
 
-def renamed(element: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """The name of what a contact stands on, such as "peg L-A1", with its hole renamed.
+def rename_element(element: str, before: Sequence[str], after: Sequence[str]) -> str:
+    """Return the name of an element, such as "peg L-A1", with its hole renamed if it is among those before.
 
     >>> renamed("peg B2", ["A1", "B2"], ["C1", "D2"]), renamed("clamp A1", ["clamp A1"], ["clamp C1"])
     ('peg D2', 'clamp C1')
@@ -122,10 +137,10 @@ def renamed(element: str, before: Sequence[str], after: Sequence[str]) -> str:
     return names[element] if element in names else f"{noun} {names[hole]}" if hole in names else element
 
 
-def find_nearest_passing(result: Result, index: int) -> Passing | None:
-    """Where the tools of a result's program come nearest to the fixture of an index.
+def find_nearest_passing(result: Result, index: int) -> ToolClearance | None:
+    """Return where the tools of a result's program come nearest to fixture ``index``.
 
-    None without a program, and where no tool comes down to the height of pegs.
+    None without a program, and where no tool comes down to the height of the pegs.
     """
     if result.query.passed is None:
         return None
@@ -141,33 +156,37 @@ def find_nearest_passing(result: Result, index: int) -> Passing | None:
         if near.low[0]
         else find_swept_beside_carrier(program, height, standing)
     )
-    return Passing(
+    return ToolClearance(
         float(near.clearance[0]),
         int(near.line[0]),
         int(near.tool[0]),
-        element_name(table, toolkit, 0, contact),
+        name_element(table, toolkit, 0, contact),
         contact,
-        path_of(swept.tree.rows[span]),
+        find_span_path(swept.tree.rows[span]),
         float(swept.tree.radius[span]),
     )
 
 
-def element_name(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) -> str:
-    """What a contact of a fixture of a table stands on, such as "peg L-A1", "clamp row 3" or "fence"."""
+def name_element(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) -> str:
+    """Return the name of the element behind a contact of row
+    ``row``, such as "peg L-A1", "clamp row 3" or "fence".
+    """
     arrangement = toolkit.arrangements[int(table.arrangement[row])]
     carrier = toolkit.carriers[arrangement.carriers[contact]]
     if not carrier.contact.is_placed:
         return carrier.noun
-    place = carrier.place_name(int(table.column[row, contact]), int(table.row[row, contact]))
+    place = carrier.name_place(int(table.column[row, contact]), int(table.row[row, contact]))
     return f"{carrier.peg} {place}" if carrier.has_lattice else place
 
 
-def beside_wall(table: FixtureTable, rows: IntArray, swept: Swept) -> tuple[Array, IntArray]:
-    """Least reach (R,) to a wall of some rows of a table, and the spans (R,) that it is to."""
-    # Of each hull edge on the wall there is one pose but for the place along it.
+def find_reach_to_wall(table: FixtureTable, rows: IntArray, swept: SweptSpans) -> tuple[Array, IntArray]:
+    """Return the distances (R,) in mm of swept axes from the wall,
+    less radii, for rows of a table, and the spans' indices (R,).
+    """
+    # All fixtures on one hull edge have the same pose except for the place along the wall.
     poses = np.stack([table.theta[rows], -table.position[rows, 1]], axis=1)
     different, inverse = np.unique(poses, axis=0, return_inverse=True)
-    near = [swept.above(theta, height) for theta, height in different.tolist()]
+    near = [swept.find_reach_below_line(theta, height) for theta, height in different.tolist()]
     reach, span = np.array([one for one, _ in near]), np.array([one for _, one in near], np.int64)
     inverse = inverse.ravel()
     return reach[inverse], span[inverse]
@@ -177,12 +196,13 @@ def take(
     found: NearestMove,
     rows: IntArray,
     contact: int,
-    swept: Swept,
+    swept: SweptSpans,
     clearance: Array,
     span: IntArray,
     below: bool = False,
 ) -> None:
-    """Takes over clearances (R,) of a contact of some rows where they are less than those known.
+    """Write clearances (R,) of contact ``contact`` into the
+    rows of ``found`` where they are smaller than those there.
 
     ``below`` says whether ``swept`` is what is swept below the part.
     """

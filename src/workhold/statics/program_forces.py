@@ -1,7 +1,8 @@
-"""What the tools of a program ask of a fixture: the jaw force that keeps all contacts, and the peg forces.
+"""The forces that the tools of a program require of a fixture: the jaw force that keeps all contacts, and the
+peg forces.
 
 The peg forces are those of ``statics.loads``: f = f0 + F h, with f0 linear in the load. So the jaw force
-below which peg i lets go, -f0_i / h_i, is linear in the load as well. ``statics.path_forces`` has the worst
+below which peg i lets go, -f0_i / h_i, is linear in the load as well. ``statics.list_path_forces`` has the worst
 place of the path for both.
 """
 
@@ -18,15 +19,15 @@ from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.cutting_forces import CUT_KINDS, MILLING
-from workhold.model.fixture_table import FixtureTable, peg_places
-from workhold.model.moves import Stretches
+from workhold.model.fixture_table import FixtureTable, compute_peg_places
+from workhold.model.moves import MoveStretches
 from workhold.model.program import Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.statics.contact_matrix import ContactMatrices, Touched
-from workhold.statics.loads import compute_shared_forces, jaw_stiffness
-from workhold.statics.path_forces import path_forces
-from workhold.statics.program_clearance import element_name, renamed
+from workhold.statics.contact_matrix import ContactMatrices, TouchableFeatures
+from workhold.statics.loads import compute_shared_forces, read_jaw_stiffness
+from workhold.statics.path_forces import list_path_forces
+from workhold.statics.program_clearance import name_element, rename_element
 from workhold.units import Unit
 
 __all__ = ["AskedForce", "CuttingNeed", "compute_cutting_figures", "find_cutting_need", "find_cutting_needs"]
@@ -37,15 +38,16 @@ BLOCK = 1 << 12
 
 
 @frozen
-class CutDone:
-    """What of a move cuts; lengths in mm.
+class CutStretch:
+    """The cutting part of one move; lengths in mm.
 
     Parameters
     ----------
     kind : one of ``model.cutting_forces.CUT_KINDS``.
-    start, end : where the tip is as it begins to cut and as it stops, from the program's own zero.
-    length, whole : how far it cuts, in as many stretches as there are, and of what length.
-    name : of the tool, empty where it has none.
+    start, end : position of the tip as it begins and as it stops cutting, from the program's own zero.
+    length : how far it cuts, all stretches together.
+    whole : length of the move.
+    name : of the tool; empty without one.
     """
 
     kind: str
@@ -55,20 +57,20 @@ class CutDone:
     whole: float
     name: str = ""
 
-    def words(self, unit: Unit) -> str:
-        """What cuts and where, to follow the tool's number.
+    def describe(self, unit: Unit) -> str:
+        """Return a phrase on what cuts and where, to follow the tool's number.
 
         Examples
         --------
         >>> from workhold.units import MILLIMETRE
-        >>> CutDone("milling", (-11, 20, -2), (131, 20, -2), 142, 200, "face mill").words(MILLIMETRE)
+        >>> CutStretch("milling", (-11, 20, -2), (131, 20, -2), 142, 200, "face mill").describe(MILLIMETRE)
         'face mill, milling from X-11 Y20 Z-2 to X131 Y20 Z-2, 142 of 200 mm'
-        >>> CutDone("drilling", (20, 20, 5), (20, 20, -17), 22, 24).words(MILLIMETRE)
+        >>> CutStretch("drilling", (20, 20, 5), (20, 20, -17), 22, 24).describe(MILLIMETRE)
         'drilling at X20 Y20 from Z5 to Z-17, 22 of 24 mm'
         """
 
         def place(axes: str, values: Sequence[float]) -> str:
-            numbers = (short(value, unit) for value in values)
+            numbers = (format_length(value, unit) for value in values)
             return " ".join(f"{axis}{number}" for axis, number in zip(axes, numbers, strict=True))
 
         upright = self.start[:2] == self.end[:2]
@@ -80,14 +82,14 @@ class CutDone:
             where = f"at {x_y} from {low} to {high}"
         else:
             where = f"from {place('XYZ', self.start)} to {place('XYZ', self.end)}"
-        far = f"{short(self.length, unit)} of {short(self.whole, unit)} {unit.abbreviation}"
+        far = f"{format_length(self.length, unit)} of {format_length(self.whole, unit)} {unit.abbreviation}"
         if self.length >= self.whole * (1.0 - 1e-9):
-            far = f"all {short(self.whole, unit)} {unit.abbreviation}"
+            far = f"all {format_length(self.whole, unit)} {unit.abbreviation}"
         return f"{self.name + ', ' if self.name else ''}{self.kind} {where}, {far}"
 
 
-def short(value: float, unit: Unit) -> str:
-    """A length in mm as programs write it: in its unit, without zeros that say nothing.
+def format_length(value: float, unit: Unit) -> str:
+    """Return a length in mm as text in the given unit, without trailing zeros, as programs write it.
 
     >>> from workhold.units import INCH, MILLIMETRE
     >>> short(20.0, MILLIMETRE), short(-0.00001, MILLIMETRE), short(25.4, INCH)
@@ -98,42 +100,43 @@ def short(value: float, unit: Unit) -> str:
 
 @frozen
 class AskedForce:
-    """A force that a program asks for.
+    """A force that a program requires.
 
     Parameters
     ----------
     force : in N.
-    line, tool : of the program, where it does; None where the force is the same without any tool.
-    element : the contact that it is about, such as "peg L-A1"; None where no tool pushes the part off one.
-    done : what of that line cuts; None where it is not told.
+    line, tool : of the program's move that requires it; None where the force is the same without any tool.
+    element : the contact concerned, such as "peg L-A1"; None where no tool pushes the part off one.
+    done : the cutting part of that move; None where not known.
     """
 
     force: float
     line: int | None
     tool: int | None
     element: str | None
-    done: CutDone | None = None
+    done: CutStretch | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
+        """Return force, line, tool and element as plain data, as in a result file."""
         return {name: getattr(self, name) for name in ("force", "line", "tool", "element")}
 
-    def place(self, unit: Unit) -> str:
-        """Line and tool, and what of it cuts, in words."""
-        done = "" if self.done is None else f" ({self.done.words(unit)})"
+    def describe_place(self, unit: Unit) -> str:
+        """Return a phrase with line, tool, and the cut if known."""
+        done = "" if self.done is None else f" ({self.done.describe(unit)})"
         return f"line {self.line}, T{self.tool}{done}"
 
 
 @frozen
 class CuttingNeed:
-    """What the tools of a program ask of one fixture.
+    """What the tools of a program require of one fixture.
 
     Parameters
     ----------
-    jaw : the jaw force above which no contact lets go along the whole path, and the contact that does below.
-    contact : the largest force of a contact at ``jaw_force``, and whose it is.
-    jaw_force : the one given or, where none is, the one needed, in N.
-    room : by how much the force given exceeds the one needed, in N; None where none is given.
+    jaw : the jaw force above which no contact lets go along the whole path, and the contact that lets go
+        below it.
+    contact : the largest force of a contact at ``jaw_force``, and which contact.
+    jaw_force : the given jaw force or, without one, the required one, in N.
+    room : given minus required jaw force, in N; None without a given one.
     """
 
     jaw: AskedForce
@@ -142,18 +145,20 @@ class CuttingNeed:
     room: float | None
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data as in a result file."""
+        """Return everything as plain data, as in a result file."""
         asked = {"jaw": self.jaw.to_dict(), "contact": self.contact.to_dict()}
         return asked | {"jaw_force": self.jaw_force, "room": self.room}
 
-    def in_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
+    def rename_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
+        """Return a copy with holes of elements renamed; the k-th name before becomes the k-th after."""
+
         def of(asked: AskedForce) -> AskedForce:
-            return evolve(asked, element=asked.element and renamed(asked.element, before, after))
+            return evolve(asked, element=asked.element and rename_element(asked.element, before, after))
 
         return evolve(self, jaw=of(self.jaw), contact=of(self.contact))
 
-    def words(self, mover: str, unit: Unit, movers: int = 1) -> list[str]:
-        """What a machinist has to know, in sentences.
+    def list_sentences(self, mover: str, unit: Unit, movers: int = 1) -> list[str]:
+        """Return sentences for a machinist on the required forces.
 
         Parameters
         ----------
@@ -167,7 +172,7 @@ class CuttingNeed:
         >>> need = CuttingNeed(
         ...     AskedForce(2050.2, 412, 3, "peg R-A1"), AskedForce(3500, 412, 3, "peg L-A1"), 3000, 949.8
         ... )
-        >>> for sentence in need.words("jaw", MILLIMETRE):
+        >>> for sentence in need.list_sentences("jaw", MILLIMETRE):
         ...     print(sentence)
         Jaw force at least 2.1 kN, asked for by line 412, T3: with less the part leaves peg R-A1.
         The 3000 N given leave 949 N of room.
@@ -177,7 +182,7 @@ class CuttingNeed:
             return [f"The tools of the program push the part off nothing, at any {mover} force."]
         name = mover[:1].upper() + mover[1:] + " force" + " of both together" * (movers > 1)
         said = [
-            f"{name} at least {round_force_up(self.jaw.force, unit)}, asked for by {self.jaw.place(unit)}: "
+            f"{name} at least {round_force_up(self.jaw.force, unit)}, asked for by {self.jaw.describe_place(unit)}: "
             f"with less the part leaves {self.jaw.element}."
         ]
         if self.room is not None:
@@ -191,8 +196,8 @@ class CuttingNeed:
                 said.append(f"The {given} given are {lacking} too little.")
         most = round_force_up(self.contact.force, unit)
         same = (self.contact.line, self.contact.tool) == (self.jaw.line, self.jaw.tool)
-        # What is said of the first force is not said again.
-        at = f"in {(evolve(self.contact, done=None) if same else self.contact).place(unit)}"
+        # The cut is described once, with the first force.
+        at = f"in {(evolve(self.contact, done=None) if same else self.contact).describe_place(unit)}"
         if self.contact.line is None:
             at = "whatever the tools do"
         with_ = f"With {unit.format_force(self.jaw_force)} {self.contact.element}"
@@ -201,7 +206,7 @@ class CuttingNeed:
 
 
 def round_force_up(force: float, unit: Unit) -> str:
-    """A force in N in words, rounded up to two figures to stay on the safe side.
+    """Return a force in N as text in the given unit, rounded up to two significant figures.
 
     >>> from workhold.units import INCH, MILLIMETRE
     >>> round_force_up(2050.2, MILLIMETRE), round_force_up(312.0, MILLIMETRE), round_force_up(2050.2, INCH)
@@ -216,41 +221,46 @@ def round_force_up(force: float, unit: Unit) -> str:
 
 
 def round_force_down(force: float) -> float:
-    """A force in N without its decimals, so that no more is promised than there is."""
+    """Return a force in N rounded down to whole newtons; below 1 N unchanged."""
     return float(floor(force)) if force >= 1.0 else force
 
 
-def compute_cutting_figures(matrices: ContactMatrices, touched: Touched, program: Program) -> Array:
-    """Load reactions and jaw forces needed (N, 2) of fixtures along a program, in N; never negative."""
+def compute_cutting_figures(matrices: ContactMatrices, touched: TouchableFeatures, program: Program) -> Array:
+    """Return load reactions and required jaw forces (N, 2) in N of fixtures along a program; at least 0.
+
+    NaN where the contact matrix has no inverse.
+    """
     known = np.flatnonzero(np.isfinite(matrices.inverses).all(axis=(1, 2)))
     out = np.full((len(matrices.inverses), 2), np.nan)
     inverses, held = matrices.inverses[known], matrices.inverses[known, 3]
-    path = path_forces(program, center_of(touched))
+    path = list_path_forces(program, get_center(touched))
     for start in range(0, len(known), BLOCK):
         part = slice(start, start + BLOCK)
         rows = known[part]
-        free = np.swapaxes(inverses[part, :3], 1, 2) / scale(touched)
-        out[rows, 0] = path.worst(reactions(free, held[part])).value
+        free = np.swapaxes(inverses[part, :3], 1, 2) / make_scale(touched)
+        out[rows, 0] = path.find_worst(make_reaction_functions(free, held[part])).value
         locked = compute_shared_forces(free, matrices.closing[rows], inf)
-        out[rows, 1] = path.worst(-locked / held[part, :, None]).value
+        out[rows, 1] = path.find_worst(-locked / held[part, :, None]).value
     return out
 
 
-def center_of(touched: Touched) -> tuple[float, float]:
-    """The point that moments are taken about."""
+def get_center(touched: TouchableFeatures) -> tuple[float, float]:
+    """Return the centre of the part (x, y) in mm, which moments are taken about."""
     return float(touched.center[0]), float(touched.center[1])
 
 
-def scale(touched: Touched) -> Array:
-    """What inverses of contact matrices are divided by, so that moments are in N mm."""
+def make_scale(touched: TouchableFeatures) -> Array:
+    """Return (1, 1, L), by which columns of inverse contact matrices are divided to take moments in N mm."""
     return np.array([1.0, 1.0, touched.length])
 
 
-def reactions(free: Array, held: Array) -> Array:
-    """Functions (N, P (P - 1), 3) of the load, of which the largest value is the load reaction.
+def make_reaction_functions(free: Array, held: Array) -> Array:
+    """Return linear functions (N, P (P - 1), 3) of the load; their maximum is the load reaction.
 
-    ``free`` are peg forces (N, P, 3) per unit of load where the jaw keeps its force, ``held`` (N, P) those
-    per unit of jaw force.
+    Parameters
+    ----------
+    free : (N, P, 3) peg forces per unit of load with a jaw that keeps its force.
+    held : (N, P) peg forces per unit of jaw force.
     """
     count = held.shape[1]
     one, other = np.nonzero(~np.eye(count, dtype=bool))
@@ -267,30 +277,34 @@ def find_cutting_needs(
     jaw_force: float | None,
     jaw: str | float = "screw",
 ) -> list[CuttingNeed | None]:
-    """What the tools of a program ask of each fixture of a table; None where its forces are not known.
+    """Return what the tools of a program require of each
+    fixture of a table; None where its forces are not known.
 
     Parameters
     ----------
-    jaw_force : in N, with which the vise is closed; None where that is open.
+    jaw_force : in N, with which the vise is closed; None to take the required one.
     jaw : what closes it, see :func:`workhold.statics.loads.jaw_stiffness`.
     """
-    touched, carriers = Touched.of(workpiece, toolkit), toolkit.find_peg_carriers(table.arrangement)
-    pegs = np.stack(peg_places(table, toolkit, workpiece), axis=2)
+    touched, carriers = (
+        TouchableFeatures.from_workpiece(workpiece, toolkit),
+        toolkit.find_peg_carriers(table.arrangement),
+    )
+    pegs = np.stack(compute_peg_places(table, toolkit, workpiece), axis=2)
     pose = np.column_stack([table.theta, table.position])
-    matrices = touched.contact_matrices(pegs, pose, carriers, table.face.astype(np.int64))
-    path = path_forces(program, center_of(touched))
+    matrices = touched.compute_contact_matrices(pegs, pose, carriers, table.face.astype(np.int64))
+    path = list_path_forces(program, get_center(touched))
     named = partial(find_asked_force, table, toolkit, program)
     known = np.flatnonzero(np.isfinite(matrices.inverses).all(axis=(1, 2)))
     out: list[CuttingNeed | None] = [None] * len(table)
     for start in range(0, len(known), BLOCK):
         rows = known[start : start + BLOCK]
         held = matrices.inverses[rows, 3]
-        free = np.swapaxes(matrices.inverses[rows, :3], 1, 2) / scale(touched)
-        own = compute_shared_forces(free, matrices.closing[rows], jaw_stiffness(jaw))
-        need = path.worst(-own / held[..., None])
+        free = np.swapaxes(matrices.inverses[rows, :3], 1, 2) / make_scale(touched)
+        own = compute_shared_forces(free, matrices.closing[rows], read_jaw_stiffness(jaw))
+        need = path.find_worst(-own / held[..., None])
         force = need.value if jaw_force is None else np.full(len(rows), float(jaw_force))
         # Each contact by itself, because each has its own share of the jaw force.
-        each = path.worst(own.reshape(-1, 1, 3))
+        each = path.find_worst(own.reshape(-1, 1, 3))
         total = each.value.reshape(held.shape) + force[:, None] * held
         largest = total.argmax(axis=1)
         at = each.move.reshape(held.shape)[np.arange(len(rows)), largest]
@@ -308,8 +322,12 @@ def find_cutting_needs(
 def find_asked_force(
     table: FixtureTable, toolkit: Toolkit, program: Program, row: int, value: float, move: int, contact: int
 ) -> AskedForce:
-    """A force that a move asks for of a contact of a fixture of a table; of none where the move is -1."""
-    name = None if contact < 0 else element_name(table, toolkit, row, contact)
+    """Return a force ``value`` in N with the move that
+    requires it and the contact concerned, of fixture ``row``.
+
+    Line and tool are None where ``move`` is -1, the element None where ``contact`` is -1.
+    """
+    name = None if contact < 0 else name_element(table, toolkit, row, contact)
     if move < 0:
         return AskedForce(value, None, None, name)
     moves = program.moves
@@ -318,21 +336,21 @@ def find_asked_force(
     )
 
 
-def find_cut_of_move(program: Program, move: int) -> CutDone | None:
-    """What of a move cuts; None without forces."""
+def find_cut_of_move(program: Program, move: int) -> CutStretch | None:
+    """Return the cutting part of a move, by its index; None where the program has no forces."""
     forces, moves = program.forces, program.moves
     if forces is None:
         return None
     own = np.flatnonzero(forces.stretches.move == move)
     some = forces.stretches
-    parts = moves.cut_to(Stretches(some.move[own], some.first[own], some.last[own]))
+    parts = moves.cut_to(MoveStretches(some.move[own], some.first[own], some.last[own]))
     shift = np.array([*program.zero, program.z_zero])
 
     def place(point: Array) -> tuple[float, float, float]:
         x, y, z = (point - shift).tolist()
         return x, y, z
 
-    return CutDone(
+    return CutStretch(
         CUT_KINDS[forces.kind[move]],
         place(parts.start[0]),
         place(parts.end[-1]),
@@ -345,11 +363,13 @@ def find_cut_of_move(program: Program, move: int) -> CutDone | None:
 def find_cutting_need(
     result: Result, index: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> CuttingNeed | None:
-    """What the tools of a result's program ask of the fixture of an index; None without forces, and of flat jaws.
+    """Return what the tools of a result's program require of fixture ``index``.
+
+    None without cutting forces, and for toolkits that hold by friction.
 
     Parameters
     ----------
-    jaw_force : in N, instead of the result's.
+    jaw_force : in N; None for the result's.
     jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
     """
     program = result.query.program

@@ -22,10 +22,10 @@ from workhold.conventions import FIGURE_DECIMALS, MAIN_DIRECTION, SQUARE_TILT
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.segment import Arc, Line
-from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
-from workhold.kernels.contact.quality import LOAD_LENGTH, figures
+from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, write_closures
+from workhold.kernels.contact.quality import LOAD_LENGTH, write_figures
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, make_fixture_of_row, peg_places
+from workhold.model.fixture_table import FixtureTable, compute_peg_places, make_fixture_of_row
 from workhold.model.program import Program
 from workhold.model.quality import (
     BEFORE_PINS,
@@ -44,31 +44,33 @@ from workhold.model.quality import (
 )
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
-from workhold.model.wall_ends import wall_ends
+from workhold.model.wall_ends import find_wall_ends
 from workhold.model.workpiece import Workpiece
 from workhold.rowwise import find_smallest
-from workhold.statics.contact_matrix import ContactMatrices, Touched
-from workhold.statics.judging import Judging
+from workhold.statics.contact_matrix import ContactMatrices, TouchableFeatures
+from workhold.statics.judging import JudgingLimits
 from workhold.statics.loads import compute_needed_jaw_forces
 from workhold.statics.pins import PinRuns, compute_bent_pins
 from workhold.statics.program_clearance import find_nearest_moves
 from workhold.statics.program_forces import compute_cutting_figures
 
 __all__ = [
-    "extremes",
+    "find_silhouette_extremes",
     "measure_faces",
-    "load_rows",
-    "main_direction",
+    "make_load_rows",
+    "find_main_direction",
     "measure_fixture",
     "measure_quality",
-    "tilts",
+    "compute_tilts",
 ]
 
 Array = NDArray[np.float64]
 
 
-def main_direction(workpiece: Workpiece) -> float:
-    """The main direction of a part, in the frame of its drawing."""
+def find_main_direction(workpiece: Workpiece) -> float:
+    """Return the main direction of a part in degrees in [0,
+    90), in the frame of its drawing; 0.0 where there is none.
+    """
     lines = [face.segment for face in workpiece.faces if isinstance(face.segment, Line)]
     if not lines:
         return 0.0
@@ -87,14 +89,20 @@ def main_direction(workpiece: Workpiece) -> float:
     return float(chosen) if alone else 0.0
 
 
-def tilts(theta: Array, direction: float) -> Array:
-    """Tilts (N,) in degrees, from 0 to 45, of a part turned by theta (N,) in radians; 0 is square."""
+def compute_tilts(theta: Array, direction: float) -> Array:
+    """Return tilts (N,) in degrees, 0 to 45, of a part with main
+    direction ``direction`` turned by ``theta`` (N,) in radians.
+
+    Tilts below ``SQUARE_TILT`` are 0.
+    """
     off = np.abs((np.degrees(theta) + direction + 45.0) % 90.0 - 45.0)
     return np.where(off < SQUARE_TILT, 0.0, off)
 
 
 def measure_faces(workpiece: Workpiece) -> Array:
-    """Sizes (S,) in mm of faces by number: a straight one's length, an arc's radius, NaN without a face."""
+    """Return sizes (S,) in mm by face number: a straight face's
+    length, an arc's radius; NaN for numbers without a face.
+    """
     every = workpiece.numbered
     sizes = np.full(len(every.segments), np.nan)
     for face in every.faces:
@@ -102,7 +110,7 @@ def measure_faces(workpiece: Workpiece) -> Array:
     return sizes
 
 
-# Fixtures looked at together; what is needed for them beside the table and the figures takes 3 MB.
+# Number of fixtures measured together; the temporary arrays then take 3 MB.
 BLOCK = 1 << 13
 
 
@@ -113,55 +121,56 @@ def measure_quality(
     tolerance: Tolerance | None = None,
     loads: Sequence[Load] = (),
     threads: int = 1,
-    touched: Touched | None = None,
+    touched: TouchableFeatures | None = None,
     jaw_force: float | None = None,
     passed: tuple[Program, float] | None = None,
     pressed_up_to: float | None = None,
 ) -> Array:
-    """Figures of quality of a table of fixtures, from their holes, poses and faces alone.
+    """Return figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
     Parameters
     ----------
-    tolerance : how far pegs and faces may be off, for the location error; by default 0.01 mm each.
+    tolerance : how far pegs and faces may be off, for the location error; None for 0.01 mm each.
     loads : for the load reaction, the worst of them; each acts by itself.
     threads : how many threads share the work; the outcome does not depend on it.
-    touched : the workpiece's contact features, where they are known already.
-    jaw_force : in N, for the warning that a peg lets go under a load.
-    passed : a program and the height of pegs in mm, for the program clearance in a column more; None without.
-        Where it has forces they are loads like the others.
-    pressed_up_to : up to which height pegs press on a prism, in mm, for how far they bend; None where nobody
-        knows. A solid says it itself.
+    touched : the workpiece's contact features; None to compute them.
+    jaw_force : in N, for the warning that a peg lets go under a load; None for no such warning.
+    passed : a program and the height of pegs in mm, which adds a column for the program clearance. Its
+        cutting forces count as loads.
+    pressed_up_to : height in mm up to which pegs press on a prism, to compute how far they bend; None where
+        not known. Not needed for a solid.
 
     Returns
     -------
-    (N, F) array, columns as ``model.quality.list_figures_in_columns`` has them; NaN for figures of loads without loads,
-    and for pegs whose contact equations have no single solution.
+    (N, F) array, columns as ``model.quality.list_figures_in_columns`` has them; NaN for figures of loads
+    without loads, and for pegs whose contact equations have no single solution.
     """
     tolerance = tolerance or Tolerance()
-    known = touched or Touched.of(workpiece, toolkit)
-    corners, arcs = extremes(workpiece)
-    rows = load_rows(loads, workpiece.center)
+    known = touched or TouchableFeatures.from_workpiece(workpiece, toolkit)
+    corners, arcs = find_silhouette_extremes(workpiece)
+    rows = make_load_rows(loads, workpiece.center)
     tolerances = np.array([tolerance.peg, tolerance.face])
-    direction, sizes = main_direction(workpiece), measure_faces(workpiece)
-    judging = Judging.of(known.length, toolkit, tolerance, jaw_force)
+    direction, sizes = find_main_direction(workpiece), measure_faces(workpiece)
+    judging = JudgingLimits.from_toolkit(known.length, toolkit, tolerance, jaw_force)
     has_pins = workpiece.solid is not None or pressed_up_to is not None
     known_figures = len(FIGURES) if has_pins else BEFORE_PINS
     out = np.empty((len(table), known_figures + (passed is not None)))
 
     def fill(start: int) -> None:
+        """Write the figures of the fixtures from row ``start`` on, one block, into the outcome."""
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
         faces = block.face.astype(np.int64)
         carriers = toolkit.find_peg_carriers(block.arrangement)
-        x, y = peg_places(block, toolkit, workpiece)
-        contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, carriers, faces)
-        figures(
+        x, y = compute_peg_places(block, toolkit, workpiece)
+        contact_matrices = known.compute_contact_matrices(np.stack([x, y], axis=2), pose, carriers, faces)
+        write_figures(
             contact_matrices.points,
             contact_matrices.normals,
             contact_matrices.ends,
             contact_matrices.edges,
             contact_matrices.inverses,
-            shared_faces(block, toolkit, workpiece),
+            number_shared_faces(block, toolkit, workpiece),
             known.length,
             tolerances,
             corners,
@@ -183,19 +192,21 @@ def measure_quality(
         if toolkit.tips > 1:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = compute_closures(contact_matrices.closing)
         filled[:, JAW_CONTACT] = np.nan
-        if toolkit.reaching is not None:
+        if toolkit.wall_with_ends is not None:
             (ends,) = toolkit.ends_on_walls
             filled[:, JAW_CONTACT] = np.diff(x[:, ends], axis=1)[:, 0]
-        filled[:, TILT] = tilts(block.theta, direction)
+        filled[:, TILT] = compute_tilts(block.theta, direction)
         filled[:, SMALLEST_FACE] = find_smallest(measure_touched(block, toolkit, workpiece, sizes))
         if has_pins:
-            runs = PinRuns.of(faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to)
+            runs = PinRuns.from_fixtures(
+                faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to
+            )
             silhouette = corners, arcs
             filled[:, PIN_FIGURES] = measure_most_bent(
                 contact_matrices, runs, jaw_force, known.length, silhouette
             )
-        filled[:, WARNINGS] = judging.warnings(filled, contact_matrices.edges)
-        filled[:, PENALTY] = judging.penalty(filled)
+        filled[:, WARNINGS] = judging.count_warnings(filled, contact_matrices.edges)
+        filled[:, PENALTY] = judging.compute_penalty(filled)
         if passed is not None:
             clearance = find_nearest_moves(block, workpiece, toolkit, *passed).clearance
             filled[:, PROGRAM_CLEARANCE] = np.where(np.isfinite(clearance), clearance, np.nan)
@@ -217,7 +228,9 @@ def measure_most_bent(
     length: float,
     silhouette: tuple[Array, Array],
 ) -> Array:
-    """The largest deflection and stress of a peg, and what they move the part by, (N, 3); NaN where not known."""
+    """Return (N, 3): largest deflection in mm and stress in MPa
+    of a peg, and movement of the part in mm; NaN where not known.
+    """
     bent = compute_bent_pins(contacts, runs.diameter, runs.middle, jaw_force, length, silhouette)
     is_peg = ~np.isnan(runs.diameter)
     each = (
@@ -229,37 +242,48 @@ def measure_most_bent(
 
 
 def compute_closures(reactions: Array) -> Array:
-    """Closure margins and clamp freedoms (N, 2) of fixtures with two clamps, from forces (N, 5, 2)."""
+    """Return (closure margin, clamp freedom in degrees) (N, 2) of fixtures with two clamps.
+
+    ``reactions`` (N, 5, 2) are forces per unit of each clamp's force; NaN in, NaN out.
+    """
     clamps = np.zeros((len(reactions), 2, CLAMP_LENGTH))
     for k in range(2):
         clamps[:, k, PUSH] = 1.0 / reactions[:, 3 + k, k]
         clamps[:, k, :3] = reactions[:, :3, k] * clamps[:, k, PUSH, None]
     out = np.empty((len(reactions), 2))
-    closures_of(clamps, out)
+    write_closures(clamps, out)
     out[np.isnan(reactions).any(axis=(1, 2))] = np.nan
     return out
 
 
-def shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NDArray[np.int64]:
-    """Numbers (N, 4), equal for pegs that an error of one face moves alike; one for a corner on a wall."""
+def number_shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NDArray[np.int64]:
+    """Return numbers (N, P) that are equal for contacts that an error of one face moves together.
+
+    They are face numbers; a corner on a wall has a number of its own.
+    """
     faces = block.face.astype(np.int64)
     for ends in toolkit.ends_on_walls:
-        faces[:, ends] = wall_ends(workpiece, toolkit, block.theta, block.position).shared
+        faces[:, ends] = find_wall_ends(workpiece, toolkit, block.theta, block.position).shared
     return faces
 
 
 def measure_touched(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
-    """Sizes (N, 4) in mm of what is touched, from the faces' (S,); on a wall the length that lies on it."""
+    """Return sizes (N, P) in mm of the faces touched, ``sizes``
+    by face number (S,); on a wall the length that lies on it.
+    """
     out = sizes.take(block.face)
     for ends in toolkit.ends_on_walls:
-        out[:, ends] = wall_ends(workpiece, toolkit, block.theta, block.position).length[:, None]
+        out[:, ends] = find_wall_ends(workpiece, toolkit, block.theta, block.position).length[:, None]
     return np.asarray(out)
 
 
 def measure_fixture(
     result: Result, index: int, loads: Sequence[Load] | None = None, jaw_force: float | None = None
 ) -> Fixture:
-    """A fixture of a result with all figures of quality, for the result's loads and jaw force or others."""
+    """Return fixture ``index`` of a result with all figures of quality.
+
+    ``loads`` and ``jaw_force`` in N replace the result's where not None.
+    """
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
     force = result.query.jaw_force if jaw_force is None else jaw_force
@@ -276,30 +300,33 @@ def measure_fixture(
     return make_fixture_of_row(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 
 
-def extremes(workpiece: Workpiece) -> tuple[Array, Array]:
-    """Where the point of the silhouette that a small movement moves most may be.
+def find_silhouette_extremes(workpiece: Workpiece) -> tuple[Array, Array]:
+    """Return the corners and arcs of the silhouette among which
+    is the point that a small movement of the part moves most.
 
     Returns
     -------
-    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, as
-        ``kernels.contact.quality`` takes them.
+    (corners, arcs) : (C, 2) corners of the joints' convex hull and (A, 6) convex arcs, relative to the part's
+    centre in mm, as ``kernels.contact.quality`` takes them.
     """
     outer = [face.segment for face in workpiece.outer_faces]
     cx, cy = workpiece.center
     joints = [segment.start for segment in outer if not (isinstance(segment, Arc) and segment.is_full)]
     corners = np.array([(x - cx, y - cy) for x, y in compute_convex_hull(joints)]).reshape(-1, 2)
     arcs = [
-        (*segment.row()[1:3], segment.radius, *segment.row()[3:5], cos(min(segment.half_sweep, pi)))
+        (*segment.to_row()[1:3], segment.radius, *segment.to_row()[3:5], cos(min(segment.half_sweep, pi)))
         for segment in outer
         if isinstance(segment, Arc) and segment.sign > 0
     ]
     return corners, np.array(arcs).reshape(-1, 6) - np.array([cx, cy, 0.0, 0.0, 0.0, 0.0])
 
 
-def load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
-    """Rows (M, 11) of loads for ``kernels.contact.quality``, one for each corner of a path's convex hull.
+def make_load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
+    """Return rows (M, 11) of loads for ``kernels.contact.quality``,
+    one for each corner of a path's convex hull.
 
-    The largest force is a convex function of the point, so no other point of a path can be worse.
+    The largest force is a convex function of the point, so no other point of a path is worse. ``center`` is
+    that of the part, in mm.
     """
     rows = []
     for load in loads:

@@ -52,21 +52,25 @@ class StrappedPart:
         """What moments are divided by, in mm."""
         return float(max(np.ptp(self.touched, axis=0).max(), self.bands.max(), 1.0) / 2)
 
-    def wrenches(self, points: Array, forces: Array) -> Array:
-        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm, moments over the length."""
+    def compute_wrenches(self, points: Array, forces: Array) -> Array:
+        """Return wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm, moments over the length."""
         return np.hstack([forces, np.cross(points - self.centre, forces) / self.length])
 
-    def level_wrenches(
+    def compute_level_wrenches(
         self, points: Array, height: float | Array, force: tuple[float, float, float]
     ) -> Array:
-        """Wrenches (N, 6) of one force at points (N, 2), all of a height or each of its own (N,), in mm."""
+        """Return wrenches (N, 6) of one force at points (N, 2), all of a height or each of its own (N,), in mm."""
         places = np.column_stack([points, np.broadcast_to(height, len(points))])
-        return self.wrenches(places, np.tile(force, (len(points), 1)))
+        return self.compute_wrenches(places, np.tile(force, (len(points), 1)))
 
-    def friction_wrenches(self, points: Array, height: float | Array) -> Array:
-        """Wrenches (N, 16, 6) of friction of 1 N in each direction; points as of :meth:`level_wrenches`."""
+    def compute_friction_wrenches(self, points: Array, height: float | Array) -> Array:
+        """Return wrenches (N, 16, 6) of friction of 1 N in each direction; points as of
+        :meth:`compute_level_wrenches`.
+        """
         turns = 2 * pi / DIRECTIONS * np.arange(DIRECTIONS)
-        rows = [self.level_wrenches(points, height, (np.cos(turn), np.sin(turn), 0.0)) for turn in turns]
+        rows = [
+            self.compute_level_wrenches(points, height, (np.cos(turn), np.sin(turn), 0.0)) for turn in turns
+        ]
         return np.stack(rows, axis=1)
 
     @cached_property
@@ -74,19 +78,19 @@ class StrappedPart:
         """Wrenches (2 L, 6) of unit forces of the locators, at the ends of their bands."""
         ways = np.column_stack([self.inward, np.zeros(len(self.inward))])
         ends = [np.column_stack([self.touched, self.bands[:, k]]) for k in (0, 1)]
-        return np.vstack([self.wrenches(points, ways) for points in ends])
+        return np.vstack([self.compute_wrenches(points, ways) for points in ends])
 
     @cached_property
     def pressing_below(self) -> Array:
         """Wrenches (R, 6) of unit pressures from below."""
         points = self.below.centres if isinstance(self.below, PressedPolygon) else self.below
-        return self.level_wrenches(points, 0.0, (0.0, 0.0, 1.0))
+        return self.compute_level_wrenches(points, 0.0, (0.0, 0.0, 1.0))
 
     @cached_property
     def rubbing_below(self) -> Array:
         """Wrenches (C, 16, 6) of unit forces of friction below."""
         points = self.below.cells.centre if isinstance(self.below, PressedPolygon) else self.below
-        return self.friction_wrenches(points, 0.0)
+        return self.compute_friction_wrenches(points, 0.0)
 
     @cached_property
     def bearing_below(self) -> Array:
@@ -94,7 +98,7 @@ class StrappedPart:
         if not isinstance(self.below, PressedPolygon):
             return self.friction * np.eye(len(self.below))
         cells = self.below.cells
-        return np.asarray(self.friction * (self.below.pressure(cells.centre) * cells.area).T)
+        return np.asarray(self.friction * (self.below.compute_pressures(cells.centre) * cells.area).T)
 
 
 @frozen(eq=False)
@@ -124,9 +128,9 @@ class StrapsOnPart:
         """What moments are divided by, in mm."""
         return self.part.length
 
-    def wrenches(self, points: Array, forces: Array) -> Array:
+    def compute_wrenches(self, points: Array, forces: Array) -> Array:
         """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm."""
-        return self.part.wrenches(points, forces)
+        return self.part.compute_wrenches(points, forces)
 
     @property
     def pushing(self) -> Array:

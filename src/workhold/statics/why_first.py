@@ -1,4 +1,4 @@
-"""Why a fixture is the first choice, in one line: what the usual order found of it before any figure."""
+"""A line on why a fixture is the first choice: the keys of the usual ranking that count before any figure."""
 
 from __future__ import annotations
 
@@ -10,14 +10,16 @@ from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, WARNINGS
 from workhold.model.result import Result
 from workhold.statics.effective_error import EffectiveErrors, classify_angles
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["why_first"]
+__all__ = ["explain_why_first"]
 
 
-def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
-    """Says why the first fixture of a result stands first; nothing where another order was asked for.
+def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
+    """Return a line on why the first fixture of a result is ranked first.
+
+    Empty for a result without fixtures and for any ranking but the usual one.
 
     Examples
     --------
@@ -28,20 +30,20 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     """
 
     def length(mm: float) -> str:
-        """A length with as many decimals as figures have."""
-        return f"{unit.number(mm, unit.decimals + 1)} {unit.abbreviation}"
+        """Return a length in mm as text in the unit, with as many decimals as figures have."""
+        return f"{unit.format_number(mm, unit.decimals + 1)} {unit.abbreviation}"
 
     least, query = result.least_effective_error, result.query
     if not query.has_house_order or least is None or len(result) == 0:
         return ""
     row = result.table.take(slice(0, 1))
-    effective = EffectiveErrors.of(query)
-    holds = effective.holding(row)[0]
-    error, counted = float(row.quality[0, LOCATION_ERROR]), float(effective.errors(row)[0])
+    effective = EffectiveErrors.from_query(query)
+    holds = effective.find_factors(row)[0]
+    error, counted = float(row.quality[0, LOCATION_ERROR]), float(effective.compute_errors(row)[0])
     if not isfinite(error):
         return ""
     warned, angle = bool(row.quality[0, WARNINGS] > 0), int(classify_angles(row.theta)[0])
-    if unfit(row.quality, query.tolerance)[0]:
+    if are_unfit(row.quality, query.tolerance)[0]:
         said = "none is fit for a workshop"
     else:
         said = "all that are fit have a warning" if warned else "no warning"
@@ -55,7 +57,7 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     if against:
         size += f", counted as {length(counted)} ({', '.join(against)})"
     if np.round(counted, 9) >= 1.1 * least:
-        # Where what is known of its seating changed the order.
+        # This happens where its seating changed the order.
         near = f"the least is {length(least)}"
     elif np.round(counted, 9) <= least:
         near = "the least of all"
@@ -65,7 +67,7 @@ def why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
 
 
 def describe_first_position(result: Result, angle: int) -> str:
-    """Says how the first fixture of a result lies, and of one that is turned what stands less so.
+    """Return a phrase on the first fixture's angle, and why none of a better angle class is first.
 
     ``angle`` is the class of its angle, see :mod:`workhold.statics.effective_error`.
     """
@@ -82,9 +84,9 @@ def describe_first_position(result: Result, angle: int) -> str:
             if whole
             else near + (", and none is listed" if len(table) > 1 else "")
         )
-    bad = unfit(less.quality, result.query.tolerance)
+    bad = are_unfit(less.quality, result.query.tolerance)
     first = table.take(slice(0, 1))
-    if bad.all() and not unfit(first.quality, result.query.tolerance)[0]:
+    if bad.all() and not are_unfit(first.quality, result.query.tolerance)[0]:
         return f"those that lie {straight} are not fit for a workshop"
     if (bad | (less.quality[:, WARNINGS] > 0)).all() and not first.quality[0, WARNINGS] > 0:
         return f"those that lie {straight} have a warning"

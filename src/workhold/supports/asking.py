@@ -1,7 +1,7 @@
-"""Supports as they are asked of fixtures: by names of what is wanted, and of sizes that fall until some hold.
+"""Requests for supports: values by name, and smaller sizes that are tried where the usual ones find no place.
 
-Parts with thin walls below, slots or small bosses have no room for the usual pads, and narrow ones none for
-a clamp so far inside its triangle. Ends of dowels as thick as those that locate do for such a part.
+Parts with thin walls below, slots or small bosses have no room for the usual pads, and narrow parts none for
+a clamp so far inside its triangle. For these, ends of dowels as thick as the locating ones are used.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from workhold.model.solid import BESIDE_TOP
 from workhold.model.support_request import OUTLINE, SpatialLoad, SupportRequest, compute_usual_head
 from workhold.model.support_triples import Supports
 from workhold.supports.choosing import Stop
-from workhold.supports.listing import supports_of, yield_supports
+from workhold.supports.listing import find_supports, yield_supports
 
 __all__ = [
     "SMALLER",
     "make_request",
-    "fixture_supports",
+    "find_fixture_supports",
     "try_smaller_requests",
-    "result_supports",
+    "find_result_supports",
     "support_with_smaller_sizes",
 ]
 
@@ -38,23 +38,24 @@ Loads = Sequence[Load | SpatialLoad] | None
 USUAL = ("thickness", "pad_radius", "tip_radius")
 # What else may be asked, by its name.
 FURTHER = tuple(one.name for one in fields(SupportRequest) if one.name not in USUAL)
-# Who asks for one of these is given no other sizes.
+# If one of these is asked for, no other sizes are tried.
 SIZES = {"pad_radius", "tip_radius", "pad_margin", "inside", "tip_margin", "head_radius"}
 # Radii of pads and of the tip that goes with them, in mm, where the usual ones find no place.
 SMALLER = ((3.0, 4.0), (2.0, 3.0))
 
 
 def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]) -> SupportRequest:
-    """What is usual for a part, with what else is asked by name.
+    """Return the usual support request for a part, with other values asked for by field name.
 
     Parameters
     ----------
-    thickness : of the part in mm; that of its solid if None.
+    thickness : of the part in mm; None for that of its solid.
+    asked : values of fields of :class:`SupportRequest` by name.
 
     Raises
     ------
     InputError
-        For a name that there is none of, values that cannot be, and where nobody says how thick the part is.
+        For flat jaws, an unknown name, an invalid value, and an unknown thickness.
     """
     if query.toolkit.flat_jaws is not None:
         raise InputError(
@@ -65,10 +66,10 @@ def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]
         known = ", ".join((*USUAL[1:], *FURTHER))
         raise InputError(f"supports have no {unknown!r}: give some of {known}.")
     sizes = {name: asked.get(name) for name in USUAL[1:]}
-    usual = SupportRequest.of(query.workpiece, thickness, toolkit=query.toolkit, **sizes)
+    usual = SupportRequest.from_workpiece(query.workpiece, thickness, toolkit=query.toolkit, **sizes)
     further = {name: value for name, value in asked.items() if name in FURTHER}
     if "top" in further:
-        # Of another face nobody says how high it is, nor what is beside or under it.
+        # For another face neither its height is known nor what is beside or under it.
         further = {"top_heights": None, **dict.fromkeys(BESIDE_TOP, ()), **further}
     return evolve(usual, **further)
 
@@ -76,7 +77,9 @@ def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]
 def try_smaller_requests(
     query: Query, thickness: float | None, asked: Mapping[str, Any] | None = None
 ) -> Iterator[SupportRequest]:
-    """What is asked, and where no size is, the same with smaller pads and tips, but not than the toolkit has.
+    """Yield the request asked for, then, if no size was asked for, requests with smaller pads and tips.
+
+    Sizes that the toolkit prescribes stay.
 
     Parameters
     ----------
@@ -114,18 +117,18 @@ def support_with_smaller_sizes(
     cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
-    """The best supports of some fixtures, of the first request of which any fixture has some.
+    """Return the supports of fixtures for the first request with which any fixture has a triple.
 
     Parameters
     ----------
     requests : to be tried in turn, see :func:`try_smaller_requests`.
-    each, drops_weak_force, cancel, progress : see :func:`workhold.supports.listing.yield_supports`;
-        once ``cancel`` is set no further request is tried.
-    first_only : whether fixtures behind the first that has some are passed over.
+    each, drops_weak_force, cancel, progress : see :func:`workhold.supports.listing.yield_supports`; once
+        ``cancel`` is set no further request is tried.
+    first_only : whether to stop each try at the first fixture that has a triple.
 
     Returns
     -------
-    These, or those of the last request where none has any, and those of the first request.
+    (supports for that request, or for the last one where no fixture has any; supports for the first request)
     """
     usual = found = tuple[Supports, ...]()
     for request in requests:
@@ -148,22 +151,22 @@ def support_with_smaller_sizes(
 
 
 def list_up_to_first_supported(every: Iterable[Supports]) -> Iterator[Supports]:
-    """The supports of fixtures up to the first that has some."""
+    """Yield supports of fixtures, up to and including the first with a triple."""
     for one in every:
         yield one
         if one.triples:
             return
 
 
-def given(asked: Mapping[str, Any]) -> dict[str, Any]:
-    """What of keywords is not None; faces that are to be the outline are None for a request."""
+def select_given(asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keyword arguments that are not None, with the value :data:`OUTLINE` replaced by None."""
     named = {name: value for name, value in asked.items() if value is not None}
     return {
         name: None if isinstance(value, str) and value == OUTLINE else value for name, value in named.items()
     }
 
 
-def fixture_supports(
+def find_fixture_supports(
     fixture: Fixture,
     thickness: float | None = None,
     *,
@@ -172,13 +175,16 @@ def fixture_supports(
     jaw_force: float | None = None,
     **asked: Any,
 ) -> Supports:
-    """The supports of a fixture, see :meth:`workhold.Fixture.supports`."""
+    """Return the best sets of three supports under a fixture, see :meth:`workhold.Fixture.supports`.
+
+    ``best`` is how many sets; None for all.
+    """
     query = fixture.listing.result.query
-    request = make_request(query, thickness, given(asked))
-    return supports_of(fixture, query, request, loads, jaw_force, check_count("best", best))
+    request = make_request(query, thickness, select_given(asked))
+    return find_supports(fixture, query, request, loads, jaw_force, check_count("best", best))
 
 
-def result_supports(
+def find_result_supports(
     result: Result,
     thickness: float | None = None,
     *,
@@ -188,13 +194,13 @@ def result_supports(
     jaw_force: float | None = None,
     **asked: Any,
 ) -> tuple[Supports, ...]:
-    """The supports of the best fixtures of a result.
+    """Return the supports of each of the best fixtures of a result.
 
     Parameters
     ----------
     best : how many fixtures.
-    each : how many sets of three for each of them; the rest as in :meth:`workhold.Fixture.supports`.
+    each : how many sets of three for each of them. The rest is as in :meth:`workhold.Fixture.supports`.
     """
     count, sets = check_count("best", best), check_count("each", each)
-    request, sets = make_request(result.query, thickness, given(asked)), 3 if sets is None else sets
+    request, sets = make_request(result.query, thickness, select_given(asked)), 3 if sets is None else sets
     return tuple(yield_supports(list(islice(result, count)), result.query, request, loads, jaw_force, sets))

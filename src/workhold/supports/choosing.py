@@ -1,9 +1,10 @@
-"""The best few triples of supports, or all of them in order, looked at in blocks that need little memory.
+"""The choice of the best few triples of supports, or all of them in order, in blocks that need little memory.
 
-Sum max(r_j, 0) bounds the clamp force that a triple needs from below, wherever the clamp stands. The force on
-a support is at least what loads alone press on it, and at least a third of what all three carry. The tipping
-arm is at most the radius of the incircle. So a triple whose bounds come after the last of the best so far is
-left out, and the clamp's best point is sought for the others only. Where the point is given all is known.
+Sum max(r_j, 0) is a lower bound of the clamp force that a triple needs, wherever the clamp stands. The force
+on a support is at least what loads alone press on it, and at least a third of what all three carry. The
+tipping arm is at most the radius of the incircle. So triples whose bounds come after the last of the best so
+far are left out, and the clamp's best point is sought for the others only. Where the clamp's point is given,
+the bounds are exact.
 """
 
 from __future__ import annotations
@@ -22,59 +23,71 @@ from numpy.typing import NDArray
 from workhold.conventions import FIGURE_DECIMALS, GAP_SLACK
 from workhold.errors import InputError
 from workhold.supports.clamp_point import RankedPlaces
-from workhold.supports.forces import Corners, Sides, Triangles
+from workhold.supports.forces import CornerTriples, HoleSides, Triangles
 from workhold.supports.holes import CarrierRoom
 
-__all__ = ["MOST_LISTED", "BoundFigures", "Chosen", "Stop", "TripleChoice", "WorkLimit", "coarse"]
+__all__ = [
+    "MOST_LISTED",
+    "BoundFigures",
+    "ChosenTriples",
+    "Stop",
+    "TripleChoice",
+    "WorkLimit",
+    "round_coarsely",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Key = tuple[float, ...]
 Ranked = tuple[Key, tuple[int, ...]]
-# Triples of so many holes are looked at in one block; of more, those of one hole after the other, so
-# many at a time.
+# Up to FEW_HOLES holes all triples are one block; with more, each hole's triples are blocks of AT_ONCE at
+# most.
 FEW_HOLES, AT_ONCE = 48, 1 << 16
-# Triples for which the clamp's best point is sought at a time, first and later.
+# Number of triples for which the clamp's best point is sought at a time, at first and later.
 FIRST, LATER = 12, 256
-# A list of more is of no use to anybody, and would not fit the memory.
+# Largest number of triples that are listed; more would be useless, and not fit the memory.
 MOST_LISTED = 150_000
 COARSE = 2
-# Bounds and figures agree to this share.
+# Relative rounding error between bounds and figures.
 ROUNDING = 1e-9
 
 
-def coarse(value: float) -> float:
-    """A figure to two significant digits, as the ranking counts it; a force below 1e-9 is none."""
+def round_coarsely(value: float) -> float:
+    """Return a figure rounded to two significant digits, as the ranking compares it; below 1e-9 it is 0."""
     return float(f"{value:.{COARSE - 1}e}") if abs(value) > 10.0**-FIGURE_DECIMALS else 0.0
 
 
 def bound_coarse_figure(value: float) -> tuple[float, float]:
-    """Between which figures all that count as a coarse one lie: all below the first count as less."""
+    """Return (low, high) of the figures that round to a given coarse one, for :func:`round_coarsely`.
+
+    Figures below low round to less, above high to more.
+    """
     if value <= 0.0:
         return 0.0, 10.0**-FIGURE_DECIMALS
     half = 0.5 * 10.0 ** (floor(log10(value * (1 + ROUNDING))) - COARSE + 1)
     # Below a power of ten figures are ten times as fine.
-    below = half * 0.1 if coarse(value - half * 0.2) != coarse(value) else half
+    below = half * 0.1 if round_coarsely(value - half * 0.2) != round_coarsely(value) else half
     return value - min(half, below) * (1 - ROUNDING), value + half * (1 + ROUNDING)
 
 
 @define(eq=False)
 class WorkLimit:
-    """Stops the search of the sets under several fixtures once so many places of the clamp were looked at.
+    """A limit on the search of supports under several fixtures, by a count of examined places of the clamp.
 
-    It counts, and looks at no clock: the same is found every time.
+    Unlike a clock it makes the outcome reproducible.
 
     Parameters
     ----------
-    most : places, of all triples together.
-    done : those that were looked at.
+    most : how many places may be examined, of all triples together.
+    done : how many were examined so far.
     """
 
     most: int
     done: int = 0
 
     def is_set(self) -> bool:
+        """Return whether the limit is reached."""
         return self.done >= self.most
 
 
@@ -84,39 +97,41 @@ Stop: TypeAlias = Event | WorkLimit
 
 @lru_cache(maxsize=4)
 def list_triples(count: int) -> IntArray:
-    """All three numbers (N, 3) below a count, in order."""
+    """Return all combinations (N, 3) of three numbers from 0
+    to count - 1 in lexicographic order, read-only and cached.
+    """
     out = np.array(list(combinations(range(count), 3)), np.int64).reshape(-1, 3)
     out.setflags(write=False)
     return out
 
 
 @define(frozen=True, eq=False)
-class Chosen:
-    """Triples in order of their rank.
+class ChosenTriples:
+    """Triples of holes in the order of their rank.
 
     Parameters
     ----------
-    corners : the triples.
-    count : how many are valid; None where not all were looked at.
-    stopped : whether it was stopped before the end.
+    corners : the triples, best first.
+    count : how many valid triples there are in all; None where not all were examined.
+    stopped : whether the search was stopped early.
     """
 
-    corners: Corners
+    corners: CornerTriples
     count: int | None
     stopped: bool
 
 
 @define(frozen=True, eq=False)
 class BoundFigures:
-    """Figures of N triples that decide their order; forces are 0 without loads.
+    """Figures of N triples that decide their order; forces in N are 0 without loads, lengths in mm.
 
     Parameters
     ----------
-    falls : 1.0 for those from which the part falls over before it is clamped.
-    late : 1.0 for those over which the clamp may not stand at the point asked for.
+    falls : 1.0 where the part falls over before it is clamped, else 0.0.
+    late : 1.0 where the clamp may not stand at the point asked for, else 0.0.
     hang : class of the clamp's place, see :class:`RankedPlaces`.
     need, force : clamp force needed, and the largest force on a support.
-    arm, standing : tipping arm, and how far the centre of area is inside.
+    arm, standing : tipping arm, and how far the centre of area is inside the triangle.
     """
 
     falls: Array
@@ -129,27 +144,28 @@ class BoundFigures:
 
     @property
     def classes(self) -> tuple[Array, Array, Array]:
-        """What decides before all figures, first to last."""
+        """Figures that count first in the order: falls, late and hang."""
         return self.falls, self.late, self.hang
 
     def take(self, rows: NDArray[np.intp] | Flags) -> BoundFigures:
+        """Return the figures of the rows that an index array or a mask selects."""
         every = (*self.classes, self.need, self.force, self.arm, self.standing)
         return BoundFigures(*(one[rows] for one in every))
 
-    def sorted_rows(self) -> NDArray[np.intp]:
-        """The rows (N,) from the best figures to the worst, but for how they are rounded."""
+    def sort_rows(self) -> NDArray[np.intp]:
+        """Return the indices (N,) that sort the rows best first, by figures that are not rounded."""
         return np.lexsort((-self.arm, self.force, self.need, self.hang, self.late, self.falls))
 
 
 @define(eq=False)
-class Kept:
-    """The best triples so far, or all, with the keys that they are ranked by.
+class KeptTriples:
+    """The best triples so far, or all, with their ranking keys.
 
     Parameters
     ----------
-    limit : how many; None for all.
-    found : keys and numbers of holes.
-    left_out : whether there may be others.
+    limit : how many are kept; None for all.
+    found : (key, numbers of holes); ascending if there is a limit.
+    left_out : whether valid triples may have been left out.
     """
 
     limit: int | None
@@ -158,16 +174,16 @@ class Kept:
 
     @property
     def last(self) -> Key | None:
-        """The key that a triple has to come before; None while there is room for more."""
+        """Key that a further triple must come before; None while there is room."""
         return self.found[-1][0] if self.found and len(self.found) == self.limit else None
 
-    def add(self, ranked: list[Ranked]) -> None:
-        """Adds triples.
+    def add_ranked(self, ranked: list[Ranked]) -> None:
+        """Add triples, and keep the best of all.
 
         Raises
         ------
         InputError
-            For more than can be listed.
+            For more than :data:`MOST_LISTED` without a limit.
         """
         self.found += ranked
         if self.limit is not None:
@@ -182,17 +198,17 @@ class Kept:
 
 @define(frozen=True, eq=False)
 class TripleChoice:
-    """The triples of one fixture.
+    """The choice of triples of supports under one fixture.
 
     Parameters
     ----------
-    sides, room, places : of the holes, of the carriers, and of the tip.
+    sides, room, places : the holes' sides, the carriers' room, and the places for the clamp's tip.
     inside : least distance of the clamp from a side, in mm.
-    center : (2,) of the part's area, in mm in the part's coordinates.
-    point : where the clamp stands; None where it is free.
+    center : (2,) centre of the part's area, in mm in the part's coordinates.
+    point : (2,) where the clamp should stand; None where it is free.
     """
 
-    sides: Sides
+    sides: HoleSides
     room: CarrierRoom
     places: RankedPlaces
     inside: float
@@ -202,67 +218,71 @@ class TripleChoice:
     point_class: float = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        allowed = self.point is not None and bool(self.places.allows(self.point[None])[0])
+        allowed = self.point is not None and bool(self.places.find_allowed(self.point[None])[0])
         object.__setattr__(self, "point_allowed", allowed)
-        of_point = 0.0 if self.point is None else float(self.places.class_of(self.point[None])[0])
+        of_point = 0.0 if self.point is None else float(self.places.find_classes(self.point[None])[0])
         object.__setattr__(self, "point_class", of_point)
 
-    def chosen(
+    def choose(
         self,
         best: int | None,
         cancel: Stop | None = None,
         progress: Callable[[float], None] | None = None,
-    ) -> Chosen:
-        """The best triples, or all.
+    ) -> ChosenTriples:
+        """Return the best triples, or all, best first.
 
         Parameters
         ----------
         best : how many; None for all.
-        cancel : when set, it stops soon, with the best of those looked at.
+        cancel : when set, the search stops soon with the best of those examined.
         progress : called with the fraction done.
 
         Raises
         ------
         InputError
-            For all of too many.
+            For more than :data:`MOST_LISTED` where all are asked for.
         """
-        kept = Kept(best)
+        kept = KeptTriples(best)
         stopped = False
-        for fraction, triples in () if self.places.is_empty else self.blocks():
+        for fraction, triples in () if self.places.is_empty else self.iterate_blocks():
             if cancel is not None and cancel.is_set():
                 stopped = True
                 break
-            corners = self.sides.corners(triples, self.inside)
-            bounds = self.bounds(corners)
-            order = self.open_rows(bounds, np.arange(len(corners.numbers)), kept)
-            order = order[bounds.take(order).sorted_rows()]
+            corners = self.sides.make_corners(triples, self.inside)
+            bounds = self.bound_figures(corners)
+            order = self.find_open_rows(bounds, np.arange(len(corners.numbers)), kept)
+            order = order[bounds.take(order).sort_rows()]
             step = LATER if best is None else max(FIRST, best)
             while len(order):
                 rows, order, step = order[:step], order[step:], LATER
                 kept.left_out |= kept.last is not None
-                kept.add(self.judged(corners.take(rows), kept.last))
+                kept.add_ranked(self.judge_triples(corners.take(rows), kept.last))
                 if isinstance(cancel, WorkLimit):
                     cancel.done += len(rows) * self.places.candidate_count
-                order = self.open_rows(bounds, order, kept)
+                order = self.find_open_rows(bounds, order, kept)
             if progress is not None:
                 progress(fraction)
         if progress is not None and not stopped:
             progress(1.0)
         numbers = np.array([holes for _, holes in sorted(kept.found)], np.int64).reshape(-1, 3)
         count = None if kept.left_out or stopped else len(numbers)
-        return Chosen(self.sides.corners(numbers, self.inside), count, stopped)
+        return ChosenTriples(self.sides.make_corners(numbers, self.inside), count, stopped)
 
-    def open_rows(self, bounds: BoundFigures, rows: NDArray[np.intp], kept: Kept) -> NDArray[np.intp]:
-        """The rows of triples that may come before the last of those kept."""
+    def find_open_rows(
+        self, bounds: BoundFigures, rows: NDArray[np.intp], kept: KeptTriples
+    ) -> NDArray[np.intp]:
+        """Return those of ``rows`` whose bounds allow a rank before the last triple kept."""
         if kept.last is None:
             return rows
-        entering = self.entering(bounds.take(rows), kept.last)
+        entering = self.find_entering(bounds.take(rows), kept.last)
         kept.left_out |= not entering.all()
         return rows[entering]
 
-    def blocks(self) -> Iterator[tuple[float, IntArray]]:
-        """Triples (N, 3) of holes any two of which may be used, in order, with the fraction done after."""
-        pairs = self.room.pairs()
+    def iterate_blocks(self) -> Iterator[tuple[float, IntArray]]:
+        """Yield (fraction done after it, triples (N, 3)) of holes
+        that are pairwise compatible, in lexicographic order.
+        """
+        pairs = self.room.find_compatible_pairs()
         count = len(pairs)
         if count <= FEW_HOLES:
             triples = list_triples(count)
@@ -278,60 +298,73 @@ class TripleChoice:
                 one, other = beside[j[first : first + AT_ONCE]], beside[k[first : first + AT_ONCE]]
                 yield done, np.stack([np.full(len(one), i), one, other], axis=1)
 
-    def bounds(self, corners: Corners) -> BoundFigures:
-        """What the figures of triples cannot be better than; where the point is given, what they are."""
+    def bound_figures(self, corners: CornerTriples) -> BoundFigures:
+        """Return bounds that the figures of triples cannot be better than.
+
+        Where the clamp may stand at the point asked for, they are the figures themselves.
+        """
         count = len(corners.numbers)
         late, hang, need, force = (np.zeros(count) for _ in range(4))
-        arm, standing = self.sides.incircle(corners), self.standing(corners)
-        given = self.given_at(corners)
+        arm, standing = self.sides.compute_incircles(corners), self.measure_standing(corners)
+        given = self.find_allowed_at_given(corners)
         if self.point is not None:
             late = (~given).astype(np.float64)
         if self.sides.loads:
-            reach, most = self.sides.reach(corners), self.sides.largest(corners)
-            need = row_sum(np.maximum(reach, 0.0))
-            force = np.maximum(most.max(axis=1), (need + row_sum(most)) / 3)
+            reach, most = (
+                self.sides.compute_contact_forces(corners),
+                self.sides.compute_largest_forces(corners),
+            )
+            need = sum_columns(np.maximum(reach, 0.0))
+            force = np.maximum(most.max(axis=1), (need + sum_columns(most)) / 3)
         if given.any():
             own = corners.take(given)
-            need[given], force[given], arm[given] = self.figures_at(own, self.given_points(own))
+            need[given], force[given], arm[given] = self.compute_figures(own, self.repeat_given_point(own))
             hang[given] = self.point_class
         return BoundFigures(falls_over(standing), late, hang, need, force, arm, standing)
 
-    def standing(self, corners: Corners) -> Array:
-        """How far (N,) in mm the centre of area is inside the triangles, as far as it counts."""
-        inside = self.sides.distances(corners, self.center).min(axis=1)
+    def measure_standing(self, corners: CornerTriples) -> Array:
+        """Return how far (N,) in mm the centre of area is inside the triangles, rounded; negative outside."""
+        inside = self.sides.measure_distances(corners, self.center).min(axis=1)
         return np.asarray(np.round(inside, FIGURE_DECIMALS))
 
-    def given_at(self, corners: Corners) -> Flags:
-        """Over which triples (N,) the clamp may stand at the point asked for; none where none was."""
+    def find_allowed_at_given(self, corners: CornerTriples) -> Flags:
+        """Return over which triples (N,) the clamp may stand at the
+        point asked for; all False where no point was asked for.
+        """
         if self.point is None or not self.point_allowed:
             return np.zeros(len(corners.numbers), np.bool_)
-        return np.asarray(self.sides.distances(corners, self.point).min(axis=1) >= self.inside - GAP_SLACK)
+        return np.asarray(
+            self.sides.measure_distances(corners, self.point).min(axis=1) >= self.inside - GAP_SLACK
+        )
 
-    def given_points(self, corners: Corners) -> Array:
-        """The point asked for, for each triple (N, 2)."""
+    def repeat_given_point(self, corners: CornerTriples) -> Array:
+        """Return the point asked for, repeated for each triple (N, 2); zeros where none was."""
         return np.broadcast_to(np.zeros(2) if self.point is None else self.point, (len(corners.numbers), 2))
 
-    def figures_at(self, corners: Corners, points: Array) -> tuple[Array, Array, Array]:
-        """Clamp force needed, largest support force at it, and arm (N,) with the clamp at points (N, 2)."""
-        sides = self.sides.distances(corners, points)
+    def compute_figures(self, corners: CornerTriples, points: Array) -> tuple[Array, Array, Array]:
+        """Return clamp force needed in N, largest support force at it in N, and tipping arm in mm, (N,) each.
+
+        The clamp stands at points (N, 2). Without loads the forces are 0.
+        """
+        sides = self.sides.measure_distances(corners, points)
         arm = sides.min(axis=1)
         if not self.sides.loads:
             return np.zeros(len(arm)), np.zeros(len(arm)), arm
         shares = sides / corners.heights
         with np.errstate(divide="ignore", invalid="ignore"):
-            need = np.maximum((self.sides.reach(corners) / shares).max(axis=1), 0.0)
-            force = (need[:, None] * shares + self.sides.largest(corners)).max(axis=1)
+            need = np.maximum((self.sides.compute_contact_forces(corners) / shares).max(axis=1), 0.0)
+            force = (need[:, None] * shares + self.sides.compute_largest_forces(corners)).max(axis=1)
         return need, np.maximum(force, 0.0), arm
 
-    def entering(self, bounds: BoundFigures, last: Key) -> Flags:
-        """Which triples (N,) may come before one of a key, by bounds of their figures."""
+    def find_entering(self, bounds: BoundFigures, last: Key) -> Flags:
+        """Return which triples (N,) may rank before the key ``last``, by bounds of their figures."""
         count = len(bounds.classes)
         keys: list[tuple[Array, float, float]] = [
             (value, one, one) for value, one in zip(bounds.classes, last[:count], strict=True)
         ]
         figures = last[count:]
         if self.sides.loads:
-            # Forces of loads, then minus the arm and minus the standing.
+            # Keys: forces, then the negated arm, then the negated standing.
             keys += [
                 (value, *bound_coarse_figure(one))
                 for value, one in zip((bounds.need, bounds.force), figures[:2], strict=True)
@@ -350,86 +383,108 @@ class TripleChoice:
             open_ &= (value >= low - slack) & (value <= high + slack)
         return out | open_
 
-    def arms(self, corners: Corners) -> tuple[Array, Array, Array]:
-        """The best points (N, 2) for the tipping arm, the arms, and the classes of the points.
+    def find_best_arms(self, corners: CornerTriples) -> tuple[Array, Array, Array]:
+        """Return the points (N, 2) with the largest tipping arm,
+        the arms (N,) in mm, and the classes (N,) of the points.
 
-        An arm is 0 where the clamp may stand nowhere.
+        The arm is 0 where the clamp may stand nowhere.
         """
-        some = self.triangles(corners)
-        points, value, classes = self.places.best(some, some.steepness, self.inside)
+        some = self.make_triangles(corners)
+        points, value, classes = self.places.find_best(some, some.steepness, self.inside)
         return points, 1.0 / value, classes
 
-    def least_forces(self, corners: Corners) -> tuple[Array, Array, Array]:
-        """The points (N, 2) of the least clamp force, that force, and the classes of the points.
+    def find_least_forces(self, corners: CornerTriples) -> tuple[Array, Array, Array]:
+        """Return the points (N, 2) with the least clamp force,
+        the forces (N,) in N, and the classes (N,) of the points.
 
-        Points are NaN where none is needed, and the class is the first.
+        Where no clamp is needed the point is NaN, and the force and the class are 0; where it may stand
+        nowhere the force is inf.
         """
-        reach = self.sides.reach(corners) if self.sides.loads else np.zeros(corners.heights.shape)
+        reach = (
+            self.sides.compute_contact_forces(corners)
+            if self.sides.loads
+            else np.zeros(corners.heights.shape)
+        )
         points, need, classes = np.full((len(reach), 2), np.nan), np.zeros(len(reach)), np.zeros(len(reach))
         some: Flags = np.asarray((reach > 0.0).any(axis=1))
         if some.any():
-            points[some], need[some], classes[some] = self.places.best(
-                self.triangles(corners.take(some)), reach[some], self.inside
+            points[some], need[some], classes[some] = self.places.find_best(
+                self.make_triangles(corners.take(some)), reach[some], self.inside
             )
         return points, need, classes
 
-    def triangles(self, corners: Corners) -> Triangles:
-        return Triangles.of(self.sides.points[corners.numbers])
+    def make_triangles(self, corners: CornerTriples) -> Triangles:
+        """Return the triangles of corner triples."""
+        return Triangles.from_corners(self.sides.points[corners.numbers])
 
-    def judged(self, corners: Corners, last: Key | None) -> list[Ranked]:
-        """Keys and holes of triples that are valid and may come before the last of the best so far."""
-        corners = corners.take(self.room.standing(corners.numbers).fits)
-        given = self.given_at(corners)
+    def judge_triples(self, corners: CornerTriples, last: Key | None) -> list[Ranked]:
+        """Return (key, holes) of the triples that are valid and
+        may rank before the key ``last``; None for no such key.
+        """
+        corners = corners.take(self.room.find_standing(corners.numbers).fits)
+        given = self.find_allowed_at_given(corners)
         out: list[Ranked] = []
         if given.any():
             own = corners.take(given)
             of_point = np.full(len(own.heights), self.point_class)
-            out += self.keyed(own, 0.0, of_point, *self.figures_at(own, self.given_points(own)))
+            out += self.make_keys(
+                own, 0.0, of_point, *self.compute_figures(own, self.repeat_given_point(own))
+            )
         own = corners.take(~given)
         late = 0.0 if self.point is None else 1.0
-        points, need, hang = self.least_forces(own)
+        points, need, hang = self.find_least_forces(own)
         usable: Flags = np.isfinite(need)
         own, points, need, hang = own.take(usable), points[usable], need[usable], hang[usable]
         # No clamp is needed anywhere: the arm alone says where it stands.
         free = np.isnan(points[:, 0])
         force = np.zeros(len(need))
         if self.sides.loads:
-            known = self.figures_at(own.take(~free), points[~free])
+            known = self.compute_figures(own.take(~free), points[~free])
             force[~free] = known[1]
-            force[free] = np.maximum(self.sides.largest(own.take(free)).max(axis=1), 0.0)
+            force[free] = np.maximum(self.sides.compute_largest_forces(own.take(free)).max(axis=1), 0.0)
         if last is not None:
-            some = self.bounds(own)
+            some = self.bound_figures(own)
             lates = np.full(len(need), late)
             figures = BoundFigures(some.falls, lates, hang, need, force, some.arm, some.standing)
-            better = self.entering(figures, last)
+            better = self.find_entering(figures, last)
             own, need, force = own.take(better), need[better], force[better]
-        _, arm, hang = self.arms(own)
+        _, arm, hang = self.find_best_arms(own)
         usable = arm > 0.0
-        return out + self.keyed(
+        return out + self.make_keys(
             own.take(usable), late, hang[usable], need[usable], force[usable], arm[usable]
         )
 
-    def keyed(
-        self, corners: Corners, late: float, hang: Array, need: Array, force: Array, arm: Array
+    def make_keys(
+        self, corners: CornerTriples, late: float, hang: Array, need: Array, force: Array, arm: Array
     ) -> list[Ranked]:
-        standing = self.standing(corners)
+        """Return (key, holes) of triples from their figures (N,); smaller keys are better.
+
+        ``late`` is 1.0 for triples over which the clamp cannot stand at the point asked for.
+        """
+        standing = self.measure_standing(corners)
         falls = falls_over(standing)
         out: list[Ranked] = []
         for k, row in enumerate(corners.numbers.tolist()):
             classes, stands = (float(falls[k]), late, float(hang[k])), -float(standing[k])
             if self.sides.loads:
-                figures = (coarse(need[k]), coarse(force[k]), -round(float(arm[k]), FIGURE_DECIMALS))
+                figures = (
+                    round_coarsely(need[k]),
+                    round_coarsely(force[k]),
+                    -round(float(arm[k]), FIGURE_DECIMALS),
+                )
                 out.append(((*classes, *figures, stands), tuple(row)))
             else:
-                out.append(((*classes, -coarse(arm[k]), stands), tuple(row)))
+                out.append(((*classes, -round_coarsely(arm[k]), stands), tuple(row)))
         return out
 
 
 def falls_over(standing: Array) -> Array:
-    """1.0 for triples (N,) from which the part falls over before it is clamped, 0.0 for others."""
+    """Return 1.0 (N,) for triples from which the part falls
+    over before it is clamped (standing < 0), else 0.0.
+    """
     return np.asarray(standing < 0.0, np.float64)
 
 
-def row_sum(values: Array) -> Array:
-    """Sums (N,) of three columns."""
+def sum_columns(values: Array) -> Array:
+    """Return the sums (N,) of the three columns of (N, 3)."""
     return np.asarray(values[:, 0] + values[:, 1] + values[:, 2])

@@ -1,11 +1,13 @@
-"""Faces that pads and a tip may touch, and how large a disc about a point lies wholly on them.
+"""Faces that pads and a tip may touch, and the radius of the largest disc about a point that lies on one of
+them.
 
-A face is an outer loop less its openings; keep-out zones are taken off. The room at a point is the distance
-to the nearest border of the face that it lies on, negative off all. Parity of crossings with the chords,
-changed once between each arc and its chord, says which side a point is on.
+A face is the region in an outer loop without its openings; keep-out zones are excluded. The room at a point
+is the distance to the nearest border of the face that it lies on, negative off all faces. Which side of a
+border a point is on is decided by the parity of crossings with the chords, corrected between each arc and its
+chord.
 
-Regions that have a height of such a face keep the clamp on top away from places on it. A head keeps off what
-rises above the face. A tip presses better where it keeps off what of the face hangs.
+Regions at the height of a face also restrict the clamp on top: its head must keep clear of what rises above
+the face, and its tip presses better where it keeps clear of overhangs.
 """
 
 from __future__ import annotations
@@ -17,21 +19,21 @@ import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
 
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Arc, Segment
 
-__all__ = ["Curve", "FaceBorders", "LevelRegions", "TouchableFace", "area_center", "offset_curves"]
+__all__ = ["Curve", "FaceBorders", "LevelRegions", "TouchableFace", "compute_area_center", "offset_curves"]
 
 Array = NDArray[np.float64]
 Loop = Sequence[Segment]
 Curve = tuple[float, float, float]
-# In mm: less than what decides, and more than rounding.
+# mm. A shift of points that is above rounding and below what matters.
 HAIR = 1.3e-10
-# How far beside a loop a point is asked for that says what the loop borders, in mm.
+# mm. Distance beside a loop of the point that tells what the loop borders.
 BESIDE = 1e-4
 # Sine of the turn from one segment into the next below which there is no corner between them.
 SMOOTH = 1e-12
-# Zones that are held against points together, and only against those near them.
+# Number of zones in a group; only points near the group are tested against it.
 TOGETHER = 16
 # Points times segments that are looked at together.
 AT_ONCE = 1 << 20
@@ -39,11 +41,16 @@ AT_ONCE = 1 << 20
 
 @define(frozen=True, eq=False)
 class FaceBorders:
-    """B closed loops as arrays of all their S segments, of which A are arcs; lengths in mm.
+    """B closed loops as arrays of all their S segments; lengths in mm.
 
     Parameters
     ----------
-    loops : their segments.
+    loops : the segments of each loop.
+    first : (B,) index of each loop's first segment.
+    starts, ends : (S, 2) end points of segments.
+    straight, curved : indices of the lines, and of the A arcs.
+    arcs : (A, 6) centre, radius, middle angle, half sweep in radians, sign.
+    arcs_of : (A, B) 1.0 where the arc is of the loop.
     """
 
     loops: tuple[tuple[Segment, ...], ...]
@@ -77,7 +84,10 @@ class FaceBorders:
             object.__setattr__(self, name, value)
 
     def contains(self, points: Array) -> NDArray[np.bool_]:
-        """Whether points (N, 2) lie within each loop (N, B); moved a hair: on a chord parity says nothing."""
+        """Return whether (N, B) points (N, 2) lie within each loop.
+
+        Points are shifted by 1e-10 mm, as crossings do not tell for points on a chord.
+        """
         x, y = points[:, :1] + HAIR, points[:, 1:] + 0.6 * HAIR
         (x0, y0), (x1, y1) = self.starts.T, self.ends.T
         crosses = (y0 > y) != (y1 > y)
@@ -92,8 +102,8 @@ class FaceBorders:
             odd = odd + (thin @ self.arcs_of).astype(np.int64)
         return np.asarray(odd % 2 == 1)
 
-    def distance(self, points: Array) -> Array:
-        """Distances (N, B) in mm of points (N, 2) from the loops."""
+    def measure_distances(self, points: Array) -> Array:
+        """Return distances (N, B) in mm of points (N, 2) from each loop, never negative."""
         out = np.empty((len(points), len(self.starts)))
         x, y = points[:, :1], points[:, 1:]
         if len(self.straight):
@@ -109,16 +119,19 @@ class FaceBorders:
             out[:, self.curved] = np.where(turned <= half, np.abs(np.hypot(x - cx, y - cy) - radius), to_ends)
         return np.asarray(np.minimum.reduceat(out, self.first, axis=1))
 
-    def inside(self, points: Array) -> Array:
-        """Distances (N, B) of points (N, 2) from the loops, negative outside them."""
+    def measure_depths(self, points: Array) -> Array:
+        """Return distances (N, B) in mm of points (N, 2) from each loop, negative outside it."""
         step = max(1, AT_ONCE // max(1, len(self.starts)))
         blocks = (points[k : k + step] for k in range(0, len(points), step))
-        signed = [np.where(self.contains(some), 1.0, -1.0) * self.distance(some) for some in blocks]
+        signed = [np.where(self.contains(some), 1.0, -1.0) * self.measure_distances(some) for some in blocks]
         return np.concatenate([np.empty((0, len(self.loops))), *signed])
 
 
-def box_of(loops: Sequence[Loop]) -> tuple[Array, Array]:
-    """The least and the greatest x and y that loops may have; a point where there are none."""
+def compute_box(loops: Sequence[Loop]) -> tuple[Array, Array]:
+    """Return (least x and y, largest x and y) of a box around loops; the origin twice without loops.
+
+    Arcs count as whole circles.
+    """
     points = [] if loops else [(0.0, 0.0)]
     for one in (one for loop in loops for one in loop):
         points.append(one.start)
@@ -129,24 +142,24 @@ def box_of(loops: Sequence[Loop]) -> tuple[Array, Array]:
     return every.min(axis=0), every.max(axis=0)
 
 
-def beside(loop: Loop) -> tuple[float, float]:
-    """A point just to the left of a loop."""
-    (x, y), (nx, ny) = loop[0].middle, loop[0].normal()
+def find_point_beside(loop: Loop) -> tuple[float, float]:
+    """Return a point 1e-4 mm to the left of a loop's first segment."""
+    (x, y), (nx, ny) = loop[0].middle, loop[0].compute_normal()
     return x - BESIDE * nx, y - BESIDE * ny
 
 
-def grouped(loops: Sequence[Loop]) -> list[list[int]]:
-    """Numbers of the loops of each face, its border before its openings; the first loop is a border.
+def group_by_face(loops: Sequence[Loop]) -> list[list[int]]:
+    """Return, for each face, the indices of its loops: its border first, then its openings.
 
-    Of the others those that run clockwise are openings. So are those on a face, however they run; all that
-    remain are borders, such as that of the top of a boss within the opening that it leaves.
+    The first loop is a border. Others are openings if they run clockwise or lie directly on a face; the rest
+    are borders, such as that of the top of a boss within the opening that it leaves.
     """
     areas = [compute_signed_area(loop) for loop in loops]
     within = FaceBorders(tuple(map(tuple, loops))).contains(
-        np.array([beside(loop) for loop in loops]).reshape(-1, 2)
+        np.array([find_point_beside(loop) for loop in loops]).reshape(-1, 2)
     )
     faces: list[list[int]] = []
-    # From the largest; of two alike the opening before the face that lies in it.
+    # Largest first; of equal ones the opening before the face that lies in it.
     for number in sorted(range(len(loops)), key=lambda k: (-abs(areas[k]), areas[k])):
         inside = within[number]
         # The last face is the smallest.
@@ -160,14 +173,15 @@ def grouped(loops: Sequence[Loop]) -> list[list[int]]:
 
 @define(frozen=True, eq=False)
 class TouchableFace:
-    """Faces side by side or above one another, less their keep-out zones; a disc lies on one of them.
+    """Faces side by side or above one another, with keep-out
+    zones; a disc must lie on one face, clear of all zones.
 
     Parameters
     ----------
-    borders : of each face its own before those of its openings, then those of the zones.
-    faces : number of the border that each face begins with.
-    zones : how many of the borders are those of zones.
-    levels : height in mm of each face; None where nobody says.
+    borders : for each face its border and its openings; then those of the zones.
+    faces : index in ``borders`` at which each face begins.
+    zones : how many borders are zones.
+    levels : height in mm of each face; None where not known.
     """
 
     borders: FaceBorders
@@ -176,24 +190,25 @@ class TouchableFace:
     levels: tuple[float | None, ...]
 
     @classmethod
-    def of(
+    def from_loops(
         cls, loops: Sequence[Array], zones: Iterable[Array] = (), heights: Sequence[float] | None = None
     ) -> TouchableFace:
-        """Faces from loops of (x, y, bulge) vertices, the outer one first, and zones as loops.
+        """Return the faces that loops of (x, y, bulge) vertices
+        border, the outer one first, with loops of keep-out zones.
 
-        Without loops there is no face, and no room anywhere.
+        Without loops there is no face.
 
         Parameters
         ----------
-        heights : of the face of each loop in mm; loops of several heights border several faces.
+        heights : of each loop's face, in mm; loops of different heights border different faces.
         """
-        rows = [tuple(loop_segments(np.asarray(loop))) for loop in loops]
-        kept_out = [tuple(loop_segments(np.asarray(zone))) for zone in zones]
+        rows = [tuple(make_loop_segments(np.asarray(loop))) for loop in loops]
+        kept_out = [tuple(make_loop_segments(np.asarray(zone))) for zone in zones]
         of_loops = [None] * len(rows) if heights is None else list(heights)
         faces: list[list[int]] = []
         for level in dict.fromkeys(of_loops):
             own = [number for number, height in enumerate(of_loops) if height == level]
-            faces += [[own[k] for k in face] for face in grouped([rows[number] for number in own])]
+            faces += [[own[k] for k in face] for face in group_by_face([rows[number] for number in own])]
         first = np.cumsum([0, *(len(face) for face in faces)])[:-1]
         ordered = (rows[number] for face in faces for number in face)
         levels = tuple(of_loops[face[0]] for face in faces)
@@ -201,70 +216,76 @@ class TouchableFace:
 
     @cached_property
     def own(self) -> TouchableFace:
-        """The faces without their keep-out zones."""
+        """Same faces without keep-out zones."""
         count = len(self.borders.loops) - self.zones
         return TouchableFace(FaceBorders(self.borders.loops[:count]), self.faces, 0, self.levels)
 
     @cached_property
     def zone_groups(self) -> tuple[tuple[FaceBorders, Array], ...]:
-        """The zones, some at a time, each with the box x0, y0, x1, y1 around these."""
+        """Zones in groups, each with the box (x0, y0, x1, y1) around the group."""
         loops = self.borders.loops[len(self.borders.loops) - self.zones :]
         groups = [FaceBorders(loops[k : k + TOGETHER]) for k in range(0, len(loops), TOGETHER)]
-        return tuple((one, np.concatenate(box_of(one.loops))) for one in groups)
+        return tuple((one, np.concatenate(compute_box(one.loops))) for one in groups)
 
-    def off_zones(self, points: Array, radius: float, slack: float) -> NDArray[np.bool_]:
-        """Whether discs about points (N, 2) keep off all zones, but for a slack in mm."""
+    def find_off_zones(self, points: Array, radius: float, slack: float) -> NDArray[np.bool_]:
+        """Return whether (N,) discs of a radius about points
+        (N, 2) overlap no zone by more than ``slack``, in mm.
+        """
         out = np.ones(len(points), np.bool_)
         for borders, (x0, y0, x1, y1) in self.zone_groups:
             x, y = points.T
             near = (x > x0 - radius) & (x < x1 + radius) & (y > y0 - radius) & (y < y1 + radius)
             some = np.flatnonzero(out & near)
-            off = (-borders.inside(points[some])).min(axis=1, initial=np.inf)
+            off = (-borders.measure_depths(points[some])).min(axis=1, initial=np.inf)
             out[some[off - radius < -slack]] = False
         return out
 
-    def rooms(self, points: Array) -> tuple[Array, Array]:
-        """Radii of the largest discs about points (N, 2) on each face (N, F), and of those off all zones (N,).
+    def measure_rooms(self, points: Array) -> tuple[Array, Array]:
+        """Return radii in mm of the largest discs about points
+        (N, 2) on each face (N, F), and clear of all zones (N,).
 
-        They are negative off the face, and in a zone.
+        They are negative off the face, and in a zone; inf where there is no zone.
         """
-        signed = -self.borders.inside(points)
+        signed = -self.borders.measure_depths(points)
         signed[:, list(self.faces)] *= -1.0
         count = signed.shape[1] - self.zones
         on: Array = np.minimum.reduceat(signed[:, :count], self.faces, axis=1)
         return on, np.asarray(signed[:, count:].min(axis=1, initial=np.inf))
 
-    def room(self, points: Array) -> Array:
-        """Radii (N,) of the largest discs about points (N, 2) that lie on a face, negative off all."""
-        on, off = self.rooms(points)
+    def measure_room(self, points: Array) -> Array:
+        """Return radii (N,) in mm of the largest discs about points
+        (N, 2) on a face and clear of zones; negative off all faces.
+        """
+        on, off = self.measure_rooms(points)
         return np.asarray(np.minimum(on.max(axis=1, initial=-np.inf), off))
 
     @property
     def box(self) -> tuple[Array, Array]:
-        """The least and the greatest x and y that the faces may have; a point where there is no face."""
-        return box_of([self.borders.loops[number] for number in self.faces])
+        """Box around the faces: (least x and y, largest x and y); the origin twice without faces."""
+        return compute_box([self.borders.loops[number] for number in self.faces])
 
-    def face_of(self, border: int) -> int | None:
-        """The number of the face that a border belongs to; None of a zone's."""
+    def find_face(self, border: int) -> int | None:
+        """Return the index of the face that a border belongs to; None for a zone's."""
         if border >= len(self.borders.loops) - self.zones:
             return None
         return int(np.searchsorted(self.faces, border, side="right")) - 1
 
     def is_on_left(self, border: int) -> bool:
-        """Whether a disc that keeps to the faces and off the zones is on the left of a border."""
+        """Return whether the allowed side, on the face and off the zones, is on the left of a border."""
         return (compute_signed_area(self.borders.loops[border]) > 0) == (border in self.faces)
 
 
 def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], list[Curve]]:
-    """Lines, unit normal and distance, and circles on which the middle of a disc is that touches a loop.
+    """Return lines (unit normal, distance) and circles (centre,
+    radius) that contain the centres of discs touching a loop.
 
-    ``left`` says whether the disc is on the left of the loop.
+    The discs have a radius in mm and are on the left of the loop if ``left``.
     """
     lines: list[Curve] = []
     circles: list[Curve] = []
     grown = [grow_radius(one, radius, left) for one in loop]
     for number, one in enumerate(loop):
-        # Where a border goes on smoothly, a disc that touches the joint touches both pieces of it.
+        # At a smooth joint a disc that touches the joint touches both segments, so no circle is needed.
         if grown[number] <= 0.0 or grown[number - 1] <= 0.0 or not is_smooth(loop[number - 1], one):
             circles.append((*one.start, radius))
         if isinstance(one, Arc):
@@ -279,25 +300,30 @@ def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], l
 
 
 def grow_radius(one: Segment, radius: float, left: bool) -> float:
-    """Radius of the circle on which the middle of a disc is that touches an arc, infinite of a line."""
+    """Return the radius in mm of the circle of centres of discs
+    that touch an arc, 0 or less if there is none; inf for a line.
+    """
     if not isinstance(one, Arc):
         return np.inf
     return one.radius - radius if (one.sign > 0) == left else one.radius + radius
 
 
 def is_smooth(one: Segment, after: Segment) -> bool:
-    """Whether a border has no corner between two of its segments."""
-    (x, y), (to_x, to_y) = one.normal(find_last_parameter(one)), after.normal(-find_last_parameter(after))
+    """Return whether a border has no corner from segment ``one`` to the segment after it."""
+    (x, y), (to_x, to_y) = (
+        one.compute_normal(find_last_parameter(one)),
+        after.compute_normal(-find_last_parameter(after)),
+    )
     return abs(x * to_y - y * to_x) < SMOOTH and x * to_x + y * to_y > 0.0
 
 
 def find_last_parameter(one: Segment) -> float:
-    """The parameter of a segment's end; that of its start is the opposite."""
+    """Return the parameter of a segment's end; its start has the opposite one."""
     return one.half_extent * (one.sign if isinstance(one, Arc) else 1.0)
 
 
-def area_center(loops: Sequence[Sequence[Segment]]) -> Array:
-    """The centre of area (2,) within loops that have the part on their left (Green's theorem)."""
+def compute_area_center(loops: Sequence[Sequence[Segment]]) -> Array:
+    """Return the centre of area (2,) in mm of a region on the left of loops (Green's theorem)."""
     area, moment = 0.0, np.zeros(2)
     for one in (segment for loop in loops for segment in loop):
         (x0, y0), (x1, y1) = one.start, one.end
@@ -316,24 +342,24 @@ def area_center(loops: Sequence[Sequence[Segment]]) -> Array:
 
 @define(frozen=True, eq=False)
 class LevelRegions:
-    """Regions by height in mm, each as its borders with the region on their left.
+    """Regions by height in mm, each given by its borders.
 
     Parameters
     ----------
-    borders : of each height.
-    turns : of each height (B,) 1 for borders around a region, -1 for its openings.
+    borders : the borders at each height, with the region on their left.
+    turns : for each height (B,), 1 for borders around a region, -1 for openings.
     """
 
     borders: dict[float, FaceBorders]
     turns: dict[float, Array]
 
     @classmethod
-    def of(cls, loops: Sequence[Array], heights: Sequence[float]) -> LevelRegions:
-        """The regions within loops of (x, y, bulge) vertices, each with its height."""
+    def from_loops(cls, loops: Sequence[Array], heights: Sequence[float]) -> LevelRegions:
+        """Return the regions that loops of (x, y, bulge) vertices border, each with its height in mm."""
         borders, turns = {}, {}
         for height in dict.fromkeys(heights):
             own = [
-                tuple(loop_segments(np.asarray(loop)))
+                tuple(make_loop_segments(np.asarray(loop)))
                 for loop, z in zip(loops, heights, strict=True)
                 if z == height
             ]
@@ -341,16 +367,22 @@ class LevelRegions:
             turns[height] = np.array([1.0 if compute_signed_area(loop) > 0.0 else -1.0 for loop in own])
         return cls(borders, turns)
 
-    def apart(self, height: float | None, points: Array) -> Array:
-        """Distances (N,) in mm of points (N, 2) from the region of a height, negative in it."""
+    def measure_distances(self, height: float | None, points: Array) -> Array:
+        """Return distances (N,) in mm of points (N, 2) from the
+        region at a height, negative in it; inf where there is none.
+        """
         if height is None or height not in self.borders:
             return np.full(len(points), np.inf)
-        signed = self.borders[height].inside(points)
+        signed = self.borders[height].measure_depths(points)
         is_in = (signed > 0.0) @ self.turns[height] > 0.5
         return np.asarray(np.where(is_in, -1.0, 1.0) * np.abs(signed).min(axis=1, initial=np.inf))
 
-    def offset_curves(self, height: float | None, radius: float) -> Iterator[tuple[list[Curve], list[Curve]]]:
-        """Lines and circles of :func:`offset_curves` on which the middle of a disc beside a region is."""
+    def iterate_offset_curves(
+        self, height: float | None, radius: float
+    ) -> Iterator[tuple[list[Curve], list[Curve]]]:
+        """Yield, for each border at a height, the lines and circles of
+        centres of discs outside the region, see :func:`offset_curves`.
+        """
         if height is not None and height in self.borders:
             for loop in self.borders[height].loops:
                 yield offset_curves(loop, radius, left=False)

@@ -1,4 +1,4 @@
-"""Support forces of triangles: what loads and the jaws ask of the clamp, at the worst heights.
+"""Support forces of triangles: the clamp forces that loads and the jaws require, at the worst heights.
 
 With beta_j(q) = b_j . q + c_j the barycentric coordinates of a point of the plane, a support presses with
 
@@ -9,10 +9,10 @@ balance of the vertical forces and of both tilting moments, because beta_j is af
 that lowers N_j most is the lower end of a band where b_j . (-n_i) > 0 and the upper end elsewhere, whatever
 the load. In the direction of g all is a constant and a sinusoid; in p, z and A it is linear.
 
-Let d be the distance from the side of a triangle that faces support j, and h_j the height of the triangle
-over that side. Then beta_j(q) = d(q) / h_j, and h_j N_j is the same for all supports that face the side. So
-the worst loads are looked for once for each directed line through two holes, and not for each of the many
-more triangles.
+Let d be the distance from the side of a triangle opposite to support j, and h_j the height of the triangle
+over that side. Then beta_j(q) = d(q) / h_j, and h_j N_j is the same for all supports opposite to the side. So
+the worst loads are sought once for each directed line through two holes, and not for each of the many more
+triangles.
 
 Glossary
 --------
@@ -34,13 +34,13 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.support_request import SpatialLoad
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 
 __all__ = [
-    "Corners",
-    "Lines",
+    "CornerTriples",
+    "AffineFunctions",
     "PegForces",
-    "Sides",
+    "HoleSides",
     "Triangles",
     "WeakJawError",
     "compute_jaw_lift",
@@ -58,13 +58,13 @@ AT_ONCE = 1 << 16
 
 @define(frozen=True, eq=False)
 class PegForces:
-    """How the pegs of one fixture answer loads in the plane.
+    """The pegs' answers to loads in the plane, for one fixture.
 
     Parameters
     ----------
     center : (2,) about which moments are taken, in mm.
     pushes : (P, 2) unit vectors in which pegs push, in the part's frame.
-    answers : (P, 4) peg forces per unit of g_x, g_y, moment about the centre, and jaw force.
+    answers : (P, 4) peg forces per unit of g_x, g_y, moment in N mm about the centre, and jaw force.
     """
 
     center: Array
@@ -72,21 +72,21 @@ class PegForces:
     answers: Array
 
     @classmethod
-    def of(cls, fixture: Fixture, toolkit: Toolkit, touched: Touched) -> PegForces:
-        """The responses of a fixture whose jaw keeps its force."""
-        matrices = touched.of_fixture(fixture, toolkit)
+    def from_fixture(cls, fixture: Fixture, toolkit: Toolkit, touched: TouchableFeatures) -> PegForces:
+        """Return the answers of a fixture's pegs where the jaw keeps its force."""
+        matrices = touched.compute_for_fixture(fixture, toolkit)
         scale = np.array([1.0, 1.0, touched.length, 1.0])
         return cls(touched.center, -matrices.normals[0], matrices.inverses[0].T / scale)
 
-    def at(self, point: Array) -> Array:
-        """Peg forces (P, 2) per unit of a force in x and in y at a point."""
+    def compute_forces(self, point: Array) -> Array:
+        """Return peg forces (P, 2) per unit of a force in x, and in y, at a point (2,) in mm."""
         dx, dy = point - self.center
         x, y, moment, _ = self.answers.T
         return np.stack([x - dy * moment, y + dx * moment], axis=1)
 
 
 @define(frozen=True, eq=False)
-class Lines:
+class AffineFunctions:
     """Affine functions n . q + c of points q: distances from lines, or barycentric coordinates.
 
     Parameters
@@ -98,14 +98,16 @@ class Lines:
     normals: Array
     constants: Array
 
-    def at(self, points: Array) -> Array:
-        """The values (...) at points (..., 2)."""
+    def evaluate(self, points: Array) -> Array:
+        """Return the values (...) at points (..., 2)."""
         return np.asarray(
             self.normals[..., 0] * points[..., 0] + self.normals[..., 1] * points[..., 1] + self.constants
         )
 
-    def leverage(self, pegs: PegForces, bands: Array, highest: bool) -> Array:
-        """h_i n . (-n_i) as (..., P) at the heights of bands (P, 2) that make it least, or greatest."""
+    def compute_leverage(self, pegs: PegForces, bands: Array, highest: bool) -> Array:
+        """Return h_i n . (-n_i) (..., P) at the end of each peg's band
+        (P, 2) of heights where it is least, or with ``highest`` largest.
+        """
         along = self.normals[..., :1] * pegs.pushes[:, 0] + self.normals[..., 1:] * pegs.pushes[:, 1]
         ends = along * bands[:, 0], along * bands[:, 1]
         return np.maximum(*ends) if highest else np.minimum(*ends)
@@ -113,7 +115,7 @@ class Lines:
 
 @define(frozen=True, eq=False)
 class Triangles:
-    """N triangles of supports.
+    """N triangles of supports with their barycentric coordinates beta_j(q) = b_j . q + c_j.
 
     Parameters
     ----------
@@ -127,8 +129,8 @@ class Triangles:
     constants: Array
 
     @classmethod
-    def of(cls, corners: Array) -> Triangles:
-        """Triangles from their corners (N, 3, 2), none of them flat."""
+    def from_corners(cls, corners: Array) -> Triangles:
+        """Return the triangles with corners (N, 3, 2); none may be flat."""
         after, before = np.roll(corners, -1, axis=1), np.roll(corners, -2, axis=1)
         side = before - after
         # b_j is square to the side that faces corner j, and beta_j is 1 at that corner.
@@ -138,28 +140,33 @@ class Triangles:
         return cls(corners, slopes, -(slopes * after).sum(axis=-1))
 
     def take(self, rows: NDArray[np.int64]) -> Triangles:
+        """Return the triangles of some rows."""
         return Triangles(self.corners[rows], self.slopes[rows], self.constants[rows])
 
     @property
     def steepness(self) -> Array:
-        """Lengths (N, 3) of b_j: one over the height of the triangle over each side."""
+        """Lengths (N, 3) of b_j in 1/mm, the inverse of the height over the side that faces corner j."""
         return np.hypot(self.slopes[..., 0], self.slopes[..., 1])
 
-    def shares(self, points: Array) -> Array:
-        """Barycentric coordinates (N, ..., 3) of points (N, ..., 2), or of points (2,) for all."""
+    def compute_shares(self, points: Array) -> Array:
+        """Return barycentric coordinates (N, ..., 3) of points
+        (N, ..., 2), or of one point (2,) in all triangles.
+        """
         shape = (len(self.slopes), *[1] * max(points.ndim - 2, 0))
-        lines = Lines(self.slopes.reshape(*shape, 3, 2), self.constants.reshape(*shape, 3))
-        return lines.at(points[..., None, :])
+        lines = AffineFunctions(self.slopes.reshape(*shape, 3, 2), self.constants.reshape(*shape, 3))
+        return lines.evaluate(points[..., None, :])
 
-    def sides(self, points: Array) -> Array:
-        """Distances (N, ..., 3) of points from the three sides, positive inside."""
-        shares = self.shares(points)
+    def measure_side_distances(self, points: Array) -> Array:
+        """Return distances (N, ..., 3) in mm of points from the three
+        sides, positive inside; points as of :meth:`compute_shares`.
+        """
+        shares = self.compute_shares(points)
         extra = shares.ndim - 2
         return np.asarray(shares / self.steepness.reshape(len(self.slopes), *[1] * extra, 3))
 
 
 def find_largest_over_directions(x: Array, y: Array, directions: tuple[float, float]) -> Array:
-    """Largest x cos + y sin over a range of directions in degrees."""
+    """Return the largest x cos t + y sin t, elementwise, for t in a range of degrees."""
     if directions[1] - directions[0] >= 360.0:
         return np.hypot(x, y)
     low, high = (radians(angle) for angle in directions)
@@ -169,18 +176,23 @@ def find_largest_over_directions(x: Array, y: Array, directions: tuple[float, fl
 
 
 def compute_support_forces(
-    lines: Lines, pegs: PegForces, bands: Array, loads: tuple[SpatialLoad, ...], jaw_force: float
+    lines: AffineFunctions, pegs: PegForces, bands: Array, loads: tuple[SpatialLoad, ...], jaw_force: float
 ) -> tuple[Array, Array]:
-    """Least and largest forces (N,) of supports without the clamp, over all loads and heights.
+    """Return the least and the largest force (N,) in N on N
+    supports without the clamp, over all loads and peg heights.
 
-    ``lines`` are beta_j of N supports; or distances from the sides that face them, which makes all forces
-    larger by the heights of the supports over these. Bands (P, 2) are those of the pegs, loads have their
-    heights written out, and the jaw force is that on what moves, F.
+    Parameters
+    ----------
+    lines : beta_j of the supports. With distances from the opposite sides instead, forces come multiplied by
+        the heights over these.
+    bands : (P, 2) heights at which each peg presses, in mm.
+    loads : with their heights known.
+    jaw_force : on what moves, in N.
     """
     x, y = lines.normals[..., 0], lines.normals[..., 1]
     out = []
     for sign in (1.0, -1.0):
-        levers = lines.leverage(pegs, bands, highest=sign < 0)
+        levers = lines.compute_leverage(pegs, bands, highest=sign < 0)
         jaws = levers @ pegs.answers[:, 3] * jaw_force
         worst = np.full(x.shape, np.inf)
         for load in loads:
@@ -189,8 +201,8 @@ def compute_support_forces(
             assert load.heights is not None
             for point in load.points or (tuple(pegs.center),):
                 where = np.array(point)
-                moved = levers @ pegs.at(where) if load.force else np.zeros((*x.shape, 2))
-                shares = lines.at(where)
+                moved = levers @ pegs.compute_forces(where) if load.force else np.zeros((*x.shape, 2))
+                shares = lines.evaluate(where)
                 for height, axial in product(set(load.heights), set(load.axial)):
                     value = sign * (still + axial * shares)
                     if load.force:
@@ -205,13 +217,15 @@ def compute_support_forces(
 
 
 def count_worst_cases(load: SpatialLoad) -> int:
-    """The number of ways in which a load may act worst: points, heights and axial forces together."""
+    """Return how many combinations of point, height and axial force of a load are examined."""
     return max(len(load.points), 1) * len(set(load.heights or (0.0,))) * len(set(load.axial))
 
 
-def compute_jaw_lift(lines: Lines, pegs: PegForces, bands: Array) -> Array:
-    """Lifts (...) of supports per N of jaw force at the worst heights, as the forces above."""
-    return np.asarray(-(lines.leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))
+def compute_jaw_lift(lines: AffineFunctions, pegs: PegForces, bands: Array) -> Array:
+    """Return by how much (...) the jaw lifts each support at most,
+    in N per N of jaw force, as :func:`compute_support_forces`.
+    """
+    return np.asarray(-(lines.compute_leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))
 
 
 class WeakJawError(InputError):
@@ -219,9 +233,13 @@ class WeakJawError(InputError):
 
 
 def find_needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
-    """The jaw force asked for, or the one that keeps all pegs in contact under every load.
+    """Return the given jaw force, or for None the least
+    that keeps all pegs in contact under every load, in N.
 
-    Raises WeakJawError, naming the load, when the one asked for is too small.
+    Raises
+    ------
+    WeakJawError
+        When the given one is too small for a load.
     """
     needs = [find_jaw_force_for_load(pegs, load) for load in loads]
     if jaw_force is None:
@@ -237,7 +255,7 @@ def find_needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_for
 
 
 def find_jaw_force_for_load(pegs: PegForces, load: SpatialLoad) -> float:
-    """The jaw force in N above which no peg lets go under a load, as ``statics.loads`` has it.
+    """Return the jaw force in N above which no peg lets go under a load; at least 0.
 
     Peg i presses with a_i + F h_i, where a_i balances the load and h_i > 0.
     """
@@ -246,41 +264,45 @@ def find_jaw_force_for_load(pegs: PegForces, load: SpatialLoad) -> float:
     _, _, moment, closing = pegs.answers.T
     worst = 0.0
     for point in (load.points if load.force else ()) or (tuple(pegs.center),):
-        x, y = pegs.at(np.array(point)).T
+        x, y = pegs.compute_forces(np.array(point)).T
         asked = load.force * find_largest_over_directions(-x, -y, load.directions) - load.moment * moment
         worst = max(worst, float((asked / closing).max()))
     return worst
 
 
 @define(frozen=True, eq=False)
-class Corners:
-    """N triangles of holes, run counter-clockwise, with what decides between them; lengths in mm.
+class CornerTriples:
+    """N triangles of holes, counter-clockwise; lengths in mm.
 
     Parameters
     ----------
-    numbers : (N, 3) of the holes, the smallest first.
-    sides : (N, 3) numbers of the sides that face them, see :attr:`Sides.length`.
-    heights : (N, 3) over these sides.
+    numbers : (N, 3) indices of the holes, ascending.
+    sides : (N, 3) numbers of the sides opposite to them, see :class:`HoleSides`.
+    heights : (N, 3) of the triangle over these sides.
     """
 
     numbers: IntArray
     sides: IntArray
     heights: Array
 
-    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> Corners:
-        return Corners(self.numbers[rows], self.sides[rows], self.heights[rows])
+    def take(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> CornerTriples:
+        """Return the triangles that an index array or a mask selects."""
+        return CornerTriples(self.numbers[rows], self.sides[rows], self.heights[rows])
 
 
 @define(frozen=True, eq=False)
-class Sides:
-    """The sides of H holes; side H a + b runs from hole a to hole b.
+class HoleSides:
+    """The directed sides between H holes; side H a + b runs from hole a to hole b.
 
     Parameters
     ----------
     points : (H, 2) of the holes, in mm in the part's coordinates.
     pegs, bands : of the fixture, and the heights (P, 2) at which pegs press.
-    loads : with their heights written out.
+    loads : with their heights known.
     jaw_force : in N.
+    length : (H H,) of each side, in mm.
+    least, most : (H H,) least and largest support force times its distance from the side, in N mm; empty
+        without loads.
     """
 
     points: Array
@@ -300,25 +322,27 @@ class Sides:
         for first in range(0, len(least), AT_ONCE):
             numbers = np.arange(first, min(first + AT_ONCE, len(least)))
             least[numbers], most[numbers] = compute_support_forces(
-                self.lines(numbers), self.pegs, self.bands, self.loads, self.jaw_force
+                self.make_lines(numbers), self.pegs, self.bands, self.loads, self.jaw_force
             )
         object.__setattr__(self, "least", least)
         object.__setattr__(self, "most", most)
 
-    def lines(self, numbers: IntArray) -> Lines:
-        """Sides (...) as lines; those from a hole to itself have no direction, and lie nowhere."""
+    def make_lines(self, numbers: IntArray) -> AffineFunctions:
+        """Return distances from sides (...) as affine functions,
+        positive on the left; zero for sides from a hole to itself.
+        """
         begin, end = self.points[numbers // len(self.points)], self.points[numbers % len(self.points)]
         length = self.length[numbers]
         along = (end - begin) / np.where(length > 0.0, length, np.inf)[..., None]
         normals = np.stack([-along[..., 1], along[..., 0]], axis=-1)
-        return Lines(normals, -(normals[..., 0] * begin[..., 0] + normals[..., 1] * begin[..., 1]))
+        return AffineFunctions(normals, -(normals[..., 0] * begin[..., 0] + normals[..., 1] * begin[..., 1]))
 
-    def corners(self, numbers: IntArray, inside: float) -> Corners:
-        """Triangles of holes (N, 3), each in order, that are no lines and whose incircle is large enough.
+    def make_corners(self, numbers: IntArray, inside: float) -> CornerTriples:
+        """Return the triangles of holes ``numbers`` (N, 3), ascending
+        in each row, with an incircle of radius ``inside`` or more.
 
-        Parameters
-        ----------
-        inside : the least radius of the incircle, in mm: no point is farther inside than its centre.
+        Flat triangles are left out, too. ``inside`` is in mm; no point is farther inside than the incircle's
+        centre.
         """
         count = len(self.points)
         i, j, k = numbers.T
@@ -340,21 +364,25 @@ class Sides:
         kept = (area > ON_ONE_LINE * length.max(axis=1, initial=0.0)) & (
             area >= (inside - GAP_SLACK) * (length[:, 0] + length[:, 1] + length[:, 2])
         )
-        return Corners(numbers[kept], sides[kept], area[kept, None] / length[kept])
+        return CornerTriples(numbers[kept], sides[kept], area[kept, None] / length[kept])
 
-    def reach(self, corners: Corners) -> Array:
-        """r_j (N, 3): the clamp force at each support that keeps it in contact, in N."""
+    def compute_contact_forces(self, corners: CornerTriples) -> Array:
+        """Return r_j (N, 3), the force in N that the clamp must
+        put on each support to keep it in contact; may be negative.
+        """
         return -self.least[corners.sides] / corners.heights
 
-    def largest(self, corners: Corners) -> Array:
-        """The largest force (N, 3) on each support without the clamp, in N."""
+    def compute_largest_forces(self, corners: CornerTriples) -> Array:
+        """Return the largest force (N, 3) in N on each support, without the clamp."""
         return self.most[corners.sides] / corners.heights
 
-    def incircle(self, corners: Corners) -> Array:
-        """Radii (N,) of the incircles."""
+    def compute_incircles(self, corners: CornerTriples) -> Array:
+        """Return the radii (N,) in mm of the triangles' incircles."""
         one = 1.0 / corners.heights
         return np.asarray(1.0 / (one[:, 0] + one[:, 1] + one[:, 2]))
 
-    def distances(self, corners: Corners, points: Array) -> Array:
-        """Distances (N, 3) of points (N, 2), or of one (2,) for all, from the sides, positive inside."""
-        return self.lines(corners.sides).at(points[..., None, :])
+    def measure_distances(self, corners: CornerTriples, points: Array) -> Array:
+        """Return distances (N, 3) in mm of points (N, 2), or of
+        one (2,), from each triangle's sides, positive inside.
+        """
+        return self.make_lines(corners.sides).evaluate(points[..., None, :])

@@ -1,14 +1,14 @@
-"""What friction could add on supports: the least clamp force for which any friction forces balance the loads.
+"""The effect of friction on supports: the least clamp force for which some friction forces balance the loads.
 
 Every contact presses within its cone of friction: pegs on their faces, supports from below, the clamp from
-above. Of the heights at which pegs may press, the ends of their bands are looked at, and the worst counts.
-What moves pushes with the jaw force as before. The least clamp force that balances a load is a linear program
-in the forces along the edges of pyramids inside the cones. Six of its equations are of balance, one is of the
-jaw. It is convex in the load. So the ends of ranges, and corners around a range of directions, are the worst
-there can be.
+above. Of the heights at which pegs may press, the ends of their bands are tried, and the worst counts. The
+moving carrier pushes with the jaw force as before. The least clamp force that balances a load is a linear
+program in the forces along the edges of pyramids inside the cones, with six equations of balance and one for
+the jaw. It is convex in the load, so the ends of ranges, and corners around a range of directions, are the
+worst loads.
 
-It is optimistic: with friction statics does not determine the forces, and this is what the best of them would
-need. It ranks nothing.
+It is optimistic: with friction statics does not determine the forces, and this is the need of the most
+favourable ones. It does not affect the ranking.
 
 The programs, minimize c . x subject to A x = b, x >= 0, with c >= 0, differ in b alone. They are solved by
 the simplex method in two phases (G. B. Dantzig, *Linear Programming and Extensions*, 1963, chapter 5), by
@@ -33,32 +33,34 @@ from workhold.errors import InputError
 from workhold.limits import MOST_FRICTION, convert_real
 from workhold.model.support_request import SpatialLoad
 from workhold.model.support_triples import Supports, Triple
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.loads import find_contacts_on_part
 
-__all__ = ["balance", "clamp_with_friction", "find_least_costs", "load_wrenches"]
+__all__ = ["make_balance_program", "compute_clamp_force", "find_least_costs", "yield_load_wrenches"]
 
 Array = NDArray[np.float64]
 # Edges of each pyramid; and the widest step in degrees between corners around a range of directions, which
 # makes the force at most 0.5 % larger than it is.
 EDGES, WIDEST_STEP = 8, 11.25
 IntArray = NDArray[np.int64]
-# Parts of the largest entry of a right side: forces and costs that rounding makes; and turns of the method.
+# Part of the largest entry of a right side below which forces and costs are rounding errors, and the most
+# steps of the method.
 NEGLIGIBLE, MOST_TURNS = 1e-10, 2000
 
 
-def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> float:
-    """The least clamp force in N for which friction could balance every load; at most that without friction.
+def compute_clamp_force(supports: Supports, triple: Triple, friction: float) -> float:
+    """Return the least clamp force in N for which friction
+    could balance every load; at most that without friction.
 
     Parameters
     ----------
-    triple : of these supports, with the clamp where :attr:`Triple.clamp` has it.
-    friction : Coulomb's coefficient of all contacts.
+    triple : of these supports, with the clamp at :attr:`Triple.clamp`.
+    friction : coefficient of all contacts.
 
     Raises
     ------
     InputError
-        For a coefficient that is none, and without loads.
+        For an invalid coefficient, and for supports without loads.
     """
     coefficient = convert_real(friction)
     if not (isfinite(coefficient) and 0 <= coefficient <= MOST_FRICTION):
@@ -68,29 +70,30 @@ def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> 
         )
     if not supports.loads:
         raise InputError("friction needs loads, and there are none: give a load too.")
-    wrenches = np.array([one for load in supports.loads for one in load_wrenches(load, supports)])
-    bands = supports.request.peg_bands(len(supports.fixture.pegs)).tolist()
+    wrenches = np.array([one for load in supports.loads for one in yield_load_wrenches(load, supports)])
+    bands = supports.request.list_peg_bands(len(supports.fixture.pegs)).tolist()
     worst = 0.0
     for heights in product(*(sorted(set(band)) for band in bands)):
-        matrix, costs, length = balance(supports, triple, coefficient, heights)
+        matrix, costs, length = make_balance_program(supports, triple, coefficient, heights)
         sides = np.column_stack([-wrenches, np.full(len(wrenches), supports.jaw_force)])
         sides[:, 3:6] /= length
         worst = max(worst, float(find_least_costs(matrix, costs, sides).max()))
     return min(worst, triple.clamp.clamp_needed)
 
 
-def balance(
+def make_balance_program(
     supports: Supports, triple: Triple, friction: float, heights: Sequence[float]
 ) -> tuple[Array, Array, float]:
-    """What the forces along the edges of pyramids do: a matrix (7, V), costs (V,) and a length in mm.
+    """Return a matrix (7, V), costs (V,) and a length in mm:
+    the effects of unit forces along friction cones' edges.
 
-    The matrix has, of each unit force, the parts in x, y and z. Then come the moments about the centre of the
-    part over the length, and the push against what moves. Its cost is what it adds to the force of the clamp.
-    Each peg presses at one of the heights, in mm.
+    Rows of the matrix: force in x, y, z; moments about the part's centre divided by the length; and push
+    against what moves. The cost is 1 for the clamp's edges, else 0. Each peg presses at one of the heights,
+    in mm.
     """
     query, fixture = supports.query, supports.fixture
-    touched = Touched.of(query.workpiece, query.toolkit)
-    matrices = touched.of_fixture(fixture, query.toolkit)
+    touched = TouchableFeatures.from_workpiece(query.workpiece, query.toolkit)
+    matrices = touched.compute_for_fixture(fixture, query.toolkit)
     points, normals, moving, against = find_contacts_on_part(
         fixture, query.workpiece, query.toolkit, touched, matrices
     )
@@ -98,8 +101,10 @@ def balance(
     columns, costs = [], []
 
     def add(point: Array, push: Array, back: Array, cost: float) -> None:
-        """Adds the edges of a pyramid about a unit push, with the direction against what moves."""
-        for edge in pyramid(push, friction):
+        """Append the edges of the pyramid about a unit push,
+        with the direction ``back`` against what moves.
+        """
+        for edge in yield_pyramid_edges(push, friction):
             moment = np.cross(point, edge) / touched.length
             columns.append([*edge, *moment, -(edge[:2] @ back)])
             costs.append(cost)
@@ -111,14 +116,16 @@ def balance(
     for pad in triple.supports:
         at = np.array([pad.x, pad.y]) - touched.center
         add(np.array([*at, 0.0]), np.array([0.0, 0.0, 1.0]), still, 0.0)
-    high = supports.request.clamped_height(triple.clamp.at)
+    high = supports.request.find_clamped_height(triple.clamp.at)
     at = np.array(triple.clamp.at) - touched.center
     add(np.array([*at, high]), np.array([0.0, 0.0, -1.0]), still, 1.0)
     return np.array(columns).T, np.array(costs), touched.length
 
 
-def pyramid(push: Array, friction: float) -> Iterator[Array]:
-    """Yields the edges of a pyramid inside the cone about a unit push, each with 1 along it."""
+def yield_pyramid_edges(push: Array, friction: float) -> Iterator[Array]:
+    """Yield the edges (3,) of a pyramid inside the friction
+    cone about a unit push, each with component 1 along it.
+    """
     one = np.array([-push[1], push[0], 0.0]) if push[2] == 0.0 else np.array([1.0, 0.0, 0.0])
     other = np.cross(push, one)
     if friction == 0.0:
@@ -129,11 +136,13 @@ def pyramid(push: Array, friction: float) -> Iterator[Array]:
         yield push + friction * (cos(turn) * one + sin(turn) * other)
 
 
-def load_wrenches(load: SpatialLoad, supports: Supports) -> Iterator[list[float]]:
-    """Yields forces and moments about the centre of the part that have a load between them, in N and N mm."""
-    center = Touched.of(supports.query.workpiece, supports.query.toolkit).center
+def yield_load_wrenches(load: SpatialLoad, supports: Supports) -> Iterator[list[float]]:
+    """Yield wrenches [fx, fy, fz, mx, my, mz] about the
+    part's centre, in N and N mm, whose hull contains a load.
+    """
+    center = TouchableFeatures.from_workpiece(supports.query.workpiece, supports.query.toolkit).center
     assert load.heights is not None
-    ways = list(around(load.directions)) if load.force else [(0.0, 0.0)]
+    ways = list(yield_polygon_corners(load.directions)) if load.force else [(0.0, 0.0)]
     for point in load.points or (tuple(center.tolist()),):
         for height, axial, way in product(sorted(set(load.heights)), sorted(set(load.axial)), ways):
             force = np.array([load.force * way[0], load.force * way[1], -axial])
@@ -142,8 +151,8 @@ def load_wrenches(load: SpatialLoad, supports: Supports) -> Iterator[list[float]
             yield [*force, *moment]
 
 
-def around(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
-    """Yields corners of a polygon around the unit vectors of a range of directions in degrees."""
+def yield_polygon_corners(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
+    """Yield corners of a polygon around the unit vectors of a range of directions in degrees."""
     low, wide = radians(directions[0]), radians(min(directions[1] - directions[0], 360.0))
     steps = max(ceil(wide / radians(WIDEST_STEP)), 1)
     half = wide / steps / 2
@@ -157,9 +166,10 @@ def around(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
 
 
 def find_least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
-    """Least costs (N,) of programs, infinite where nothing solves one.
+    """Return the least costs (N,) of programs min c . x, A x = b, x >= 0; inf where infeasible.
 
-    The matrix A (R, V) has rows of like size, no cost c (V,) is negative, and right sides b are (N, R).
+    ``matrix`` is A (R, V) with rows of like size, ``costs`` c (V,) >= 0, ``sides`` are the right sides b (N,
+    R).
     """
     out, open_ = np.full(len(sides), np.inf), np.ones(len(sides), bool)
     while open_.any():
@@ -178,28 +188,31 @@ def find_least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
 
 
 def find_optimal_basis(matrix: Array, costs: Array, side: Array) -> IntArray | None:
-    """The columns (R,) that are not 0 in a solution of the least cost; None where nothing solves it."""
+    """Return the basic columns (R,) of an optimal solution; None where the program is infeasible.
+
+    None as well where the rows of the matrix are dependent.
+    """
     rows, columns = matrix.shape
     size = max(float(np.abs(side).max()), 1.0)
     signs = np.where(side < 0.0, -1.0, 1.0)
     wide = np.hstack([matrix, np.diag(signs)])
     basis = np.arange(columns, columns + rows)
     artificial = np.concatenate([np.zeros(columns), np.ones(rows)])
-    basis, values = improved(wide, artificial, side, basis)
+    basis, values = improve_basis(wide, artificial, side, basis)
     if values[basis >= columns].sum() > 1e-8 * size:
         return None
-    # What is artificial and 0 still leaves the basis for a column that can replace it.
+    # Artificial variables that are 0 leave the basis for a column that can replace them.
     for place in np.flatnonzero(basis >= columns):
         row = np.linalg.inv(wide[:, basis])[place] @ matrix
         row[basis[basis < columns]] = 0.0
         if np.abs(row).max() < 1e-9:
             return None
         basis[place] = int(np.abs(row).argmax())
-    return improved(matrix, costs, side, basis)[0]
+    return improve_basis(matrix, costs, side, basis)[0]
 
 
-def improved(matrix: Array, costs: Array, side: Array, basis: IntArray) -> tuple[IntArray, Array]:
-    """A basis of the least cost, and its values, from one with values of 0 or more."""
+def improve_basis(matrix: Array, costs: Array, side: Array, basis: IntArray) -> tuple[IntArray, Array]:
+    """Return an optimal basis (R,) and its values (R,), by the simplex method from a feasible basis."""
     basis = basis.copy()
     for turn in range(MOST_TURNS):
         inverse = np.linalg.inv(matrix[:, basis])
@@ -209,7 +222,7 @@ def improved(matrix: Array, costs: Array, side: Array, basis: IntArray) -> tuple
         entering = np.flatnonzero(reduced < -NEGLIGIBLE)
         if not len(entering):
             break
-        # The steepest column is quick; Bland's first one ends where the steepest goes in circles.
+        # The steepest column is quick, but may cycle; Bland's first column ends.
         enters = int(entering[0] if turn > MOST_TURNS // 4 else entering[reduced[entering].argmin()])
         change = inverse @ matrix[:, enters]
         falls = np.flatnonzero(change > 1e-11)

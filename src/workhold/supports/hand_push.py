@@ -1,9 +1,9 @@
 """A push by hand that presses a part against all of its locators.
 
-A force along a line presses three locators without friction with forces that are linear in it. In a direction d at a
-point q + t e of a straight side each is linear in t, so that for a direction the places on the side that press all
-three are an interval. Directions are looked at every half degree, within 60 degrees of the inward normal; on arcs, and
-at corners, so are points.
+A force along a line presses three locators without friction with forces that are linear in it. In a fixed
+direction at a point q + t e of a straight side each of these is linear in t, so the places on the side that
+press all three are an interval. Directions are tried every half degree, within 60 degrees of the inward
+normal; points on arcs every two degrees, and corners.
 """
 
 from __future__ import annotations
@@ -21,21 +21,23 @@ from workhold.model.straps import HandPush
 __all__ = ["find_hand_push"]
 
 Array = NDArray[np.float64]
-# How far in degrees from the inward normal a hand pushes, and how fine directions and points of arcs are.
+# Degrees. Largest angle of a push from the inward normal, and the steps of directions and of points on arcs.
 MOST_ASLANT, STEP, ARC_STEP = 60.0, 0.5, 2.0
 # The least share of the push by which each locator must be pressed.
 LEAST_SHARE = 1e-6
-# A square push is told rather than one that presses the weakest locator by less than this part harder.
+# Another push replaces a squarer one only if it presses the weakest locator harder by this part.
 HARDER = 0.02
 
 
 def find_hand_push(segments: Sequence[Segment], touched: Array, inward: Array) -> HandPush | None:
-    """The push that presses hardest on the locator it presses least; None where none presses all of them.
+    """Return the push by hand that presses hardest on the
+    locator it presses least; None where none presses all three.
 
     Parameters
     ----------
     segments : of the part's outer outline, on the plate.
-    touched, inward : (3, 2) where locators touch the part in mm, and the unit directions in which they push.
+    touched, inward : (3, 2) points where locators touch the part in mm, and the unit directions in which they
+        push.
     """
     matrix = np.vstack([inward.T, touched[:, 0] * inward[:, 1] - touched[:, 1] * inward[:, 0]])
     size = np.array([1.0, 1.0, max(float(np.ptp(touched, axis=0).max()), 1.0)])
@@ -55,9 +57,11 @@ def find_hand_push(segments: Sequence[Segment], touched: Array, inward: Array) -
 
 
 def list_pushed_places(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Array]]:
-    """Stretches from a point to it plus a vector, the latter zero for a point, with directions (D,) of a push.
+    """Yield (start, vector to the end, directions (D,) of a
+    push in radians) for each place on the outline to try.
 
-    Directions are in radians, the least aslant first.
+    Sides are stretches; points on arcs and corners have a zero vector. On sides and arcs the direction
+    nearest to the inward normal comes first.
     """
     steps = np.arange(0.0, MOST_ASLANT + STEP / 2, STEP)
     fan = np.radians(np.unique(np.concatenate([-steps, steps])))
@@ -72,21 +76,23 @@ def list_pushed_places(segments: Sequence[Segment]) -> Iterator[tuple[Point, Poi
                 point = one.center[0] + one.radius * x, one.center[1] + one.radius * y
                 yield point, (0.0, 0.0), inside + fan
         else:
-            nx, ny = one.normal()
+            nx, ny = one.compute_normal()
             (x0, y0), (x1, y1) = one.start, one.end
             yield (x0, y0), (x1 - x0, y1 - y0), atan2(-ny, -nx) + fan
     yield from list_corners(segments)
 
 
 def list_corners(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Array]]:
-    """Corners that stand out, with the directions between the inward normals of both sides."""
+    """Yield convex corners as in :func:`list_pushed_places`,
+    with the directions between both sides' inward normals.
+    """
     ends = {one.end: one for one in segments}
     for one in segments:
         before = ends.get(one.start)
         if before is None or before is one:
             continue
         half, other_half = before.half_extent, one.half_extent
-        (ax, ay), (bx, by) = before.normal(half), one.normal(-other_half)
+        (ax, ay), (bx, by) = before.compute_normal(half), one.compute_normal(-other_half)
         turn = atan2(ax * by - ay * bx, ax * bx + ay * by)
         if turn > radians(STEP):
             first = atan2(-ay, -ax)
@@ -96,11 +102,16 @@ def list_corners(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Ar
 def list_best_places(
     answers: Array, start: Point, along: Point, turns: Array
 ) -> Iterator[tuple[float, float, Array]]:
-    """For directions that press all locators: the direction, how far along (0 to 1), and the shares (3,) there.
+    """Yield (direction in radians, position 0 to 1 on the stretch,
+    the locators' shares (3,)) for directions that press all three.
+
+    The position is the one where the least share is largest.
 
     Parameters
     ----------
-    answers : (3, 3) the locators' forces for a unit force along x, along y, and moment.
+    answers : (3, 3) the locators' forces for a unit force along x, along y, and a unit moment.
+    start, along : start of the stretch, and the vector to its end, in mm.
+    turns : (D,) directions in radians.
     """
     ways = np.column_stack([np.cos(turns), np.sin(turns)])
     moment, grows = (point[0] * ways[:, 1] - point[1] * ways[:, 0] for point in (start, along))
@@ -115,7 +126,7 @@ def list_best_places(
         )
     shares = fixed[:, None, :] + np.column_stack(places)[:, :, None] * slope[:, None, :]
     least = shares.min(axis=2)
-    # Where places are alike the middle is told.
+    # Where all places are equally good the middle is chosen.
     chosen = np.where(least[:, 2] >= least.max(axis=1) - 1e-9, 2, least.argmax(axis=1))
     for number in np.flatnonzero(least.max(axis=1) > LEAST_SHARE):
         place = int(chosen[number])

@@ -1,8 +1,8 @@
 """Which holes may hold a support, and which triples of them the carriers have room for.
 
-Columns and rows count as the planar fixture counts them, also outside its plates. Two jaws may stand nearer
-together for supports between the pegs, so the travel of a triple may differ from the planar fixture's. Where
-pegs and supports stand relative to the part stays.
+Columns and rows count as in the planar fixture, also outside its plates. Two jaws may stand nearer together
+for supports between the pegs, so the travel of a triple may differ from the planar fixture's. Pegs and
+supports keep their places relative to the part.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.support_request import SupportRequest
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["CarrierRoom", "HolesUnderPart", "Standing", "find_holes_under_face"]
+__all__ = ["CarrierRoom", "HolesUnderPart", "TripleStanding", "find_holes_under_face"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -30,14 +30,14 @@ UNBOUNDED = 1 << 40
 
 @define(frozen=True, eq=False)
 class HolesUnderPart:
-    """Holes that may hold a support, in order of carrier, column and row.
+    """Holes that may hold a support, in the order of carrier, column and row.
 
     Parameters
     ----------
     carrier : (H,) numbers of their carriers.
-    column, row : (H,) as the planar fixture counts them.
+    column, row : (H,) counted as by the planar fixture; may be outside its plates.
     points : (H, 2) in mm in the part's coordinates.
-    spare : (H,) by how much the rules of a pad are kept, in mm.
+    spare : (H,) slack in mm of the rules for a pad there, 0 or more within rounding.
     """
 
     carrier: IntArray
@@ -50,7 +50,9 @@ class HolesUnderPart:
 def find_holes_under_face(
     fixture: Fixture, toolkit: Toolkit, face: TouchableFace, request: SupportRequest
 ) -> HolesUnderPart:
-    """The holes under a face in which a pad keeps off its border, its zones and the pegs."""
+    """Return the holes under a face at which a pad keeps
+    clear of the face's border, its zones and the pegs.
+    """
     low, high = face.box
     corners = np.array(list(product((low[0], high[0]), (low[1], high[1]))))
     x, y = fixture.pose.apply(corners[:, 0], corners[:, 1])
@@ -64,13 +66,13 @@ def find_holes_under_face(
         columns, rows = (
             np.arange(np.floor((ends.min() - first) / pitch), np.ceil((ends.max() - first) / pitch) + 1)
             for ends, first, pitch in zip(
-                (x, y), carrier.place(0, 0, fixture.travel), carrier.pitch, strict=True
+                (x, y), carrier.compute_hole_center(0, 0, fixture.travel), carrier.pitch, strict=True
             )
         )
         column, row = (grid.ravel() for grid in np.meshgrid(columns, rows, indexing="ij"))
-        hole = carrier.place(column, row, fixture.travel)
+        hole = carrier.compute_hole_center(column, row, fixture.travel)
         points = np.stack(back.apply(*hole), axis=1)
-        spare = face.room(points) - request.pad_radius - request.pad_margin
+        spare = face.measure_room(points) - request.pad_radius - request.pad_margin
         apart = np.hypot(*np.moveaxis(points[:, None] - pegs[None], -1, 0))
         spare = np.minimum(spare, (apart - bodies).min(axis=1, initial=np.inf) - request.pad_radius)
         kept = spare >= -GAP_SLACK
@@ -82,14 +84,14 @@ def find_holes_under_face(
 
 
 @define(frozen=True, eq=False)
-class Standing:
-    """How N triples stand in their carriers together with the pegs.
+class TripleStanding:
+    """The places of N sets of supports on their carriers together with the pegs.
 
     Parameters
     ----------
-    fits : (N,) whether they do.
-    travel : (N,) of the carrier with a lattice that moves, in mm; NaN where none does.
-    spare : (N,) by how much the smallest gap is kept, in mm.
+    fits : (N,) whether there is such a place.
+    travel : (N,) of the moving carrier with a lattice, in mm; NaN where none moves.
+    spare : (N,) slack of the smallest gap, in mm; inf where none moves.
     """
 
     fits: NDArray[np.bool_]
@@ -97,8 +99,10 @@ class Standing:
     spare: Array
 
 
-def ends_of(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[IntArray, IntArray]:
-    """The first and last (N,) of columns or rows (N, S) on a carrier, together with those taken by pegs."""
+def find_ends(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the first and last (N,) of the columns or rows
+    (N, S) where ``on``, those ``taken`` (K,) by pegs included.
+    """
     first = np.where(on, numbers, UNBOUNDED).min(axis=1)
     last = np.where(on, numbers, -UNBOUNDED).max(axis=1)
     if len(taken):
@@ -108,17 +112,17 @@ def ends_of(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[
 
 @define(frozen=True, eq=False)
 class CarrierRoom:
-    """What room the carriers of a fixture leave for supports beside its pegs.
+    """The room that the carriers of a fixture leave for supports beside its pegs.
 
-    Pegs and supports of a carrier span its columns, all rows fit, and the gap is kept. Written out, they
-    stand nearest the opening, and move outward only as far as the largest travel demands.
+    Pegs and supports of a carrier must fit its columns and rows and keep the gap. They stand nearest the
+    opening, and move outward only as far as the largest travel demands.
 
     Parameters
     ----------
     fixture, toolkit, holes : the fixture, and the holes that may hold a support.
     plates : the carriers with holes, by their numbers.
-    taken : columns and rows that pegs and clamps take up on each of them.
-    has_blocked : whether there are two of them, and a hole that holds no peg.
+    taken : columns (K,) and rows (K,) of pegs and clamps on each of these.
+    has_blocked : whether there are two such carriers and a blocked hole.
     """
 
     fixture: Fixture
@@ -129,13 +133,15 @@ class CarrierRoom:
     has_blocked: bool
 
     @classmethod
-    def of(cls, fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart) -> CarrierRoom:
+    def from_fixture(cls, fixture: Fixture, toolkit: Toolkit, holes: HolesUnderPart) -> CarrierRoom:
+        """Return the room that a fixture leaves."""
         carriers = toolkit.carriers
         plates = {number: one for number, one in enumerate(carriers) if one.has_lattice}
         by_name = {one.name: one for one in carriers}
         own = [(peg, by_name[peg.carrier]) for peg in fixture.pegs]
 
         def taken(plate: Carrier, axis: int) -> IntArray:
+            """Return the columns (axis 0) or rows (axis 1) of pegs and clamps on a plate."""
             on = (one for one in own if one[1].stands_on == plate.name and one[1].counted[axis])
             return np.array([(peg.column, peg.row)[axis] for peg, _ in on], np.int64)
 
@@ -148,26 +154,30 @@ class CarrierRoom:
             len(plates) > 1 and any(one.blocked for one in plates.values()),
         )
 
-    def standing(self, sets: IntArray) -> Standing:
-        """How sets (N, S) of holes stand beside the pegs, blocked holes included."""
-        found, at_rest = self.spanned(sets)
-        return self.clear_of_blocked(found, sets, at_rest) if self.has_blocked else found
+    def find_standing(self, sets: IntArray) -> TripleStanding:
+        """Return how sets (N, S) of holes, by index, stand beside the pegs, clear of blocked holes."""
+        found, at_rest = self.fit_sets(sets)
+        return self.move_off_blocked(found, sets, at_rest) if self.has_blocked else found
 
-    def pairs(self) -> NDArray[np.bool_]:
-        """Which two of H holes (H, H) may both hold a support; all three pairs of a set have to."""
+    def find_compatible_pairs(self) -> NDArray[np.bool_]:
+        """Return a symmetric mask (H, H) of holes that may both hold a support, blocked holes disregarded.
+
+        A set needs all its pairs compatible, which does not suffice.
+        """
         count = len(self.holes.row)
         out = np.zeros((count, count), np.bool_)
         first, second = np.triu_indices(count, 1)
         step = 1 << 18
         for k in range(0, len(first), step):
             one, other = first[k : k + step], second[k : k + step]
-            out[one, other] = self.spanned(np.stack([one, other], axis=1))[0].fits
+            out[one, other] = self.fit_sets(np.stack([one, other], axis=1))[0].fits
         return out | out.T
 
-    def spanned(self, sets: IntArray) -> tuple[Standing, Array]:
-        """How sets (N, S) stand but for blocked holes, and their travel (N,) nearest the opening.
+    def fit_sets(self, sets: IntArray) -> tuple[TripleStanding, Array]:
+        """Return how sets (N, S) stand, blocked holes disregarded,
+        and their travel (N,) in mm nearest the opening.
 
-        A set that does not fit fits with no support more either.
+        A set that does not fit does not fit with more supports either.
         """
         holes = self.holes
         carrier, column, row = holes.carrier[sets], holes.column[sets], holes.row[sets]
@@ -178,8 +188,8 @@ class CarrierRoom:
         every_row = np.concatenate([rows for _, rows in self.taken.values()])
         for number, plate in self.plates.items():
             on = carrier == number
-            columns = ends_of(column, on, self.taken[number][0])
-            rows = ends_of(row, np.ones_like(on) if together else on, every_row)
+            columns = find_ends(column, on, self.taken[number][0])
+            rows = find_ends(row, np.ones_like(on) if together else on, every_row)
             spans[number] = [columns, rows]
             for (first, last), most in ((columns, plate.columns), (rows, plate.rows)):
                 if most is not None:
@@ -190,17 +200,25 @@ class CarrierRoom:
         moving = [(number, one) for number, one in self.plates.items() if one.travel is not None]
         if not moving:
             nowhere = np.full(count, np.nan)
-            return Standing(fits, nowhere, np.full(count, np.inf)), nowhere
-        return self.opened(fits, spans, *moving[0])
+            return TripleStanding(fits, nowhere, np.full(count, np.inf)), nowhere
+        return self.open_carrier(fits, spans, *moving[0])
 
-    def opened(
+    def open_carrier(
         self,
         fits: NDArray[np.bool_],
         spans: dict[int, list[tuple[IntArray, IntArray]]],
         number: int,
         plate: Carrier,
-    ) -> tuple[Standing, Array]:
-        """How far a carrier that moves is opened for sets of which the carriers' spans are known."""
+    ) -> tuple[TripleStanding, Array]:
+        """Return how sets stand with the moving carrier opened no wider than
+        it can, and its travel (N,) in mm with all pegs nearest the opening.
+
+        Parameters
+        ----------
+        fits : (N,) which sets fit so far.
+        spans : for each carrier, first and last columns (N,), and first and last rows (N,).
+        number, plate : of the moving carrier.
+        """
         travel = plate.travel
         assert travel is not None
         axis = 0 if plate.is_along_x else 1
@@ -222,12 +240,12 @@ class CarrierRoom:
         opened = at_rest - outward * pitch
         spare = opened - travel.least
         fits = fits & (outward <= room) & (spare >= -GAP_SLACK)
-        return Standing(fits, opened, spare), np.asarray(at_rest, np.float64)
+        return TripleStanding(fits, opened, spare), np.asarray(at_rest, np.float64)
 
-    def clear_of_blocked(self, found: Standing, sets: IntArray, at_rest: Array) -> Standing:
-        """Moves pegs and supports of sets (N, S) on until none of them stands in a blocked hole.
+    def move_off_blocked(self, found: TripleStanding, sets: IntArray, at_rest: Array) -> TripleStanding:
+        """Return how sets (N, S) stand with pegs and supports moved outward until none is in a blocked hole.
 
-        ``at_rest`` (N,) is the travel nearest the opening.
+        ``at_rest`` (N,) is the travel in mm nearest the opening. Sets without such a place no longer fit.
         """
         holes, plates, numbers = self.holes, list(self.plates.values()), list(self.plates)
         travel = next(one.travel for one in plates if one.travel is not None)
@@ -247,11 +265,15 @@ class CarrierRoom:
             width = next((one for one in widths if one <= most), -np.inf)
             fits[index] = width >= travel.least - GAP_SLACK
             opened[index] = width if fits[index] else opened[index]
-        return Standing(fits, opened, found.spare)
+        return TripleStanding(fits, opened, found.spare)
 
 
 def find_first_free_columns(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:
-    """How many columns outward in all pegs and supports may stand clear of blocked holes, fewest first."""
+    """Return by how many columns outward in all pegs and
+    supports can stand clear of blocked holes, ascending.
+
+    ``standing`` are (carrier index, column, row); there are two plates.
+    """
     columns = [[c for k, c, _ in standing if k == number] for number in range(len(plates))]
     lowest = min(row for _, _, row in standing)
     height = max(row for _, _, row in standing) - lowest

@@ -13,19 +13,19 @@ from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.limits import convert_real, refuse_strong
 from workhold.model.fixture import Fixture
-from workhold.model.own_outlines import numbered_solid
+from workhold.model.own_outlines import number_solid
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.support_request import Loops, SpatialLoad, SupportRequest
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
-from workhold.statics.contact_matrix import Touched
+from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.supports.choosing import Stop, TripleChoice, WorkLimit
 from workhold.supports.clamp_point import ClampPlaces, RankedPlaces
-from workhold.supports.faces import LevelRegions, TouchableFace, area_center
+from workhold.supports.faces import LevelRegions, TouchableFace, compute_area_center
 from workhold.supports.forces import (
-    Corners,
+    CornerTriples,
+    HoleSides,
     PegForces,
-    Sides,
     WeakJawError,
     compute_jaw_lift,
     count_worst_cases,
@@ -34,33 +34,33 @@ from workhold.supports.forces import (
 from workhold.supports.holes import CarrierRoom, find_holes_under_face
 from workhold.supports.program import add_program_zones, list_acting_loads
 
-__all__ = ["SupportSearch", "yield_supports", "supports_of"]
+__all__ = ["SupportSearch", "yield_supports", "find_supports"]
 
 Array = NDArray[np.float64]
 Heights = Sequence[float] | None
-# How far in mm from the air beside it the middle of a tip is at least that counts as over material.
+# mm. A tip whose centre is at least this far from air below counts as partly over material.
 OVER = 2e-6
-# Sides of triangles, each under one load, that take as long as a place of the clamp.
+# Number of sides of triangles, each under one load case, that take as long as one place of the clamp.
 SIDES_A_PLACE = 5
-# More holes than these leave more triples than can be looked at.
+# Largest number of holes; more would give too many triples.
 MOST_POSITIONS = 1200
 
 
 @define(frozen=True, eq=False)
 class SupportSearch:
-    """What is the same for all fixtures of one part in one toolkit.
+    """The search for supports, with what all fixtures of one part in one toolkit have in common.
 
     Parameters
     ----------
     query : part and toolkit.
-    request : what is asked.
-    loads : with their heights written out.
+    request : sizes and rules of supports and clamp.
+    loads : with their heights known.
     """
 
     query: Query
     request: SupportRequest
     loads: tuple[SpatialLoad, ...]
-    touched: Touched = field(init=False)
+    touched: TouchableFeatures = field(init=False)
     bottom: TouchableFace = field(init=False)
     top: TouchableFace = field(init=False)
     center: Array = field(init=False)
@@ -74,37 +74,43 @@ class SupportSearch:
                 raise InputError("a load acts below the part: give its height above the supports, 0 or more.")
 
         def face(loops: Loops | None, zones: Iterable[Array], heights: Heights = None) -> TouchableFace:
-            return TouchableFace.of(workpiece.loops if loops is None else loops, zones, heights)
+            return TouchableFace.from_loops(workpiece.loops if loops is None else loops, zones, heights)
 
         top_zones = (zone.loop for zone in request.top_zones)
         for name, value in (
-            ("touched", Touched.of(workpiece, self.query.toolkit)),
+            ("touched", TouchableFeatures.from_workpiece(workpiece, self.query.toolkit)),
             ("bottom", face(request.bottom, (zone.loop for zone in request.bottom_zones))),
             ("top", face(request.top, top_zones, request.top_heights)),
-            ("center", area_center(workpiece.loop_segments)),
+            ("center", compute_area_center(workpiece.loop_segments)),
         ):
             object.__setattr__(self, name, value)
-        free = None if request.reach is not None else self.ranked_places(None)
+        free = None if request.reach is not None else self.rank_places(None)
         object.__setattr__(self, "free_places", free)
 
-    def places(self, fixture: Fixture) -> RankedPlaces:
-        """Where the tip may stand over a fixture."""
+    def find_places(self, fixture: Fixture) -> RankedPlaces:
+        """Return where the clamp's tip may stand over a fixture, in classes."""
         if self.free_places is not None:
             return self.free_places
         rings = np.array(self.request.reach).reshape(-1, 4)
         x, y = fixture.pose.inverse.apply(rings[:, 0], rings[:, 1])
-        return self.ranked_places(np.column_stack([x, y, rings[:, 2:]]))
+        return self.rank_places(np.column_stack([x, y, rings[:, 2:]]))
 
     @property
     def heads(self) -> tuple[tuple[LevelRegions, float], ...]:
-        """What rises above the faces, with the distance in mm that a head keeps its middle away from it."""
+        """Regions that rise above the top faces, with the
+        least distance in mm of the clamp's centre from them.
+        """
         asked = self.request
-        return ((LevelRegions.of(asked.rising, asked.rising_heights), asked.head_radius),)
+        return ((LevelRegions.from_loops(asked.rising, asked.rising_heights), asked.head_radius),)
 
-    def ranked_places(self, rings: Array | None) -> RankedPlaces:
-        """Where the tip may stand: over material that reaches down, in part over such, and anywhere."""
+    def rank_places(self, rings: Array | None) -> RankedPlaces:
+        """Return where the tip may stand, in classes: wholly
+        over material that reaches down, partly so, anywhere.
+
+        ``rings`` (R, 4) is the clamp's reach in the part's coordinates; None for no limit.
+        """
         asked, heads = self.request, self.heads
-        hanging = LevelRegions.of(asked.hanging, asked.hanging_heights)
+        hanging = LevelRegions.from_loops(asked.hanging, asked.hanging_heights)
         kept_off = [(*heads, (hanging, away)) for away in (asked.tip_radius, OVER) if hanging.borders]
         return RankedPlaces(
             tuple(
@@ -113,7 +119,7 @@ class SupportSearch:
             )
         )
 
-    def supports(
+    def find_supports(
         self,
         fixture: Fixture,
         jaw_force: float | None,
@@ -121,18 +127,20 @@ class SupportSearch:
         cancel: Stop | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Supports:
-        """The supports of a fixture: all triples, or the best few; see :func:`supports_of`.
+        """Return the supports of a fixture: all triples, or the best few; see :func:`find_supports`.
+
+        ``best`` is how many; None for all.
 
         Raises
         ------
         InputError
-            For a jaw force too small for a load, and more holes or triples than can be looked at.
+            For a jaw force too small for a load, and more holes or triples than can be examined.
         """
         toolkit, workpiece = self.query.toolkit, self.query.workpiece
-        pegs = PegForces.of(fixture, toolkit, self.touched)
+        pegs = PegForces.from_fixture(fixture, toolkit, self.touched)
         force = find_needed_jaw_force(pegs, self.loads, jaw_force)
-        solid = numbered_solid(workpiece)
-        request = self.request.for_fixture(fixture, solid, self.query.peg_height, workpiece.numbered)
+        solid = number_solid(workpiece)
+        request = self.request.adapt_to_fixture(fixture, solid, self.query.peg_height, workpiece.numbered)
         holes = find_holes_under_face(fixture, toolkit, self.bottom, self.request)
         if len(holes.row) > MOST_POSITIONS:
             raise InputError(
@@ -142,14 +150,14 @@ class SupportSearch:
         if isinstance(cancel, WorkLimit):
             cancel.done += len(holes.row) ** 2 * sum(map(count_worst_cases, self.loads)) // SIDES_A_PLACE
         choice = TripleChoice(
-            Sides(holes.points, pegs, request.peg_bands(len(fixture.pegs)), self.loads, force),
-            CarrierRoom.of(fixture, toolkit, holes),
-            self.places(fixture),
+            HoleSides(holes.points, pegs, request.list_peg_bands(len(fixture.pegs)), self.loads, force),
+            CarrierRoom.from_fixture(fixture, toolkit, holes),
+            self.find_places(fixture),
             request.inside,
             self.center,
             None if request.point is None else np.array(request.point),
         )
-        chosen = choice.chosen(best, cancel, progress)
+        chosen = choice.choose(best, cancel, progress)
         triples = make_triples(choice, chosen.corners)
         return Supports(
             self.query,
@@ -164,26 +172,26 @@ class SupportSearch:
         )
 
 
-def make_triples(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
-    """The triples of a fixture that were chosen, with their figures, in their order."""
+def make_triples(choice: TripleChoice, corners: CornerTriples) -> tuple[Triple, ...]:
+    """Return the chosen triples of a fixture with their figures, in the same order."""
     sides, room = choice.sides, choice.room
     if not len(corners.numbers):
         return ()
-    arm_at, arm, _ = choice.arms(corners)
-    best_at, need, _ = choice.least_forces(corners)
+    arm_at, arm, _ = choice.find_best_arms(corners)
+    best_at, need, _ = choice.find_least_forces(corners)
     free = np.isnan(best_at[:, 0])
     best_at[free] = arm_at[free]
-    given = choice.given_at(corners)
-    standing = sides.distances(corners, choice.center).min(axis=1)
+    given = choice.find_allowed_at_given(corners)
+    standing = sides.measure_distances(corners, choice.center).min(axis=1)
     points = [point for load in sides.loads for point in load.points]
     outside = np.full(len(need), -inf)
     for point in points:
-        outside = np.maximum(outside, -sides.distances(corners, np.array(point)).min(axis=1))
-    stand = room.standing(corners.numbers)
+        outside = np.maximum(outside, -sides.measure_distances(corners, np.array(point)).min(axis=1))
+    stand = room.find_standing(corners.numbers)
     spare = np.minimum(room.holes.spare[corners.numbers].min(axis=1), arm - choice.inside)
     spare = np.minimum(spare, stand.spare)
     best = measure_clamp_places(choice, corners, best_at)
-    at_point = measure_clamp_places(choice, corners, choice.given_points(corners))
+    at_point = measure_clamp_places(choice, corners, choice.repeat_given_point(corners))
     return tuple(
         Triple(
             supports=tuple(make_support_pad(room, hole) for hole in numbers),
@@ -200,16 +208,16 @@ def make_triples(choice: TripleChoice, corners: Corners) -> tuple[Triple, ...]:
     )
 
 
-def measure_clamp_places(choice: TripleChoice, corners: Corners, points: Array) -> list[ClampFigures]:
-    """The figures of triples with the clamp at points (N, 2)."""
+def measure_clamp_places(choice: TripleChoice, corners: CornerTriples, points: Array) -> list[ClampFigures]:
+    """Return the figures of triples with the clamp at points (N, 2)."""
     sides = choice.sides
-    need, force, arm = choice.figures_at(corners, points)
-    shares = sides.distances(corners, points) / corners.heights
-    lifted = compute_jaw_lift(sides.lines(corners.sides), sides.pegs, sides.bands) / corners.heights
+    need, force, arm = choice.compute_figures(corners, points)
+    shares = sides.measure_distances(corners, points) / corners.heights
+    lifted = compute_jaw_lift(sides.make_lines(corners.sides), sides.pegs, sides.bands) / corners.heights
     with np.errstate(divide="ignore", invalid="ignore"):
         lift = np.maximum((lifted / shares).max(axis=1), 0.0)
     loaded = bool(sides.loads)
-    hangs = choice.places.hangs(points)
+    hangs = choice.places.find_hanging(points)
     return [
         ClampFigures(
             at=(float(points[k, 0]), float(points[k, 1])),
@@ -225,20 +233,27 @@ def measure_clamp_places(choice: TripleChoice, corners: Corners, points: Array) 
 
 
 def make_support_pad(room: CarrierRoom, hole: int) -> SupportPad:
+    """Return the pad in a hole, by the hole's index."""
     holes = room.holes
     x, y = holes.points[hole].tolist()
     name = room.toolkit.carriers[holes.carrier[hole]].name
     return SupportPad(name, int(holes.column[hole]), int(holes.row[hole]), x, y)
 
 
-def spatial(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
-    """Loads as they act in space, with their heights written out."""
-    every = (load if isinstance(load, SpatialLoad) else SpatialLoad.of(load) for load in loads)
-    return tuple(load.at_height(thickness) for load in every)
+def to_spatial_loads(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
+    """Return loads as loads in space, with their heights set by the thickness in mm where not given."""
+    every = (load if isinstance(load, SpatialLoad) else SpatialLoad.from_planar_load(load) for load in loads)
+    return tuple(load.with_height(thickness) for load in every)
 
 
 def check_jaw_force(jaw_force: float | None) -> float | None:
-    """A jaw force in N, or None; refuses one that is negative or no number."""
+    """Return a jaw force in N as float, or None for None.
+
+    Raises
+    ------
+    InputError
+        For one that is negative, not finite, too large, or no number.
+    """
     if jaw_force is None:
         return None
     if not (isfinite(convert_real(jaw_force, "jaw force")) and convert_real(jaw_force) >= 0):
@@ -247,7 +262,7 @@ def check_jaw_force(jaw_force: float | None) -> float | None:
     return convert_real(jaw_force)
 
 
-def supports_of(
+def find_supports(
     fixture: Fixture,
     query: Query,
     request: SupportRequest,
@@ -258,7 +273,7 @@ def supports_of(
     cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Supports:
-    """The supports of one planar fixture, the best first.
+    """Return the supports of one planar fixture, the best first.
 
     Parameters
     ----------
@@ -292,13 +307,19 @@ def yield_supports(
     cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Iterator[Supports]:
-    """Yields the supports of each of some fixtures of a query as they are found.
+    """Yield the supports of each of some fixtures of a query,
+    in order, as they are found; stops early once cancelled.
 
-    ``each`` is how many triples of each fixture, None for all; others are as of :func:`supports_of`.
-    ``drops_weak_force`` says whether a jaw force that is too small for a load is left out, not refused.
+    Parameters
+    ----------
+    each : how many triples of each fixture; None for all.
+    drops_weak_force : whether a jaw force too small for a load is replaced by the one needed, instead of an
+        error.
+
+    The others are as of :func:`find_supports`.
     """
     acting = list_acting_loads(query, request.thickness) if loads is None else loads
-    asked = spatial(acting, request.thickness)
+    asked = to_spatial_loads(acting, request.thickness)
     search = SupportSearch(query, add_program_zones(request, query.workpiece, query.program), asked)
     force = check_jaw_force(jaw_force)
     for number, fixture in enumerate(fixtures):
@@ -308,11 +329,11 @@ def yield_supports(
                 progress((before + fraction) / len(fixtures))
 
         try:
-            found = search.supports(fixture, force, each, cancel, share)
+            found = search.find_supports(fixture, force, each, cancel, share)
         except WeakJawError:
             if not drops_weak_force:
                 raise
-            found = search.supports(fixture, None, each, cancel, share)
+            found = search.find_supports(fixture, None, each, cancel, share)
         yield found
         if found.stopped:
             return

@@ -27,25 +27,25 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept, path_of
-from workhold.contact.trimming import distances
+from workhold.contact.swept import SweptSpans, find_span_path
+from workhold.contact.trimming import measure_distances
 from workhold.model.cutting_forces import CUT_KINDS, DRILLING, MILLING, PLUNGING, CuttingForces
 from workhold.model.cutting_tool import ANY
-from workhold.model.moves import Stretches
+from workhold.model.moves import MoveStretches
 from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone, make_zone
 from workhold.model.support_bodies import size_clamp_pieces
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.workpiece import Workpiece
-from workhold.statics.path_forces import enclose_arcs, hull_of, list_all_pieces
+from workhold.statics.path_forces import compute_hull, enclose_arcs, list_all_pieces
 from workhold.supports.faces import TouchableFace
 
-__all__ = ["list_acting_loads", "capsule", "make_cutting_loads", "add_program_zones"]
+__all__ = ["list_acting_loads", "make_capsule", "make_cutting_loads", "add_program_zones"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-# Forces of one tool that are loads of their own.
+# Largest number of different forces of one tool that are loads of their own.
 MOST_FORCES = 8
 # Half diagonals in mm of the smallest squares, tried until there are few zones.
 FINEST = (0.01, 0.05, 0.25, 1.0)
@@ -56,12 +56,14 @@ FIRST = 16
 
 
 def list_acting_loads(query: Query, thickness: float) -> tuple[Load | SpatialLoad, ...]:
-    """The loads of a query and those that its program makes on a part of a thickness in mm."""
+    """Return the loads of a query, then those that its program makes on a part of this thickness in mm."""
     return (*query.loads, *(() if query.program is None else make_cutting_loads(query.program, thickness)))
 
 
 def make_cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]:
-    """The loads of a program on a part of a thickness in mm; none without forces."""
+    """Return the loads in space that a program makes on a
+    part of this thickness in mm; none without cutting forces.
+    """
     forces = program.forces
     if forces is None:
         return ()
@@ -69,13 +71,15 @@ def make_cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad,
     for tool in program.tools:
         for kind in (MILLING, DRILLING, PLUNGING):
             rows = np.flatnonzero((forces.kind == kind) & (program.moves.tool == tool))
-            for group in alike(forces, rows):
-                found += loads_of(program, forces, group, thickness, f"T{tool} {CUT_KINDS[kind]}")
+            for group in group_by_torque(forces, rows):
+                found += make_loads(program, forces, group, thickness, f"T{tool} {CUT_KINDS[kind]}")
     return tuple(found)
 
 
-def alike(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]:
-    """Moves of one force each; all together where there are more than a few forces."""
+def group_by_torque(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]:
+    """Yield those of ``rows``, indices of moves, with equal torque
+    together; all at once if there are more than eight torques.
+    """
     values, which = np.unique(forces.torque[rows], return_inverse=True)
     if len(values) > MOST_FORCES:
         yield rows
@@ -83,16 +87,18 @@ def alike(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]:
         yield from (rows[which == k] for k in range(len(values)))
 
 
-def loads_of(
+def make_loads(
     program: Program, forces: CuttingForces, rows: IntArray, thickness: float, name: str
 ) -> Iterator[SpatialLoad]:
-    """The loads of some moves on their stretches, with the torque either way round."""
+    """Yield two loads that contain the cutting forces of
+    moves ``rows``, with positive and with negative torque.
+    """
     count, own = len(program.moves), np.isin(forces.stretches.move, rows)
     only = np.zeros(count)
     only[rows] = 1.0
     none = np.zeros(count)
     cut = forces.stretches
-    cut = Stretches(cut.move[own], cut.first[own], cut.last[own])
+    cut = MoveStretches(cut.move[own], cut.first[own], cut.last[own])
     any_way = CuttingForces(only, none, np.zeros((count, 2)), none, ANY, stretches=cut)
     pieces = list_all_pieces(evolve(program, forces=any_way), (0.0, 0.0))
     is_arc = pieces.radius > 0.0
@@ -105,7 +111,7 @@ def loads_of(
     # What a tool does below the part or over it acts at its lower or upper side.
     heights = np.clip([tip.min(), tip.max()], 0.0, thickness)
     load = SpatialLoad(
-        points=hull_of(points).tolist(),
+        points=compute_hull(points).tolist(),
         force=float(forces.force[rows].max()),
         heights=(float(heights[0]), float(heights[1])),
         axial=(float(forces.axial[rows, 0].min()), float(forces.axial[rows, 1].max())),
@@ -119,15 +125,17 @@ def loads_of(
 def add_program_zones(
     request: SupportRequest, workpiece: Workpiece, program: Program | None
 ) -> SupportRequest:
-    """A request with the zones of a program among its own; the request itself without one."""
+    """Return a request with the zones that a program's tools
+    sweep added to its own; unchanged without a program.
+    """
     if program is None:
         return request
 
     def face(loops: tuple[Array, ...] | None) -> TouchableFace:
-        return TouchableFace.of(workpiece.loops if loops is None else loops)
+        return TouchableFace.from_loops(workpiece.loops if loops is None else loops)
 
     below = list_zones_below(program, request.pad_radius, request.pad_margin, KeyedFace(face(request.bottom)))
-    above = list_zones_above(program, levels_of(request), request.tip_radius, KeyedFace(face(request.top)))
+    above = list_zones_above(program, list_levels(request), request.tip_radius, KeyedFace(face(request.top)))
 
     def further(own: tuple[Zone, ...], more: tuple[Zone, ...]) -> tuple[Zone, ...]:
         return (*own, *(zone for zone in more if zone not in own))
@@ -141,7 +149,7 @@ def add_program_zones(
 
 @frozen
 class KeyedFace:
-    """A face that counts as another where their borders are the same."""
+    """A face as a key for caches, equal to another where their borders are equal."""
 
     face: TouchableFace
 
@@ -153,6 +161,7 @@ class KeyedFace:
 
     @property
     def key(self) -> bytes:
+        """Bytes of the borders' coordinates."""
         borders = self.face.borders
         return borders.starts.tobytes() + borders.ends.tobytes() + borders.arcs.tobytes()
 
@@ -161,18 +170,20 @@ class KeyedFace:
 def list_zones_below(
     program: Program, pad_radius: float, pad_margin: float, keyed: KeyedFace
 ) -> tuple[Zone, ...]:
-    """Where no pad may stand: where tools come down to the plane on which the part lies, or below it."""
-    swept = Swept.below(program, 0.0)
-    return zones_of(swept, program.clearance, pad_radius + pad_margin, pad_radius, keyed.face, MOST_BELOW)
+    """Return zones where no pad may stand, as tools come down
+    to the plane on which the part lies, or below; cached.
+    """
+    swept = SweptSpans.from_program(program, 0.0)
+    return find_zones(swept, program.clearance, pad_radius + pad_margin, pad_radius, keyed.face, MOST_BELOW)
 
 
 @lru_cache(maxsize=8)
 def list_zones_above(
     program: Program, levels: tuple[float, ...], tip_radius: float, keyed: KeyedFace
 ) -> tuple[Zone, ...]:
-    """Where the tip may not stand: where tools come too near to the clamp as it is drawn."""
-    return zones_of(
-        Swept.of(list_swept_beside_clamp(program, levels, tip_radius)),
+    """Return zones where the clamp's tip may not stand, as tools come too near to the clamp; cached."""
+    return find_zones(
+        SweptSpans.from_pieces(list_swept_beside_clamp(program, levels, tip_radius)),
         program.clearance,
         tip_radius,
         tip_radius,
@@ -181,8 +192,10 @@ def list_zones_above(
     )
 
 
-def levels_of(request: SupportRequest) -> tuple[float, ...]:
-    """The heights in mm of the faces on which the clamp may press; last that of the part."""
+def list_levels(request: SupportRequest) -> tuple[float, ...]:
+    """Return the heights in mm of the faces on which the
+    clamp may press, ascending, the part's thickness last.
+    """
     lower = {height for height in request.top_heights or () if height < request.thickness}
     return *sorted(lower), request.thickness
 
@@ -190,37 +203,43 @@ def levels_of(request: SupportRequest) -> tuple[float, ...]:
 def list_swept_beside_clamp(
     program: Program, levels: tuple[float, ...], tip_radius: float
 ) -> Iterator[SweptPiece]:
-    """What is swept at the heights of the clamp on top, wider where the clamp is wider than its tip."""
+    """Yield what is swept at the heights of the clamp on each
+    face, enlarged where the clamp is wider than its tip.
+    """
     for low in levels:
         for height, share in size_clamp_pieces(low, levels[-1]):
             wider = max(share - 1.0, 0.0) * tip_radius
-            for one in program.iter_swept(low, low + height):
+            for one in program.iterate_swept_pieces(low, low + height):
                 yield SweptPiece(
                     one.line, one.tool, one.kind, one.path, one.tip, one.radius + wider, one.heights
                 )
             low += height
 
 
-def zones_of(
-    swept: Swept, clearance: float, on_face: float, disc: float, face: TouchableFace, most: int
+def find_zones(
+    swept: SweptSpans, clearance: float, on_face: float, disc: float, face: TouchableFace, most: int
 ) -> tuple[Zone, ...]:
-    """The zones of what is swept that keep discs clear of it, as few of them as do.
+    """Return zones that keep discs clear of what is swept, with as few shapes as suffice; lengths in mm.
 
-    The clearance is kept between the cylinders and a disc of radius ``disc``. The middle of a disc is at
-    least ``on_face`` from the border of the face. All are in mm. Where there are more than ``most`` zones,
-    they are made wider and fewer.
+    Parameters
+    ----------
+    clearance : least distance between the swept cylinders and a disc.
+    on_face : least distance of a disc's centre from the border of the face.
+    disc : radius of the discs.
+    face : on which the discs lie.
+    most : where there are more zones, wider and fewer ones are tried.
     """
     if not len(swept) or not face.faces:
         return ()
     finest, chosen, boxes = FINEST[0], np.zeros(0, np.int64), np.zeros(0, np.int64)
     for finest in FINEST:
-        chosen, boxes = needed(swept, clearance + disc, on_face, face, finest)
+        chosen, boxes = find_needed_spans(swept, clearance + disc, on_face, face, finest)
         if len(chosen) + len(boxes) <= most:
             break
     wide = clearance + 2 * finest
     return (
         *(
-            make_zone(capsule(path_of(swept.tree.rows[k]), float(swept.tree.radius[k]) + wide))
+            make_zone(make_capsule(find_span_path(swept.tree.rows[k]), float(swept.tree.radius[k]) + wide))
             for k in chosen.tolist()
         ),
         *(
@@ -230,13 +249,16 @@ def zones_of(
     )
 
 
-def needed(
-    swept: Swept, keep: float, on_face: float, face: TouchableFace, finest: float
+def find_needed_spans(
+    swept: SweptSpans, keep: float, on_face: float, face: TouchableFace, finest: float
 ) -> tuple[IntArray, IntArray]:
-    """Numbers of the spans, and of the filled boxes, that decide which places of a face are left.
+    """Return the indices of the spans, and of the filled boxes, that decide which places of a face are left.
 
-    ``keep`` is the distance from the cylinders to the middle of a disc, ``finest`` the half diagonal of the
-    smallest squares, both in mm.
+    Parameters
+    ----------
+    keep : least distance in mm of a disc's centre from the cylinders.
+    on_face : least distance in mm of a disc's centre from the border of the face.
+    finest : half diagonal of the smallest squares, in mm.
     """
     low, high = face.box
     side = float(max(high - low)) / FIRST
@@ -245,8 +267,8 @@ def needed(
     border, covered, spans, boxes = [], [], [], set[int]()
     while len(points):
         half = side / 2**0.5
-        points = points[face.room(points) >= on_face - half]
-        reach, nearest = swept.nearest(points, points)
+        points = points[face.measure_room(points) >= on_face - half]
+        reach, nearest = swept.find_nearest_spans(points, points)
         inside, which = find_filled_boxes(swept, points, half)
         boxes.update(which[inside].tolist())
         slack = reach - keep
@@ -257,17 +279,21 @@ def needed(
         if half <= finest:
             border.append(nearest[open_])
             break
-        # A place beside the corner of a box is open as well as long as the box reaches into its square.
+        # A square into which the box reaches stays open, as places beside the box's corner may be free.
         side /= 2
         quarters = side / 2 * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
         points = (points[open_][:, None] + quarters).reshape(-1, 2)
     first = np.unique(np.concatenate([np.zeros(0, np.int64), *border]))
     squares, own = np.concatenate([np.zeros((0, 3)), *covered]), np.concatenate([first[:0], *spans])
-    return covering(swept, first, squares, own, keep), np.array(sorted(boxes), np.int64)
+    return choose_covering_spans(swept, first, squares, own, keep), np.array(sorted(boxes), np.int64)
 
 
-def find_filled_boxes(swept: Swept, points: Array, half: float) -> tuple[NDArray[np.bool_], IntArray]:
-    """Whether squares about points (N, 2) lie in a filled box, and in which (N,)."""
+def find_filled_boxes(swept: SweptSpans, points: Array, half: float) -> tuple[NDArray[np.bool_], IntArray]:
+    """Return whether (N,) squares about points (N, 2) lie
+    in a filled box, and the box's index (N,), -1 for none.
+
+    A square counts as in a box if its centre is at least ``half`` mm from the box's sides.
+    """
     inside, which = np.zeros(len(points), np.bool_), np.full(len(points), -1)
     for number, (x0, y0, x1, y1) in enumerate(swept.filled.tolist()):
         x, y = points.T
@@ -276,10 +302,13 @@ def find_filled_boxes(swept: Swept, points: Array, half: float) -> tuple[NDArray
     return inside, which
 
 
-def covering(swept: Swept, first: IntArray, squares: Array, own: IntArray, keep: float) -> IntArray:
-    """Spans that cover squares (N, 3), middles and half diagonals: some at first, then those that cover most.
+def choose_covering_spans(
+    swept: SweptSpans, first: IntArray, squares: Array, own: IntArray, keep: float
+) -> IntArray:
+    """Return ascending indices of spans that cover squares (N, 3)
+    of centre and half diagonal: ``first``, and more as needed.
 
-    ``own`` (N,) is a span that covers each square.
+    ``own`` (N,) is the index of a span that covers each square.
     """
     chosen, open_ = first, np.ones(len(squares), np.bool_)
     for number in first.tolist():
@@ -292,25 +321,28 @@ def covering(swept: Swept, first: IntArray, squares: Array, own: IntArray, keep:
     return np.sort(chosen)
 
 
-def covers(swept: Swept, number: int, squares: Array, keep: float) -> NDArray[np.bool_]:
-    """Whether what is swept along a span leaves nothing of each of some squares (N, 3)."""
+def covers(swept: SweptSpans, number: int, squares: Array, keep: float) -> NDArray[np.bool_]:
+    """Return whether (N,) a span, widened by ``keep`` mm,
+    covers each square (N, 3) of centre and half diagonal.
+    """
     row = swept.tree.rows[number : number + 1]
-    away = distances(row, squares[None, :, 0], squares[None, :, 1])[0]
+    away = measure_distances(row, squares[None, :, 0], squares[None, :, 1])[0]
     hidden: NDArray[np.bool_] = away - swept.tree.radius[number] - keep < -squares[:, 2]
     return hidden
 
 
-def capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
-    """The border of all that is nearer to a point, a segment, or an arc of at most half a turn than a radius.
+def make_capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
+    """Return the border, as vertices [x, y, bulge]
+    counter-clockwise, of all points within ``radius`` mm of a path.
 
-    Its vertices, x, y and bulge, run counter-clockwise.
+    The path is a point, a segment, or an arc of at most half a turn.
     """
     x, y, bulge = path[0]
     if len(path) == 1:
         return [[x - radius, y, 1.0], [x + radius, y, 1.0]]
     if bulge < 0.0:
         (to_x, to_y, _) = path[1]
-        return capsule(((to_x, to_y, -bulge), (x, y, 0.0)), radius)
+        return make_capsule(((to_x, to_y, -bulge), (x, y, 0.0)), radius)
     start, end = np.array([x, y]), np.array(path[1][:2])
     chord = end - start
     along = chord / np.hypot(*chord)
@@ -331,7 +363,7 @@ def capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
             (start - radius * out, 1.0),
         ]
         return [[*place.tolist(), bent] for place, bent in corners]
-    # The inner border is gone; the circles about both ends meet behind the centre.
+    # There is no inner border; the circles about both ends meet behind the centre.
     middle, half_chord = (start + end) / 2, float(np.hypot(*chord)) / 2
     apex = middle + np.array([-along[1], along[0]]) * np.sqrt(max(radius**2 - half_chord**2, 0.0))
     turns = [
@@ -343,6 +375,8 @@ def capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
 
 
 def measure_sweep_between(center: Array, one: Array, other: Array) -> float:
-    """The angle from one point about a centre to another, counter-clockwise, in radians from 0 to 2 pi."""
+    """Return the counter-clockwise angle about a centre
+    from one point to another, in radians in [0, 2 pi).
+    """
     a, b = one - center, other - center
     return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) % (2 * pi)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import loop_segments
+from workhold.geometry.loop import make_loop_segments
 from workhold.model.fixture import Fixture
 from workhold.model.straps import StrapHardware
 from workhold.model.support_request import SupportRequest
@@ -51,10 +51,10 @@ class StrapPlaces:
 def find_strap_places(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, request: SupportRequest, straps: StrapHardware
 ) -> StrapPlaces:
-    """The places for straps on the plate of a fixture, which the part lies on."""
+    """Return the places for straps on the plate of a fixture, which the part lies on."""
     top, bottom = find_top_face(workpiece, request), None
     if request.bottom is None or request.bottom:
-        bottom = TouchableFace.of(request.bottom or [np.asarray(loop) for loop in workpiece.loops])
+        bottom = TouchableFace.from_loops(request.bottom or [np.asarray(loop) for loop in workpiece.loops])
     if top is None or bottom is None:
         return StrapPlaces(np.zeros((0, 2), np.int64), np.zeros((0, 2)))
     hole, points = find_bolt_holes(fixture, workpiece, toolkit, straps)
@@ -64,7 +64,7 @@ def find_strap_places(
     at = (points[:, None] + ring).reshape(-1, 2)
     hole = np.repeat(hole, len(ring), axis=0)
     on_part = np.column_stack(fixture.pose.inverse.apply(*at.T))
-    room = np.minimum(top.room(on_part), bottom.room(on_part))
+    room = np.minimum(top.measure_room(on_part), bottom.measure_room(on_part))
     kept = room >= straps.tip_radius - GAP_SLACK
     return StrapPlaces(hole[kept], at[kept])
 
@@ -75,7 +75,7 @@ def find_top_face(workpiece: Workpiece, request: SupportRequest) -> TouchableFac
         return None
     outline = [np.asarray(loop) for loop in workpiece.loops]
     zones = (zone.loop for zone in request.top_zones)
-    return TouchableFace.of(request.top or outline, zones, request.top_heights)
+    return TouchableFace.from_loops(request.top or outline, zones, request.top_heights)
 
 
 def find_bolt_holes(
@@ -84,11 +84,11 @@ def find_bolt_holes(
     """The holes (B, 2) in which a bolt stands free within a strap's reach of the part, and their places (B, 2) in mm."""
     plate = next(carrier for carrier in toolkit.carriers if carrier.has_lattice and carrier.travel is None)
     bolts = plate if toolkit.strap_set is None else toolkit.strap_set.bolts
-    part = FaceBorders(tuple(loop_segments(np.asarray(loop)) for loop in workpiece.loops))
+    part = FaceBorders(tuple(make_loop_segments(np.asarray(loop)) for loop in workpiece.loops))
     x0, y0, x1, y1 = workpiece.bounds
     corners = np.array(fixture.pose.apply(np.array([x0, x1, x0, x1]), np.array([y0, y0, y1, y1])))
     reach = straps.reach[1]
-    first, pitch = np.array(bolts.place(0, 0)), np.array(bolts.pitch)
+    first, pitch = np.array(bolts.compute_hole_center(0, 0)), np.array(bolts.pitch)
     low = np.floor((corners.min(axis=1) - reach - first) / pitch).astype(np.int64)
     high = np.ceil((corners.max(axis=1) + reach - first) / pitch).astype(np.int64)
     if bolts.columns is not None:
@@ -107,12 +107,12 @@ def find_bolt_holes(
         if (column, row) not in taken and not plate.is_blocked(column, row)
     ]
     hole = np.array(holes, np.int64).reshape(-1, 2)
-    points = np.column_stack(bolts.place(hole[:, 0], hole[:, 1])).reshape(-1, 2)
+    points = np.column_stack(bolts.compute_hole_center(hole[:, 0], hole[:, 1])).reshape(-1, 2)
     back = fixture.pose.inverse
     beside = np.column_stack(back.apply(*points.T))
     # In the outline, and in no opening of it, a point is within an odd number of loops.
     is_under = part.contains(beside).sum(axis=1) % 2 == 1
-    free = ~is_under & (part.distance(beside).min(axis=1) >= plate.peg_radius - GAP_SLACK)
+    free = ~is_under & (part.measure_distances(beside).min(axis=1) >= plate.peg_radius - GAP_SLACK)
     if bolts is not plate:
         at_pegs = np.array([(peg.x, peg.y) for peg in pegs]).reshape(-1, 2)
         apart = np.hypot(*np.moveaxis(points[:, None] - at_pegs[None], 2, 0))

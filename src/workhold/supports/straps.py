@@ -26,7 +26,7 @@ from workhold.fixels.carrier import Carrier
 from workhold.fixels.support_hardware import SupportPads
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import compute_convex_hull
-from workhold.geometry.loop import loop_segments
+from workhold.geometry.loop import make_loop_segments
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.friction import (
@@ -34,17 +34,17 @@ from workhold.model.friction import (
     COUNTED_OVER_SUPPORTS,
     SAFETY,
     Coefficients,
-    coefficients_of,
     find_friction_coefficient,
+    to_coefficients,
 )
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone
 from workhold.model.straps import Strap, StrapHardware, StrappedHold
 from workhold.model.support_request import SpatialLoad, SupportRequest
-from workhold.statics.friction import MotionProgram, directed
-from workhold.statics.jaw_program import CuttingPieces, PressedPart, worst_of_program
+from workhold.statics.friction import MotionProgram, enclose_directions
+from workhold.statics.jaw_program import CuttingPieces, PressedPart, find_worst_move
 from workhold.statics.patches import PressedPolygon
 from workhold.statics.strapped import StrappedPart, StrapsOnPart
 from workhold.supports.hand_push import find_hand_push
@@ -58,8 +58,8 @@ __all__ = [
     "StrapSearch",
     "ask_for_straps",
     "find_straps",
-    "question_of",
-    "usual_request",
+    "make_question",
+    "make_usual_request",
 ]
 
 Array = NDArray[np.float64]
@@ -112,24 +112,24 @@ class StrapQuestion:
         """The names of the coefficients of friction that count."""
         return COUNTED_OVER_SUPPORTS if self.is_over_supports else COUNTED_BY_STRAPS
 
-    def plate(self, fixture: Fixture) -> Carrier:
-        """The plate of a fixture, with the holes for locators and bolts."""
-        return next(one for one in toolkit_of(fixture).carriers if one.has_lattice and one.travel is None)
+    def find_plate(self, fixture: Fixture) -> Carrier:
+        """Return the plate of a fixture, with the holes for locators and bolts."""
+        return next(one for one in get_toolkit(fixture).carriers if one.has_lattice and one.travel is None)
 
-    def bolts(self, fixture: Fixture) -> Carrier:
-        """The holes for bolts on the plate of a fixture."""
-        straps = toolkit_of(fixture).strap_set
-        return self.plate(fixture) if straps is None else straps.bolts
+    def get_bolt_holes(self, fixture: Fixture) -> Carrier:
+        """Return the holes for bolts on the plate of a fixture."""
+        straps = get_toolkit(fixture).strap_set
+        return self.find_plate(fixture) if straps is None else straps.bolts
 
-    def locators(self, fixture: Fixture) -> list[Peg]:
-        """The pegs of a fixture that stand still, among them the ends of a contact with a wall.
+    def list_locators(self, fixture: Fixture) -> list[Peg]:
+        """Return the pegs of a fixture that stand still, among them the ends of a contact with a wall.
 
         Raises
         ------
         InputError
             For a fixture that has other than three on one plate.
         """
-        toolkit = toolkit_of(fixture)
+        toolkit = get_toolkit(fixture)
         still = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).travel is None]
         if len(toolkit.plates) != 1 or len(still) != LOCATORS:
             raise InputError(
@@ -138,41 +138,41 @@ class StrapQuestion:
         return still
 
 
-def toolkit_of(fixture: Fixture) -> Toolkit:
-    """The toolkit of a fixture of a result."""
+def get_toolkit(fixture: Fixture) -> Toolkit:
+    """Return the toolkit of a fixture of a result."""
     return fixture.listing.result.toolkit
 
 
-def usual_request(
+def make_usual_request(
     query: Query, thickness: float | None, tip_radius: float, zones: Sequence[Zone] = ()
 ) -> SupportRequest:
-    """The faces of a part that tips and plate may touch, as a solid says them.
+    """Return the faces of a part that tips and plate may touch, as a solid says them.
 
     Parameters
     ----------
     thickness : in mm; that of the solid if None.
     zones : where no tip may stand.
     """
-    usual = SupportRequest.of(query.workpiece, thickness, tip_radius=tip_radius)
+    usual = SupportRequest.from_workpiece(query.workpiece, thickness, tip_radius=tip_radius)
     return evolve(usual, top_zones=tuple(zones))
 
 
-def question_of(query: Query) -> StrapQuestion:
-    """What a query whose toolkit has straps asks of them; tips stand off its keep-out zones as locators do."""
+def make_question(query: Query) -> StrapQuestion:
+    """Return what a query whose toolkit has straps asks of them; tips stand off its keep-out zones as locators do."""
     straps = query.toolkit.strap_set
     assert straps is not None
     # Without loads nobody need know how thick the part is.
     height = None if query.part_height is not None else UNKNOWN_HEIGHT
     zones = query.restrictions.zones
-    request = usual_request(query, height or query.thickness, straps.tip_radius, zones)
+    request = make_usual_request(query, height or query.thickness, straps.tip_radius, zones)
     if straps.is_over_supports:
-        pads = SupportRequest.of(query.workpiece, request.thickness, toolkit=query.toolkit)
+        pads = SupportRequest.from_workpiece(query.workpiece, request.thickness, toolkit=query.toolkit)
         pads.refuse_fat_pads(query.toolkit)
         request = evolve(request, pad_radius=pads.pad_radius, pad_margin=pads.pad_margin, bottom_zones=zones)
     return StrapQuestion(
-        StrapHardware.of(straps),
+        StrapHardware.from_straps(straps),
         request,
-        tuple(SpatialLoad.of(load) for load in query.loads),
+        tuple(SpatialLoad.from_planar_load(load) for load in query.loads),
         query.friction,
         query.safety_factor,
         query.weight or 0.0,
@@ -184,7 +184,7 @@ def question_of(query: Query) -> StrapQuestion:
 def find_straps(
     fixture: Fixture, query: Query, asked: StrapQuestion, cancel: Event | None = None
 ) -> StrappedHold:
-    """The straps that hold a part with the least force against the three locators of a fixture on a plate.
+    """Return the straps that hold a part with the least force against the three locators of a fixture on a plate.
 
     What pushes the part sideways in the fixture is not there; a hand does it until the straps are tight.
 
@@ -193,7 +193,7 @@ def find_straps(
     InputError
         For a fixture that has other than three locators on one plate.
     """
-    return StrapSearch(fixture, query, asked).best(cancel)
+    return StrapSearch(fixture, query, asked).find_best(cancel)
 
 
 def ask_for_straps(
@@ -207,19 +207,23 @@ def ask_for_straps(
     weight: float = 0.0,
     zones: Sequence[Zone] = (),
 ) -> StrappedHold:
-    """The straps of a fixture, with what nobody says as usual; see :meth:`workhold.model.fixture.Fixture.straps`."""
+    """Return the straps of a fixture, with what nobody says as usual; see
+    :meth:`workhold.model.fixture.Fixture.straps`.
+    """
     query = fixture.listing.result.query
     given = query.loads if loads is None else loads
     if not given:
         raise InputError(NO_LOADS)
-    spatial = tuple(load if isinstance(load, SpatialLoad) else SpatialLoad.of(load) for load in given)
-    request = usual_request(query, thickness, straps.tip_radius, zones)
+    spatial = tuple(
+        load if isinstance(load, SpatialLoad) else SpatialLoad.from_planar_load(load) for load in given
+    )
+    request = make_usual_request(query, thickness, straps.tip_radius, zones)
     factor = SAFETY if safety is None else safety
     if not (isfinite(factor) and factor > 0):
         raise InputError(f"safety factor {factor:g} cannot be used: give a number above 0, such as 2.")
     if not (isfinite(weight) and weight >= 0):
         raise InputError(f"weight {weight:g} cannot be used: give it in N, 0 or more.")
-    asked = StrapQuestion(straps, request, spatial, coefficients_of(friction), factor, weight)
+    asked = StrapQuestion(straps, request, spatial, to_coefficients(friction), factor, weight)
     return find_straps(fixture, query, asked)
 
 
@@ -234,7 +238,7 @@ class StrapSearch:
     @cached_property
     def locators(self) -> list[int]:
         """The numbers of the pegs that stand still, among them the ends of a contact with a wall."""
-        still = self.asked.locators(self.fixture)
+        still = self.asked.list_locators(self.fixture)
         return [number for number, peg in enumerate(self.fixture.pegs) if any(peg is one for one in still)]
 
     @cached_property
@@ -247,8 +251,8 @@ class StrapSearch:
         fixture, request = self.fixture, self.asked.request
         touched, inward = fixture.contact_points[self.locators], -fixture.normals[self.locators]
         workpiece = self.query.workpiece
-        bands = request.for_fixture(fixture, workpiece.solid, numbered=workpiece.numbered)
-        heights = bands.peg_bands(len(fixture.pegs))[self.locators]
+        bands = request.adapt_to_fixture(fixture, workpiece.solid, numbered=workpiece.numbered)
+        heights = bands.list_peg_bands(len(fixture.pegs))[self.locators]
         return StrappedPart(
             touched, inward, heights, below, find_friction_coefficient(self.asked.friction, self.asked.below)
         )
@@ -258,7 +262,9 @@ class StrapSearch:
         """What of the part lies on the plate, in the plate's frame."""
         loops = self.asked.request.bottom or self.query.workpiece.loops
         return PressedPolygon(
-            tuple(self.fixture.pose.apply(chord_loop(loop_segments(np.asarray(loop)))) for loop in loops)
+            tuple(
+                self.fixture.pose.apply(flatten_loop(make_loop_segments(np.asarray(loop)))) for loop in loops
+            )
         )
 
     @cached_property
@@ -268,12 +274,12 @@ class StrapSearch:
         straps = query.toolkit.strap_set
         if asked.program is None or straps is None:
             return places
-        bolts = asked.bolts(self.fixture)
+        bolts = asked.get_bolt_holes(self.fixture)
         clear = are_clear(
             asked.program,
             self.fixture.pose,
             places.at,
-            np.column_stack(bolts.place(places.hole[:, 0], places.hole[:, 1])).reshape(-1, 2),
+            np.column_stack(bolts.compute_hole_center(places.hole[:, 0], places.hole[:, 1])).reshape(-1, 2),
             self.measure_heights(places.at),
             straps,
         )
@@ -287,17 +293,17 @@ class StrapSearch:
     def measure_heights(self, at: Array) -> Array:
         """The heights (N,) in mm of the face on which tips at points (N, 2) of the plate press, above its foot."""
         request, back = self.asked.request, self.fixture.pose.inverse
-        return np.array([request.clamped_height((float(x), float(y))) for x, y in back.apply(at)])
+        return np.array([request.find_clamped_height((float(x), float(y))) for x, y in back.apply(at)])
 
     @cached_property
     def down(self) -> Array:
         """Wrenches (P, 6) of the unit force of a tip at each place."""
-        return self.part.level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
+        return self.part.compute_level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
 
     @cached_property
     def tip_friction(self) -> Array:
         """Wrenches (P, 16, 6) of unit forces of friction of a tip at each place."""
-        return self.part.friction_wrenches(self.places.at, self.heights)
+        return self.part.compute_friction_wrenches(self.places.at, self.heights)
 
     @property
     def coefficient(self) -> float:
@@ -309,8 +315,8 @@ class StrapSearch:
         part, asked, weight = self.part, self.asked, self.weight
         out = []
         for load in asked.loads:
-            points, forces = list_load_corners(load.at_height(asked.request.thickness), self.fixture)
-            rows = part.wrenches(points, forces)
+            points, forces = list_load_corners(load.with_height(asked.request.thickness), self.fixture)
+            rows = part.compute_wrenches(points, forces)
             tilt = self.fixture.pose.turn(np.array([load.tilt]))[0]
             rows[:, 3:] += np.array([*tilt, load.moment]) / part.length
             out.append(rows * asked.safety + weight)
@@ -321,7 +327,9 @@ class StrapSearch:
         """The wrench (6,) of the part's weight, at the middle of its foot."""
         integrals = self.foot.integrals[0]
         middle = (integrals[1:] / integrals[0])[None]
-        return np.asarray(self.asked.weight * self.part.level_wrenches(middle, 0.0, (0.0, 0.0, -1.0))[0])
+        return np.asarray(
+            self.asked.weight * self.part.compute_level_wrenches(middle, 0.0, (0.0, 0.0, -1.0))[0]
+        )
 
     @cached_property
     def cuts(self) -> CuttingPieces | None:
@@ -332,13 +340,13 @@ class StrapSearch:
         cuts = CuttingPieces.from_program(program, self.asked.request.thickness)
         return cuts if len(cuts) else None
 
-    def program_need(self, grip: StrapsOnPart) -> ProgramNeed | None:
+    def program_need(self, grip: StrapsOnPart) -> ProgramJawForce | None:
         """What the tools of the program ask of each strap; None without their forces."""
         cuts, program, pose = self.cuts, self.asked.program, self.fixture.pose
         if cuts is None or program is None:
             return None
         theta = radians(pose.theta_deg)
-        return worst_of_program(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, self.weight)
+        return find_worst_move(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, self.weight)
 
     def reckon(self, grip: StrapsOnPart, keep: Callable[[Array, float], None], enough: float) -> float:
         """The force that loads and program ask of straps, or a bound that is not below ``enough``.
@@ -348,7 +356,7 @@ class StrapSearch:
         """
         program, need = MotionProgram(grip), 0.0
         for row in (row for rows in self.loads for row in rows):
-            force, motion = program.driven_by(row)
+            force, motion = program.find_driven_motion(row)
             power = float(-row @ motion)
             if force is None:
                 keep(motion / np.abs(motion).max(), power / np.abs(motion).max())
@@ -369,49 +377,49 @@ class StrapSearch:
         pressed = PressedPart(cuts, grip, motions, theta, (pose.x, pose.y), self.asked.safety, self.weight)
         force, _, hardest = pressed.climb()
         for motion in motions.motions:
-            load, _ = pressed.hardest_against(motion)
+            load, _ = pressed.find_hardest_load(motion)
             keep(motion, float(-load @ motion))
         if force == inf:
-            _, motion = motions.driven_by(hardest)
+            _, motion = motions.find_driven_motion(hardest)
             keep(motion / np.abs(motion).max(), float(-hardest @ motion) / np.abs(motion).max())
         return force
 
-    def on(self, chosen: Sequence[int]) -> StrapsOnPart:
-        """The part with straps at some places."""
+    def place_straps(self, chosen: Sequence[int]) -> StrapsOnPart:
+        """Return the part with straps at some places."""
         numbers = list(chosen)
         return StrapsOnPart(self.part, self.down[numbers], self.tip_friction[numbers], self.coefficient)
 
-    def needs(self, chosen: Sequence[int]) -> tuple[float | None, ...]:
-        """The force in N of each strap at some places that each load asks for; None where none is enough."""
-        return self.needs_of(self.on(chosen))
+    def compute_needs(self, chosen: Sequence[int]) -> tuple[float | None, ...]:
+        """Return the force in N of each strap at some places that each load asks for; None where none is enough."""
+        return self.needs_of(self.place_straps(chosen))
 
     def needs_of(self, grip: StrapsOnPart) -> tuple[float | None, ...]:
         """The force in N of each strap of a part that each load asks for; None where none is enough."""
         program = MotionProgram(grip)
         out = []
         for rows in self.loads:
-            forces = [program.least_force(row) for row in rows]
+            forces = [program.find_least_force(row) for row in rows]
             out.append(
                 None if None in forces else max((one for one in forces if one is not None), default=0.0)
             )
         return tuple(out)
 
-    def clear(self) -> BoolArray:
-        """Whether two straps can be at two places (P, P): bolts in two holes, and tips side by side."""
+    def find_compatible_pairs(self) -> BoolArray:
+        """Return whether two straps can be at two places (P, P): bolts in two holes, and tips side by side."""
         hole, at = self.places.hole, self.places.at
         same = (hole[:, None] == hole[None]).all(axis=2)
         apart = np.hypot(*np.moveaxis(at[:, None] - at[None], 2, 0))
         return np.asarray(~same & (apart >= 2 * self.asked.straps.tip_radius - ALIKE))
 
-    def best(self, cancel: Event | None = None) -> StrappedHold:
-        """The straps that need the least force."""
+    def find_best(self, cancel: Event | None = None) -> StrappedHold:
+        """Return the straps that need the least force."""
         if self.asked.is_over_supports:
             return self.best_over_supports(cancel)
-        hold = evolve(self.unloaded(), places=len(self.places))
-        chosen = SetSearch(self).least(self.asked.straps.count, cancel)
+        hold = evolve(self.find_unloaded_hold(), places=len(self.places))
+        chosen = SetSearch(self).find_least(self.asked.straps.count, cancel)
         if chosen is None:
             return hold
-        each = self.needs(chosen)
+        each = self.compute_needs(chosen)
         straps = tuple(
             Strap(
                 (int(self.places.hole[k, 0]), int(self.places.hole[k, 1])),
@@ -421,13 +429,16 @@ class StrapSearch:
             for k in chosen
         )
         return evolve(
-            hold, straps=straps, clamp_needed_each=each, program_need=self.program_need(self.on(chosen))
+            hold,
+            straps=straps,
+            clamp_needed_each=each,
+            program_need=self.program_need(self.place_straps(chosen)),
         )
 
     def best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
         """The supports and the straps over them that need the least force."""
         pads = PadPlaces.of(self)
-        hold, found = evolve(self.unloaded(), places=len(pads)), SupportedStraps(self, pads)
+        hold, found = evolve(self.find_unloaded_hold(), places=len(pads)), SupportedStraps(self, pads)
         chosen = found.least(cancel)
         if chosen is None:
             return hold
@@ -449,8 +460,8 @@ class StrapSearch:
             supports=tuple(holes[k] for k in chosen.pads),
         )
 
-    def unloaded(self) -> StrappedHold:
-        """The push by hand alone, without any straps."""
+    def find_unloaded_hold(self) -> StrappedHold:
+        """Return the push by hand alone, without any straps."""
         workpiece = self.query.workpiece
         segments = [self.fixture.pose.carry(one) for one in workpiece.segments[: workpiece.outer_count]]
         push = find_hand_push(segments, self.part.touched, self.part.inward)
@@ -464,8 +475,10 @@ class StrapSearch:
         normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
         return np.column_stack([normals, (normals * corners).sum(axis=1)])
 
-    def press_flat(self, sets: IntArray) -> BoolArray:
-        """Whether the plate bears all over the foot where straps at sets of places (N, K) press: in its kern."""
+    def find_pressing_flat(self, sets: IntArray) -> BoolArray:
+        """Return whether the plate bears all over the foot where straps at sets of places (N, K) press: in its
+        kern.
+        """
         middle = np.zeros((len(sets), 2))
         for k in range(sets.shape[1]):
             middle += self.places.at[sets[:, k]] / sets.shape[1]
@@ -495,20 +508,23 @@ class SetSearch:
     def __attrs_post_init__(self) -> None:
         self.work, self.power = np.zeros((len(self.search.places), 0)), np.zeros(0)
 
-    def least(self, count: int, cancel: Event | None = None) -> tuple[int, ...] | None:
-        """The places of so many straps that need the least force, in order; None where there are no such places.
+    def find_least(self, count: int, cancel: Event | None = None) -> tuple[int, ...] | None:
+        """Return the places of so many straps that need the least force, in order; None where there are no such
+        places.
 
         Where no force is enough it is the first set.
         """
-        may = self.search.clear()
-        for sets in list_sets(may, count, self.lowest_bound):
+        may = self.search.find_compatible_pairs()
+        for sets in list_sets(may, count, self.can_improve):
             if cancel is not None and cancel.is_set():
                 break
-            self.look_at(sets)
+            self.search_sets(sets)
         return self.chosen
 
-    def bounds(self, sets: IntArray, since: int = 0) -> Array:
-        """The least force (N,) that sets (N, K) may need, by the motions from one on; infinite where none is enough."""
+    def bound_forces(self, sets: IntArray, since: int = 0) -> Array:
+        """Return the least force (N,) that sets (N, K) may need, by the motions from one on; infinite where none is
+        enough.
+        """
         work, power = self.work[:, since:], self.power[since:]
         out = np.zeros(len(sets))
         for number, driven in enumerate(power):
@@ -519,8 +535,8 @@ class SetSearch:
             np.maximum(out, np.divide(driven, done, out=np.full(len(sets), inf), where=done > 0.0), out=out)
         return out
 
-    def lowest_bound(self, taken: Sequence[int], more: int) -> bool:
-        """Whether some set with these places, and so many more, may need less than what was found."""
+    def can_improve(self, taken: Sequence[int], more: int) -> bool:
+        """Return whether some set with these places, and so many more, may need less than what was found."""
         if not len(self.power) or self.least_force == inf:
             return True
         most = self.work[list(taken)].sum(axis=0) + more * np.maximum(self.work.max(axis=0), 0.0)
@@ -528,29 +544,29 @@ class SetSearch:
             bound = np.where(most > 0.0, self.power / np.where(most > 0.0, most, 1.0), inf).max()
         return bool(bound < self.least_force * (1.0 - ALIKE))
 
-    def look_at(self, sets: IntArray) -> None:
-        """Looks among sets (N, K) for one that needs less than the best so far."""
-        sets = sets[self.search.press_flat(sets)]
-        bounds, seen = self.bounds(sets), len(self.power)
+    def search_sets(self, sets: IntArray) -> None:
+        """Look among sets (N, K) for one that needs less than the best so far."""
+        sets = sets[self.search.find_pressing_flat(sets)]
+        bounds, seen = self.bound_forces(sets), len(self.power)
         if self.chosen is None and len(sets):
             self.chosen = tuple(sets[0].tolist())
         while len(sets):
             first = int(bounds.argmin())
             if bounds[first] >= self.least_force * (1.0 - ALIKE) or bounds[first] == inf:
                 return
-            need = self.reckon(sets[first])
+            need = self.compute_force(sets[first])
             if need < self.least_force:
                 self.least_force, self.chosen = need, tuple(sets[first].tolist())
-            bounds = np.maximum(bounds, self.bounds(sets, seen))
+            bounds = np.maximum(bounds, self.bound_forces(sets, seen))
             bounds[first], seen = inf, len(self.power)
 
-    def reckon(self, chosen: IntArray) -> float:
-        """The force that a set (K,) needs, or a bound that is not below the best; its motions are kept."""
+    def compute_force(self, chosen: IntArray) -> float:
+        """Return the force that a set (K,) needs, or a bound that is not below the best; its motions are kept."""
         search = self.search
-        return search.reckon(search.on(chosen.tolist()), self.keep, self.least_force)
+        return search.reckon(search.place_straps(chosen.tolist()), self.keep_motion, self.least_force)
 
-    def keep(self, motion: Array, power: float) -> None:
-        """Keeps a motion (6,) that a load drives with a power."""
+    def keep_motion(self, motion: Array, power: float) -> None:
+        """Keep a motion (6,) that a load drives with a power."""
         search = self.search
         rubbed = (search.tip_friction @ motion).max(axis=1, initial=0.0)
         work = search.down @ motion + search.coefficient * rubbed
@@ -561,7 +577,7 @@ class SetSearch:
 def list_sets(
     may: BoolArray, count: int, is_promising: Callable[[Sequence[int], int], bool]
 ) -> Iterator[IntArray]:
-    """Sets (N, K) of places, in order, that may stand together by (P, P); those of the same first ones at once."""
+    """Return the sets (N, K) of places that may stand together by (P, P), in order; those of the same first ones at once."""
 
     def extend(taken: tuple[int, ...], free: IntArray) -> Iterator[IntArray]:
         more = count - len(taken)
@@ -581,10 +597,10 @@ def list_sets(
 
 
 def list_load_corners(load: SpatialLoad, fixture: Fixture) -> tuple[Array, Array]:
-    """Points (N, 3) in mm and forces (N, 3) in N on the plate, the worst of a load among them."""
+    """Return points (N, 3) in mm and forces (N, 3) in N on the plate, the worst of a load among them."""
     pose = fixture.pose
     low, high = (radians(angle + pose.theta_deg) for angle in load.directions)
-    ways = directed(low, high) if load.force else np.zeros((1, 2))
+    ways = enclose_directions(low, high) if load.force else np.zeros((1, 2))
     points = pose.apply(np.array(load.points or ((0.0, 0.0),)))
     heights = sorted(set(load.heights or (0.0, 0.0)))
     rows = [
@@ -595,8 +611,8 @@ def list_load_corners(load: SpatialLoad, fixture: Fixture) -> tuple[Array, Array
     return places, forces
 
 
-def chord_loop(segments: Sequence[Segment]) -> Array:
-    """The corners (N, 2) of a loop whose arcs are chords, at most 0.1 mm off."""
+def flatten_loop(segments: Sequence[Segment]) -> Array:
+    """Return the corners (N, 2) of a loop whose arcs are chords, at most 0.1 mm off."""
     out = list[tuple[float, float]]()
     for one in segments:
         if not isinstance(one, Arc):

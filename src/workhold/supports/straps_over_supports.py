@@ -30,7 +30,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.statics.friction import BROKEN
 from workhold.statics.strapped import StrappedPart, StrapsOnPart
 from workhold.supports.choosing import list_triples
-from workhold.supports.faces import TouchableFace, area_center
+from workhold.supports.faces import TouchableFace, compute_area_center
 from workhold.supports.holes import find_holes_under_face
 from workhold.supports.strap_places import find_bolt_holes, find_top_face
 from workhold.supports.straps_past_tools import are_clear, keep_clear
@@ -78,11 +78,13 @@ class PadPlaces:
             For more of them than can be looked at.
         """
         fixture, query, asked = search.fixture, search.query, search.asked
-        request, plate = asked.request, asked.plate(fixture)
+        request, plate = asked.request, asked.find_plate(fixture)
         outline = [np.asarray(loop) for loop in query.workpiece.loops]
         if request.bottom is not None and not request.bottom:
             return cls(np.zeros((0, 2), np.int64), np.zeros((0, 2)), ())
-        bottom = TouchableFace.of(request.bottom or outline, (zone.loop for zone in request.bottom_zones))
+        bottom = TouchableFace.from_loops(
+            request.bottom or outline, (zone.loop for zone in request.bottom_zones)
+        )
         found = find_holes_under_face(fixture, query.toolkit, bottom, request)
         hole = np.column_stack([found.column, found.row])
         most = [np.inf if count is None else count for count in (plate.columns, plate.rows)]
@@ -93,7 +95,7 @@ class PadPlaces:
                 f"{len(hole)} holes under the part could hold a support, more than {MOST_PADS}: give supports a larger "
                 "pad margin, or the plate a larger pitch."
             )
-        at = np.column_stack(plate.place(hole[:, 0], hole[:, 1])).reshape(-1, 2)
+        at = np.column_stack(plate.compute_hole_center(hole[:, 0], hole[:, 1])).reshape(-1, 2)
         if asked.program is not None:
             below = np.column_stack(fixture.pose.inverse.apply(at[:, 0], at[:, 1]))
             swept = find_swept_below(asked.program, 0.0)
@@ -109,7 +111,7 @@ def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int
     if top is None or not len(at):
         return ((),) * len(at)
     x, y = fixture.pose.inverse.apply(at[:, 0], at[:, 1])
-    tip = top.room(np.column_stack([x, y])) >= asked.straps.tip_radius - GAP_SLACK
+    tip = top.measure_room(np.column_stack([x, y])) >= asked.straps.tip_radius - GAP_SLACK
     holes, points = find_bolt_holes(fixture, query.workpiece, query.toolkit, asked.straps)
     apart = np.hypot(*np.moveaxis(at[:, None] - points[None], 2, 0))
     least, most = asked.straps.reach
@@ -130,7 +132,7 @@ def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int
 
 def find_middle(fixture: Fixture, workpiece: Workpiece) -> Array:
     """The middle (2,) of the area of the part of a fixture, in mm in the plate's frame."""
-    x, y = area_center(workpiece.loop_segments)
+    x, y = compute_area_center(workpiece.loop_segments)
     return np.array(fixture.pose.apply(float(x), float(y)))
 
 
@@ -195,12 +197,12 @@ class SupportedStraps:
     @cached_property
     def down(self) -> Array:
         """Wrenches (H, 6) of the unit force of a tip over each pad."""
-        return self.whole.level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
+        return self.whole.compute_level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
 
     @cached_property
     def tip_friction(self) -> Array:
         """Wrenches (H, 16, 6) of unit forces of friction of a tip over each pad."""
-        return self.whole.friction_wrenches(self.places.at, self.heights)
+        return self.whole.compute_friction_wrenches(self.places.at, self.heights)
 
     def on(self, chosen: StrappedTriple) -> StrapsOnPart:
         """The part on three supports, with straps."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from workhold.contact.swept import Swept, find_swept_below, find_swept_between
+from workhold.contact.swept import SweptSpans, find_swept_below, find_swept_between
 from workhold.conventions import GAP_SLACK
 from workhold.fixels.strap_set import StrapSet
 from workhold.model.pose import Pose
@@ -61,11 +61,11 @@ def move_into_part(pose: Pose, points: Array) -> Array:
     return np.column_stack([x, y])
 
 
-def keep_clear(swept: Swept, program: Program, starts: Array, ends: Array, radius: float) -> BoolArray:
+def keep_clear(swept: SweptSpans, program: Program, starts: Array, ends: Array, radius: float) -> BoolArray:
     """Whether bodies of a radius about lines between points (N, 2) of the part keep clear of what is swept."""
     if not len(starts):
         return np.zeros(0, np.bool_)
-    reach, _ = swept.nearest(starts, ends)
+    reach, _ = swept.find_nearest_spans(starts, ends)
     out = reach >= program.clearance + radius - GAP_SLACK
     for x0, y0, x1, y1 in swept.filled.tolist():
         # Of a box the distance is that to its border, also from within.

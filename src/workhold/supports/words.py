@@ -27,24 +27,24 @@ __all__ = [
     "write_flat_faces_notes",
     "write_listing_notes",
     "place_notes",
-    "set_headings",
-    "set_row",
+    "list_set_headings",
+    "format_set_row",
     "explain_no_set",
 ]
 
-# Triples that are looked at; where there are more, one of these fits.
+# Largest number of triples that are examined; where there are more, surely one fits.
 MOST_LOOKED_AT = 200_000
 # Openings that differ by less, in mm, are one.
 SAME_OPENING = 1e-6
 
 
 def explain_no_set(found: Supports, unit: Unit) -> str:
-    """The sentence for supports of which there is no set; lengths in a unit."""
-    return f"No three supports hold the part with the clamp between them: {reason(found, unit)}"
+    """Return a sentence why supports have no set of three; lengths in the given unit."""
+    return f"No three supports hold the part with the clamp between them: {explain_reason(found, unit)}"
 
 
-def reason(found: Supports, unit: Unit) -> str:
-    """What is in the way, and what would help."""
+def explain_reason(found: Supports, unit: Unit) -> str:
+    """Return the end of a sentence: the first obstacle to a set of three, and what would help."""
     request, toolkit = found.request, found.query.toolkit
     turned = "" if found.query.workpiece.solid is None else "; another side up would help"
     if request.bottom is not None and not request.bottom:
@@ -59,9 +59,9 @@ def reason(found: Supports, unit: Unit) -> str:
         )
     search = SupportSearch(found.query, request, ())
     plain = SupportSearch(found.query, evolve(request, top_zones=(), reach=None), ())
-    if plain.places(found.fixture).is_empty:
+    if plain.find_places(found.fixture).is_empty:
         return explain_no_place_for_tip(request, turned, unit)
-    if found.query.program is not None and search.places(found.fixture).is_empty:
+    if found.query.program is not None and search.find_places(found.fixture).is_empty:
         return (
             "the tools of the program and the keep-outs leave no place on the upper face where a tip "
             f"of radius {unit.format_length(request.tip_radius)} could stay; a smaller tip would help, or "
@@ -74,7 +74,7 @@ def reason(found: Supports, unit: Unit) -> str:
             found, find_holes_under_face(found.fixture, toolkit, search.bottom, bare), unit
         )
     sets = np.array(list(islice(combinations(range(len(holes.row)), 3), MOST_LOOKED_AT)), np.int64)
-    sets = sets[CarrierRoom.of(found.fixture, toolkit, holes).standing(sets).fits]
+    sets = sets[CarrierRoom.from_fixture(found.fixture, toolkit, holes).find_standing(sets).fits]
     if not len(sets):
         return (
             f"{found.positions} holes could hold a support, but no three of them fit the columns, the rows "
@@ -102,7 +102,9 @@ def reason(found: Supports, unit: Unit) -> str:
 
 
 def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
-    """The words that of upper faces it is not known what is free, with what would help."""
+    """Return a phrase that the space beside level faces at
+    these heights in mm is not known, and what would help.
+    """
     faces = "face" if len(heights) == 1 else "faces"
     at = listed_words([unit.format_length(height) for height in heights])
     return (
@@ -113,7 +115,10 @@ def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
 
 
 def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
-    """That the tip fits on none of the upper faces, and what would help."""
+    """Return the end of a sentence: the tip fits on none of the upper faces, and what would help.
+
+    ``turned`` is added to it.
+    """
     margin = f", {unit.format_length(request.tip_margin)} from its border" if request.tip_margin else ""
     head = (
         f" and a head of radius {unit.format_length(request.head_radius)} above it" if request.rising else ""
@@ -127,7 +132,10 @@ def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -
 
 
 def explain_few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
-    """What is in the way where fewer than three holes have room for a pad."""
+    """Return the end of a sentence: fewer than three holes have room for a pad, and what would help.
+
+    ``bare`` are the holes for a pad of radius 0 without margin.
+    """
     request, few = found.request, ("no hole has", "only one hole has", "only two holes have")[found.positions]
     spare = np.sort(bare.spare)[::-1] - request.pad_margin
     pad = f"{few} room for a pad of radius {unit.format_length(request.pad_radius)}"
@@ -149,40 +157,43 @@ def explain_few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
 
 
 def compute_incircle_radius(corners: np.ndarray) -> float:
-    """The radius of the largest circle in a triangle (3, 2)."""
+    """Return the radius of the incircle of a triangle (3, 2), in the same unit."""
     a, b, c = corners
     twice = abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
     return float(twice / sum(np.hypot(*(q - p)) for p, q in ((a, b), (b, c), (c, a))))
 
 
-def set_headings(unit: Unit, loaded: bool) -> tuple[str, ...]:
-    """The headings of a table of sets of three, see :func:`set_row`; ``>`` marks columns of numbers."""
+def list_set_headings(unit: Unit, loaded: bool) -> tuple[str, ...]:
+    """Return the headings of a table of sets of three, see :func:`format_set_row`; ``>`` marks columns of numbers.
+
+    ``loaded`` adds columns for forces.
+    """
     of = unit.abbreviation
     forces = (f">clamp force {unit.force}", f">support force {unit.force}") if loaded else ()
     return ("supports", f"clamp at {of}", *forces, f">tipping arm {of}", f">stands by {of}")
 
 
-def set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
-    """The cells of a set of three in a table; forces where there are loads."""
+def format_set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
+    """Return the cells of a set of three in a table, as text; with ``loaded`` those of forces, too."""
     clamp = triple.clamp
     sizes = (clamp.clamp_needed, clamp.support_force or 0.0) if loaded else ()
     return [
         " ".join(pad.hole for pad in triple.supports),
-        f"({unit.number(clamp.at[0])}, {unit.number(clamp.at[1])})",
+        f"({unit.format_number(clamp.at[0])}, {unit.format_number(clamp.at[1])})",
         *(unit.format_force_number(size, 0) for size in sizes),
-        unit.number(clamp.arm),
-        unit.number(triple.standing),
+        unit.format_number(clamp.arm),
+        unit.format_number(triple.standing),
     ]
 
 
 def write_listing_notes(
     found: Supports, listed: Sequence[Triple], unit: Unit, keep_off: Sequence[str]
 ) -> list[str]:
-    """What has to be known about some sets of three that no figure of them says.
+    """Return notes, a sentence or two each, about listed sets of three that no figure tells.
 
     Parameters
     ----------
-    keep_off : what keeps pads off the lower side and the tip off the upper one, as it is called there.
+    keep_off : names of the options that keep pads off the lower side, and the tip off the upper one.
     """
     notes = []
     if found.loads and listed and found.jaw_force > 0:
@@ -200,36 +211,37 @@ def write_listing_notes(
 
 
 def place_notes(listed: Mapping[int, Triple]) -> list[str]:
-    """Says from which sets the part falls before it is clamped, and over which the clamp presses over air.
+    """Return notes on sets from which the part falls before
+    it is clamped, and over which the clamp presses over air.
 
     Parameters
     ----------
-    listed : the sets by the numbers that they have there.
+    listed : the sets by the numbers that they have in the list.
     """
     falls = [number for number, one in listed.items() if not one.stands]
     hangs = [number for number, one in listed.items() if one.clamp.hangs]
     notes = []
     if falls:
         notes.append(
-            f"On {those(falls, listed)} the part does not stand by itself: hold it down until it is clamped."
+            f"On {name_sets(falls, listed)} the part does not stand by itself: hold it down until it is clamped."
         )
     if hangs:
         notes.append(
-            f"Over {those(hangs, listed)} the clamp presses where there is air below the part: put "
+            f"Over {name_sets(hangs, listed)} the clamp presses where there is air below the part: put "
             "something under the part there, or it bends."
         )
     return notes
 
 
-def those(some: Sequence[int], every: Mapping[int, Triple]) -> str:
-    """Some of the sets of a list by their numbers, or all of them."""
+def name_sets(some: Sequence[int], every: Mapping[int, Triple]) -> str:
+    """Return the numbers ``some`` as words, or "each" where they are all of ``every``."""
     return "each" if len(some) == len(every) else listed_words([str(number) for number in some])
 
 
 def write_flat_faces_notes(
     workpiece: Workpiece, keep_off: Sequence[str], unit: Unit = MILLIMETRE
 ) -> list[str]:
-    """Says that a solid has no level face below or on top, or is taken to be flat where none is known.
+    """Return notes where a solid has no level face below or on top, or counts as flat since none is known.
 
     Parameters
     ----------

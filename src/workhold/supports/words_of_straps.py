@@ -6,7 +6,7 @@ import numpy as np
 
 from workhold.model.fixture import Fixture
 from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.program import Program
 from workhold.model.straps import StrappedHold
 from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
@@ -20,28 +20,31 @@ __all__ = [
     "list_remarks",
     "list_steps",
     "list_warnings",
-    "reckoned_with",
+    "describe_assumptions",
 ]
 
 
 def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:
-    """The steps of a set-up, without full stops."""
+    """Return the steps of a set-up, without full stops."""
     steps = []
-    plate = asked.plate(fixture)
+    plate = asked.find_plate(fixture)
     holes = [
-        plate.place_name(peg.column, peg.row) for peg in asked.locators(fixture) if peg.carrier == plate.name
+        plate.name_place(peg.column, peg.row)
+        for peg in asked.list_locators(fixture)
+        if peg.carrier == plate.name
     ]
     steps.append(f"Locators stand in {', '.join(holes)}; {describe_bearing(found, fixture, asked, unit)}")
     if found.push is not None:
-        x, y = (unit.number(value) for value in found.push.at)
+        x, y = (unit.format_number(value) for value in found.push.at)
         steps.append(
             f"Push the part by hand at ({x}, {y}) {unit.abbreviation} of the plate, towards "
             f"{found.push.direction_deg:g} degrees from its x axis, so that it touches all locators"
         )
     if found.straps:
-        bolts = asked.bolts(fixture)
+        bolts = asked.get_bolt_holes(fixture)
         where = [
-            f"{bolts.place_name(*one.hole)} with the tip at ({unit.number(one.at[0])}, {unit.number(one.at[1])})"
+            f"{bolts.name_place(*one.hole)} with the tip at "
+            f"({unit.format_number(one.at[0])}, {unit.format_number(one.at[1])})"
             for one in found.straps
         ]
         steps.append(f"Bolt the straps in {' and in '.join(where)}, in {unit.abbreviation} of the plate")
@@ -64,9 +67,9 @@ def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion
         return "the part lies on the plate"
     if not found.supports:
         return "the part lies on three supports"
-    plate, height = asked.plate(fixture), find_support_height(fixture)
+    plate, height = asked.find_plate(fixture), find_support_height(fixture)
     high = "" if height is None else f" {unit.format_length(height)} high"
-    return f"the part lies on supports{high} in {', '.join(plate.place_name(*one) for one in found.supports)}"
+    return f"the part lies on supports{high} in {', '.join(plate.name_place(*one) for one in found.supports)}"
 
 
 def find_support_height(fixture: Fixture) -> float | None:
@@ -77,8 +80,8 @@ def find_support_height(fixture: Fixture) -> float | None:
 
 def stands_on_supports(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> bool:
     """Whether the middle of the part's area is over its three supports."""
-    plate = asked.plate(fixture)
-    corners = np.array([plate.place(*one) for one in found.supports], np.float64)
+    plate = asked.find_plate(fixture)
+    corners = np.array([plate.compute_hole_center(*one) for one in found.supports], np.float64)
     return bool(stand_on(find_middle(fixture, fixture.listing.result.workpiece), corners[None])[0])
 
 
@@ -96,7 +99,7 @@ def list_remarks(found: StrappedHold) -> list[str]:
     ]
 
 
-def describe_program_need(need: ProgramNeed, program: Program, unit: Unit) -> str:
+def describe_program_need(need: ProgramJawForce, program: Program, unit: Unit) -> str:
     """Say what a program asks of each strap and where, in a sentence."""
     where = find_place(need, program, unit)
     if need.force is None:
@@ -104,10 +107,10 @@ def describe_program_need(need: ProgramNeed, program: Program, unit: Unit) -> st
     return f"The program asks for {round_force_up(need.force, unit)} of each strap at its tip, in {where}."
 
 
-def find_place(need: ProgramNeed, program: Program, unit: Unit) -> str:
+def find_place(need: ProgramJawForce, program: Program, unit: Unit) -> str:
     """Where a program asks for most: its line and tool."""
     cut = find_cut_of_move(program, need.move)
-    return AskedForce(need.force or 0.0, need.line, need.tool, None, cut).place(unit)
+    return AskedForce(need.force or 0.0, need.line, need.tool, None, cut).describe_place(unit)
 
 
 def name_acting(found: StrappedHold) -> str:
@@ -116,8 +119,8 @@ def name_acting(found: StrappedHold) -> str:
     return " and ".join(name for name, is_there in names if is_there)
 
 
-def reckoned_with(asked: StrapQuestion) -> str:
-    """The coefficients of friction and the safety factor, in a sentence."""
+def describe_assumptions(asked: StrapQuestion) -> str:
+    """Return the coefficients of friction and the safety factor, in a sentence."""
     given = dict(asked.friction or ())
     named = (
         f"{find_friction_coefficient(asked.friction, name):g} between {COEFFICIENTS[name].between}"
@@ -128,7 +131,7 @@ def reckoned_with(asked: StrapQuestion) -> str:
 
 
 def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:
-    """What to beware of, sentences with a full stop."""
+    """Return what to beware of, sentences with a full stop."""
     out = []
     if not found.is_looked_at:
         return [

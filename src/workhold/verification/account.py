@@ -59,16 +59,16 @@ from workhold.model.notes import (
     UndecidedSystem,
 )
 from workhold.model.program import Program
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 from workhold.verification.ball_geometry import PRECISIONS
 from workhold.verification.contacts import make_joint_outline
-from workhold.verification.listing import Listing
+from workhold.verification.listing import WrittenListing
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat_clamps import count_pairs_at_seat
 from workhold.verification.undecided import find_undecided_faults
 
-__all__ = ["find_account_faults", "is_by_algebra", "seat_faults", "has_too_few_contacts"]
+__all__ = ["find_account_faults", "is_by_algebra", "find_seat_faults", "has_too_few_contacts"]
 
 SEARCH = ("features", "chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
 # Counts besides, where only the best were sought up to a limit of the location error.
@@ -79,10 +79,12 @@ ALGEBRA = ("features", "systems", "orientations", "simultaneous_contacts", "unde
 MOST_NAMED = 20
 
 
-def find_account_faults(listing: Listing, rotations: int) -> Iterator[str]:
-    """Yield the contradictions between a result's numbers about itself and what it lists; one sentence each.
+def find_account_faults(listing: WrittenListing, rotations: int) -> Iterator[str]:
+    """Yield one sentence for each contradiction among a result's own numbers,
+    and between them and its fixtures.
 
-    At most so many ``rotations`` carry the part onto itself.
+    ``rotations`` is the largest possible number of rotations that carry the part onto itself, with the
+    identity.
     """
     yield from count_faults(listing, rotations)
     yield from find_seating_count_faults(listing)
@@ -93,11 +95,16 @@ def find_account_faults(listing: Listing, rotations: int) -> Iterator[str]:
     else:
         yield from find_proof_faults(listing, listing.proof)
     yield from find_statistics_faults(listing)
-    yield from note_faults(listing)
+    yield from find_note_faults(listing)
 
 
-def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
-    """Yield the contradictions among the fixtures listed, counts, found and distinct."""
+def count_faults(listing: WrittenListing, rotations: int) -> Iterator[str]:
+    """Yield one sentence for each contradiction among the listed fixtures,
+    ``counts``, ``found`` and ``distinct``.
+
+    ``rotations`` is the largest possible number of rotations of the part onto itself: found <= distinct ·
+    rotations.
+    """
     for kind, counts in listing.counts.items():
         listed = sum(fixture.type == kind for fixture in listing.fixtures)
         found, distinct = listing.found[kind], listing.distinct[kind]
@@ -119,8 +126,10 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 
 
-def find_seating_count_faults(listing: Listing) -> Iterator[str]:
-    """Yield the contradictions between how many fixtures have their seating stated and how many should."""
+def find_seating_count_faults(listing: WrittenListing) -> Iterator[str]:
+    """Yield one sentence for each contradiction between how many fixtures have
+    their seating stated and how many should.
+    """
     query, listed = listing.query, len(listing.fixtures)
     # With two clamps there is none to state.
     first = listing.fixtures[: (query.seating or 0) if query.toolkit.closes_at_once else 0]
@@ -133,8 +142,11 @@ def find_seating_count_faults(listing: Listing) -> Iterator[str]:
         yield f"the seating of more fixtures is stated than of the {len(first)} that it is asked of"
 
 
-def find_proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
-    """Yield the contradictions in the account of the candidates."""
+def find_proof_faults(listing: WrittenListing, proof: ProofReport) -> Iterator[str]:
+    """Yield one sentence for each contradiction in the proof report's counts of candidates.
+
+    They are compared with each other, with the undecided entries, and with the number of fixtures found.
+    """
     undecided, found = len(proof.undecided), sum(listing.found.values())
     accounted = proof.discarded_by_bound + proof.verified + undecided
     if accounted != proof.candidates:
@@ -154,8 +166,12 @@ def find_proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
         yield f"the proof says {proof.verified} candidates were verified, but {found} fixtures were found"
 
 
-def find_statistics_faults(listing: Listing) -> Iterator[str]:
-    """Yield the contradictions in the numbers that say how much work the search was."""
+def find_statistics_faults(listing: WrittenListing) -> Iterator[str]:
+    """Yield one sentence for each contradiction in the work counts (``listing.statistics``).
+
+    Their keys must be those of one engine (search, wall or algebra) and must agree with the proof and the
+    faces touched.
+    """
     numbers, proof = listing.statistics, listing.proof
     is_flush = WALL_END in listing.query.toolkit.contacts
     known = [FENCE] if is_flush else [SEARCH, ALGEBRA]
@@ -195,7 +211,7 @@ def find_statistics_faults(listing: Listing) -> Iterator[str]:
 
 
 def is_by_algebra(statistics: Mapping[str, int]) -> bool:
-    """Return whether the engine was the paper's algebra, from the statistics of a result."""
+    """Return whether the keys of a result's statistics are those of the algebra engine, not of the search."""
     return set(statistics) == set(ALGEBRA)
 
 
@@ -203,8 +219,10 @@ def is_by_algebra(statistics: Mapping[str, int]) -> bool:
 Wanted = tuple[Note, Callable[[Note], bool]]
 
 
-def note_faults(listing: Listing) -> Iterator[str]:
-    """Yield the notes that are missing, and those that do not follow from the numbers."""
+def find_note_faults(listing: WrittenListing) -> Iterator[str]:
+    """Yield one sentence for each expected note that is missing, and for each
+    note that contradicts the numbers.
+    """
     left = list(listing.notes)
     for example, will_do in list_expected_notes(listing):
         said = next((note for note in left if will_do(note)), None)
@@ -218,11 +236,14 @@ def note_faults(listing: Listing) -> Iterator[str]:
 
 
 def expect_note(note: Note) -> Wanted:
+    """Return a note with a predicate that accepts only an equal note."""
     return note, lambda other: other == note
 
 
-def list_expected_notes(listing: Listing) -> Iterator[Wanted]:
-    """Yield the notes that there must be."""
+def list_expected_notes(listing: WrittenListing) -> Iterator[Wanted]:
+    """Yield (example, predicate) for each note that the result must hold; the
+    predicate accepts any fitting note.
+    """
     query, proof, found = listing.query, listing.proof, sum(listing.found.values())
     if query.workpiece.departure > 0:
         yield expect_note(FittedOutline(query.workpiece.departure))
@@ -243,10 +264,11 @@ def list_expected_notes(listing: Listing) -> Iterator[Wanted]:
         yield expect_reason(listing, 0 if proof is None else proof.verified)
 
 
-def expect_reason(listing: Listing, verified: int) -> Wanted:
-    """Return the note that says why nothing is listed; what the search alone knows is in it as it will be.
+def expect_reason(listing: WrittenListing, verified: int) -> Wanted:
+    """Return (example, predicate) for the note that says why no fixture is listed.
 
-    So it is with the seats that were looked at, and with the line of a program that is most in the way.
+    ``verified`` is the number of verified candidates. The predicate accepts whatever the note says of what
+    only the search knows: the seats examined, and the program line that blocks most.
     """
     query, numbers, stages = listing.query, listing.statistics, STAGES
     wording, is_walled = query.toolkit.wording, WALL_END in query.toolkit.contacts
@@ -282,11 +304,12 @@ def expect_reason(listing: Listing, verified: int) -> Wanted:
 
 
 def is_line_of(program: Program | None, line: int) -> bool:
+    """Return whether some move of the program stands in this line of its text; False without a program."""
     return program is not None and any(piece.line == line for piece in program.pieces)
 
 
-def may_be_said(note: Note, listing: Listing) -> bool:
-    """Return whether a note fits that need not be there."""
+def may_be_said(note: Note, listing: WrittenListing) -> bool:
+    """Return whether an optional note agrees with the result's numbers; False for notes of any other kind."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     match note:
         case BestOnly(best):
@@ -306,8 +329,12 @@ def may_be_said(note: Note, listing: Listing) -> bool:
     return False
 
 
-def is_as_seated(note: Seated, listing: Listing) -> bool:
-    """Return whether the numbers of fixtures with seating worked out, and of those as asked, can be right."""
+def is_as_seated(note: Seated, listing: WrittenListing) -> bool:
+    """Return whether a ``Seated`` note's numbers are possible.
+
+    They are the number of fixtures whose seating was worked out, and the number of those that keep the
+    seating rules.
+    """
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
     least = most if listing.complete else listed
@@ -316,8 +343,10 @@ def is_as_seated(note: Seated, listing: Listing) -> bool:
     return least <= note.looked_at <= most and listed <= note.kept <= kept
 
 
-def find_pair_count_faults(listing: Listing) -> Iterator[str]:
-    """Yield the contradictions among pairs, seats and what is listed."""
+def find_pair_count_faults(listing: WrittenListing) -> Iterator[str]:
+    """Yield one sentence for each contradiction among pairs of clamps, seats and
+    listed fixtures of a two-clamp toolkit.
+    """
     found, listed = sum(listing.found.values()), len(listing.fixtures)
     pairs, seats = listing.pairs, listing.seats
     if is_uncounted(listing):
@@ -343,13 +372,18 @@ def find_pair_count_faults(listing: Listing) -> Iterator[str]:
         yield f"pairs says {pairs}, but the fixtures listed stand for {stood_for}"
 
 
-def is_uncounted(listing: Listing) -> bool:
-    """Return whether a note says that what cannot be among the best was left out uncounted."""
+def is_uncounted(listing: WrittenListing) -> bool:
+    """Return whether a note says that fixtures that cannot be among the best were left out uncounted."""
     return BestOnly(listing.query.best or 0) in listing.notes
 
 
-def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
-    """Yield the numbers of seats, or of pairs at one, that differ from those derived where every pair is listed."""
+def find_seat_faults(listing: WrittenListing, refuted: Collection[int]) -> Iterator[str]:
+    """Yield one sentence where the number of seats, or of clamp pairs at one
+    seat, differs from the derived number.
+
+    Yields nothing unless the toolkit has two clamps, every pair is listed and all was counted. ``refuted``
+    holds indices from 0 of fixtures that are left out. Stops at the first seat with a wrong number of pairs.
+    """
     query, found = listing.query, sum(listing.found.values())
     if query.toolkit.travels == 1 or query.listing != "all" or found != len(listing.fixtures):
         return
@@ -377,8 +411,12 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
                 return
 
 
-def has_too_few_contacts(listing: Listing, proof: Proof) -> bool:
-    """Return whether fewer contacts of locators, or wall and locator, and a clamp were verified than needed."""
+def has_too_few_contacts(listing: WrittenListing, proof: ProofReport) -> bool:
+    """Return whether the proof verified fewer candidate contacts than the two-clamp fixtures claimed need.
+
+    Each seat needs two contacts (locators, or wall and locator, with one clamp) per pair of directions; n
+    contacts form at most n(n - 1)/2 pairs.
+    """
     found, pairs = sum(listing.found.values()), len(listing.query.toolkit.arrangements)
     if 2 * (listing.seats or 0) > pairs * proof.verified:
         return True

@@ -69,6 +69,7 @@ PRECISIONS = (128, 256, 512)
 
 
 def make_exact_point(x: float, y: float) -> Point:
+    """Return a point of two balls of radius 0."""
     return arb(x), arb(y)
 
 
@@ -81,30 +82,32 @@ def compute_dot_product(a: Point, b: Point) -> arb:
 
 
 def cross(a: Point, b: Point) -> arb:
-    """Return the third component of the vector product."""
+    """Return the z component of the vector product a x b."""
     return a[0] * b[1] - a[1] * b[0]
 
 
 def compute_square_root(square: arb) -> arb:
-    """Return the square root of a number that is not negative, though its ball may reach below 0."""
+    """Return the square root of a number known to be 0 or more, even if its ball reaches below 0."""
     return square.sqrt() if square > 0 else arb(0).union(square.abs_upper().sqrt())
 
 
 def compute_norm(a: Point) -> arb:
-    """Return the length of a vector, also where the ball holds the null vector."""
+    """Return the length of a vector; its ball may contain the null vector."""
     return compute_square_root(compute_dot_product(a, a))
 
 
 def turn_vector(a: Point, cosine: arb, sine: arb) -> Point:
-    """Return a vector turned counter-clockwise."""
+    """Return a vector turned counter-clockwise by the angle with this cosine and sine."""
     return cosine * a[0] - sine * a[1], sine * a[0] + cosine * a[1]
 
 
 def find_least(values: Sequence[arb]) -> arb:
+    """Return the least of some numbers, at least one."""
     return reduce(arb.min, values)
 
 
 def find_largest(values: Sequence[arb]) -> arb:
+    """Return the largest of some numbers, at least one."""
     return reduce(arb.max, values)
 
 
@@ -135,11 +138,11 @@ class LineSide:
         return self.tangent[1], -self.tangent[0]
 
     def compute_gap(self, point: Point) -> arb:
-        """Return the signed distance in mm of a point from the carrying line."""
+        """Return the signed distance in mm of a point from the infinite line, positive on the outer side."""
         return compute_dot_product(self.normal, point) - self.level
 
     def compute_distance(self, point: Point) -> arb:
-        """Return the distance in mm of a point from the side."""
+        """Return the distance in mm of a point from the side with its ends, 0 or more."""
         from_start = subtract(point, self.start)
         along = compute_dot_product(from_start, self.tangent)
         if along > 0 and along < self.length:
@@ -154,7 +157,10 @@ class LineSide:
         )
 
     def find_vector_away(self, point: Point) -> Point | None:
-        """Return a vector from the nearest point of the side to a point, of any length; None where uncertain."""
+        """Return a vector, not of unit length, parallel to the shortest connection of the side and a point.
+
+        Returns None where it is uncertain which point of the side is nearest.
+        """
         along = compute_dot_product(subtract(point, self.start), self.tangent)
         if along > 0 and along < self.length:
             return self.normal
@@ -162,12 +168,16 @@ class LineSide:
         return None if end is None else subtract(point, end)
 
     def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
-        """Return the slacks in mm of a peg's centre on the side moved out by ``offset``."""
+        """Return the distances in mm along the side from its start and end to
+        a point; negative beyond that end.
+
+        ``offset`` does not matter on a line.
+        """
         along = compute_dot_product(subtract(point, self.start), self.tangent)
         return along, self.length - along
 
     def compute_outward_normal(self, point: Point) -> Point:
-        """Return the outward unit normal at the foot of a point."""
+        """Return the outward unit normal, the same for every point."""
         return self.normal
 
 
@@ -195,20 +205,20 @@ class ArcSide:
     whole: bool
 
     def compute_offset_radius(self, offset: arb) -> arb:
-        """Return the radius in mm of the arc moved out by ``offset``."""
+        """Return the radius in mm of the arc offset outward by ``offset`` mm."""
         return self.radius + self.sign * offset
 
-    def from_center(self, point: Point) -> Point:
+    def measure_from_center(self, point: Point) -> Point:
         """Return the vector from the centre to a point."""
         return subtract(point, self.center)
 
     def compute_gap(self, point: Point) -> arb:
-        """Return the signed distance in mm of a point from the carrying circle."""
-        return self.sign * (compute_norm(self.from_center(point)) - self.radius)
+        """Return the signed distance in mm of a point from the full circle, positive outside the material."""
+        return self.sign * (compute_norm(self.measure_from_center(point)) - self.radius)
 
     def compute_distance(self, point: Point) -> arb:
-        """Return the distance in mm of a point from the side."""
-        ray = self.from_center(point)
+        """Return the distance in mm of a point from the arc with its ends, 0 or more."""
+        ray = self.measure_from_center(point)
         from_circle = abs(compute_norm(ray) - self.radius)
         within = self.measure_within(ray)
         if self.whole or within > 0:
@@ -217,8 +227,11 @@ class ArcSide:
         return from_ends if within < 0 else from_circle.union(from_ends)
 
     def find_vector_away(self, point: Point) -> Point | None:
-        """Return a vector from the nearest point of the side to a point, of any length; None where uncertain."""
-        ray = self.from_center(point)
+        """Return a vector, not of unit length, parallel to the shortest connection of the arc and a point.
+
+        Returns None where it is uncertain which point of the arc is nearest.
+        """
+        ray = self.measure_from_center(point)
         within = self.measure_within(ray)
         if self.whole or within > 0:
             return ray
@@ -229,21 +242,27 @@ class ArcSide:
         return ways[0] if one < two else ways[1] if two < one else None
 
     def measure_within(self, ray: Point) -> arb:
-        """Return the positive for a ray from the centre through the arc, negative beside it."""
+        """Return a number in mm that is positive where a ray from the centre meets
+        the arc, negative where it misses it.
+        """
         return compute_dot_product(self.middle, ray) - compute_norm(ray) * self.half_sweep.cos()
 
     def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
-        """Return the slacks in mm of a peg's centre on the arc moved out by ``offset``; none on a whole circle."""
+        """Return the arc lengths in mm from start and end to a peg's centre on the
+        arc offset outward by ``offset`` mm.
+
+        They are negative beyond that end. Returns () for a whole circle.
+        """
         if self.whole:
             return ()
-        ray = self.from_center(point)
+        ray = self.measure_from_center(point)
         angle = self.sign * arb.atan2(cross(self.middle, ray), compute_dot_product(self.middle, ray))
         reach = self.compute_offset_radius(offset)
         return (self.half_sweep + angle) * reach, (self.half_sweep - angle) * reach
 
     def compute_outward_normal(self, point: Point) -> Point:
-        """Return the outward unit normal at the foot of a point."""
-        ray = self.from_center(point)
+        """Return the outward unit normal of the arc at its point nearest to a point."""
+        ray = self.measure_from_center(point)
         far = compute_norm(ray)
         return self.sign * ray[0] / far, self.sign * ray[1] / far
 
@@ -252,6 +271,7 @@ Side = LineSide | ArcSide
 
 
 def make_line_side(start: Point, end: Point) -> LineSide:
+    """Return the straight side from start to end with material on its left."""
     step = subtract(end, start)
     length = compute_norm(step)
     tangent = step[0] / length, step[1] / length
@@ -259,7 +279,7 @@ def make_line_side(start: Point, end: Point) -> LineSide:
 
 
 def make_arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
-    """Return the arc between two points with a bulge.
+    """Return the arc from start to end with a bulge that is not 0, convex where the bulge is positive.
 
     With chord (dx, dy) the centre lies (1 - b²)/(4b) chords to the left of the chord's middle, and the radius
     is (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
@@ -276,22 +296,26 @@ def make_arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
 
 
 def make_side_at_vertex(vertex: Vertex, following: Vertex) -> Side:
-    """Return the side that begins at a vertex (x, y, bulge)."""
+    """Return the side from one vertex (x, y, bulge) to the following vertex:
+    a line where the bulge is about 0.
+    """
     start, end = make_exact_point(*vertex[:2]), make_exact_point(*following[:2])
     return make_line_side(start, end) if abs(vertex[2]) < STRAIGHT else make_arc_side(start, end, vertex[2])
 
 
 def make_loop_sides(loop: NDArray[np.float64]) -> list[Side]:
-    """Return the sides of a closed chain of vertices (N, 3)."""
+    """Return the N sides of a closed loop of vertices (N, 3) with rows x, y,
+    bulge, side k from vertex k to k + 1.
+    """
     vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
     return [make_side_at_vertex(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
 
 
 def join_sides_to_face(run: Sequence[Side]) -> Side:
-    """Return one side for neighbours that continue the same line or circle.
+    """Return one side in place of successive sides that continue the same line or circle.
 
-    They agree to rounding only: a line runs from the first start to the last end, a circle is that of the
-    first arc.
+    Such sides agree to rounding only: the line runs from the first start to the last end, and the circle is
+    that of the first arc.
     """
     first, last = run[0], run[-1]
     if len(run) == 1:
@@ -300,7 +324,7 @@ def join_sides_to_face(run: Sequence[Side]) -> Side:
         return make_line_side(first.start, last.end)
     half_sweep = sum((side.half_sweep for side in run if isinstance(side, ArcSide)), arb(0))
     whole = bool(half_sweep > arb.pi() - WHOLE)
-    ray = first.from_center(first.start)
+    ray = first.measure_from_center(first.start)
     far = compute_norm(ray)
     middle = turn_vector((ray[0] / far, ray[1] / far), half_sweep.cos(), first.sign * half_sweep.sin())
     return ArcSide(first.start, last.end, first.center, first.radius, first.sign, middle, half_sweep, whole)
@@ -314,11 +338,11 @@ class BallOutline:
     ----------
     segments : by number.
     faces : whole faces by their numbers.
-    others : for each face, by its number, the numbers and sides of all segments that are not of it.
-    neighbours : those of each face, by its number, segments at its start and at its end.
-    turns : by how much the normals differ at these two joints, the larger component.
-    own : outlines of carriers with heights of their own by role, and of all others by an empty role; none
-        where all meet the same (``verification.contacts``).
+    others : for each face, by its number, the numbers and sides of all segments outside the face.
+    neighbours : for each face, by its number, the segments before its start and after its end.
+    turns : for each face, the larger component of the difference of normals at its start and at its end.
+    own : outlines by role of the carriers that touch the part at a height of their own, and under the empty role the
+        outline of all other carriers; empty where all carriers touch the same outline (``verification.contacts``).
     """
 
     segments: tuple[Side, ...]
@@ -330,7 +354,9 @@ class BallOutline:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece, number: int = 0) -> BallOutline:
-        """Return the outline at the precision in force, its segments numbered from ``number``."""
+        """Return the outline at the current precision (``ctx.prec``), its segments
+        and faces numbered from ``number``.
+        """
         segments, before = list[Side](), list[int]()
         for loop in workpiece.loops:
             first, count = len(segments), len(loop)
@@ -343,14 +369,14 @@ class BallOutline:
             faces[key] = side = join_sides_to_face([segments[k] for k in run])
             others[key] = tuple((number + k, other) for k, other in enumerate(segments) if k not in run)
             neighbours[key] = one, two = segments[before[run[0]]], segments[after[run[-1]]]
-            turns[key] = turn_at(one, side, side.start), turn_at(side, two, side.end)
+            turns[key] = measure_turn_at(one, side, side.start), measure_turn_at(side, two, side.end)
         return cls(tuple(segments), faces, others, neighbours, turns)
 
     def find_smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
-        """Return whether a face meets its neighbours tangentially at its start and end, for pegs that touch
-        it.
+        """Return whether a face joins its neighbours tangentially at its start and at its end.
 
-        One with a flat changes over from flat to round between a line and an arc.
+        With ``has_flat`` (a peg with a flat) only a joint of two arcs counts, because the contact changes
+        between flat and round where a line meets an arc.
         """
         one, other = (bool(turn < TANGENT) for turn in self.turns[face])
         if not has_flat:
@@ -362,8 +388,8 @@ class BallOutline:
         return one and first, other and last
 
 
-def turn_at(one: Side, two: Side, joint: Point) -> arb:
-    """Return the larger component of the difference of two sides' normals at a joint.
+def measure_turn_at(one: Side, two: Side, joint: Point) -> arb:
+    """Return the larger absolute component of the difference of two sides' unit normals at a joint.
 
     The sides meet tangentially where it is below ``TANGENT``.
     """
@@ -372,9 +398,9 @@ def turn_at(one: Side, two: Side, joint: Point) -> arb:
 
 
 def compute_box_center(outline: BallOutline) -> Point:
-    """Centre in mm of the bounding box of a workpiece.
+    """Return the centre in mm of the bounding box of a workpiece.
 
-    The box is that of its joints, and of the arcs where they run along x or y.
+    The box contains the joints and the points of arcs whose tangent is along x or y.
     """
     places = [side.start for side in outline.segments]
     arcs = [side for side in outline.segments if isinstance(side, ArcSide)]

@@ -32,7 +32,7 @@ from typing import Any, ClassVar
 from attrs import evolve, field, frozen
 from flint import arb, arb_mat
 
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 from workhold.verification.ball_geometry import (
@@ -56,8 +56,8 @@ from workhold.verification.tolerances import (
     LEAST_SPAN,
     ROUNDING,
     Finding,
+    format_middle,
     judge_slack,
-    number,
 )
 
 __all__ = [
@@ -91,12 +91,12 @@ class BallPose:
 
     @classmethod
     def from_turn_and_place(cls, theta: arb, x: arb, y: arb, *travels: arb) -> BallPose:
-        """Return the pose with its cosine and sine."""
+        """Return the pose with theta in radians, x, y and travels in mm, and its cosine and sine."""
         return cls(theta, x, y, travels, theta.cos(), theta.sin())
 
     @classmethod
     def from_written(cls, pose: Pose) -> BallPose:
-        """Return the pose of a file as the numbers that it is, without any travel."""
+        """Return the pose of a file as exact numbers, with one travel of 0."""
         return cls.from_turn_and_place(arb(pose.theta_deg) * arb.pi() / 180, arb(pose.x), arb(pose.y), arb(0))
 
 
@@ -126,7 +126,7 @@ class BallContact:
 
     @property
     def clear_radius(self) -> arb:
-        """Radius in mm of what must be clear of all else."""
+        """The radius in mm around the peg's centre that must be clear of all other sides."""
         return self.radius if self.body is None else self.body
 
     @property
@@ -138,24 +138,28 @@ class BallContact:
         """Return the outward unit normal at the contact, in the workpiece's frame."""
         return self.side.compute_outward_normal(self.compute_center_in_part(pose))
 
-    def from_origin(self, pose: BallPose) -> Point:
-        """Return the vector in the toolkit's frame from the workpiece's origin to the peg's centre, in mm."""
+    def measure_from_origin(self, pose: BallPose) -> Point:
+        """Return the vector from the part's origin to the peg's centre, along the toolkit's axes, in mm."""
         x, y = self.place(pose)
         return x - pose.x, y - pose.y
 
     def place(self, pose: BallPose) -> Point:
-        """The peg's centre in the toolkit's frame, in mm."""
+        """Return the peg's centre in the toolkit's frame, in mm."""
         # Under straps nothing moves.
         travelled = pose.travels[self.travel] if pose.travels else arb(0)
         return self.hole[0] + self.way[0] * travelled, self.hole[1] + self.way[1] * travelled
 
     def compute_center_in_part(self, pose: BallPose) -> Point:
         """Return the peg's centre in the workpiece's frame, in mm."""
-        return turn_vector(self.from_origin(pose), pose.cosine, -pose.sine)
+        return turn_vector(self.measure_from_origin(pose), pose.cosine, -pose.sine)
 
     def evaluate_equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
-        """Return the value of the contact equation, and its derivatives by theta, x, y and its travel."""
-        u, side = self.from_origin(pose), self.side
+        """Return the value of the contact equation and its four derivatives by
+        theta, x, y and the contact's own travel.
+
+        The value is in mm for a line and in mm² for an arc; it is 0 where the peg touches.
+        """
+        u, side = self.measure_from_origin(pose), self.side
         if isinstance(side, LineSide):
             n = turn_vector(side.normal, pose.cosine, pose.sine)
             value = compute_dot_product(n, u) - side.level - self.radius
@@ -166,13 +170,20 @@ class BallContact:
         return value, [cross(w, c), -w[0], -w[1], compute_dot_product(self.way, w)]
 
 
-def compute_standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
-    """Return the distance in mm from a side to the centre of a peg that touches it, round or with a flat."""
+def compute_standoff(side: Side, peg_radius: float, flat: PegFlat | None) -> arb:
+    """Return the distance in mm from a side to the centre of a peg that touches it.
+
+    It is the distance of the flat where a peg with a flat touches a line, else the peg radius.
+    """
     return arb(flat.distance if flat is not None and isinstance(side, LineSide) else peg_radius)
 
 
 def evaluate_contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
-    """Return the values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of the unknowns."""
+    """Return the values (N x 1) and the Jacobian (N x N) of the contact
+    equations on a box of unknowns (N x 1).
+
+    The unknowns are theta in radians, x, y and the travels in mm; N is the number of contacts.
+    """
     pose = BallPose.from_turn_and_place(*unknowns.entries())
     values, rows = [], []
     for contact in contacts:
@@ -183,30 +194,33 @@ def evaluate_contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) 
 
 
 def compute_minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
-    """Return the null vector of four wrenches in balls, in mm: (-1)^i det of the wrenches other than i."""
+    """Return the null vector in mm of four wrenches (n, q x n): entry i is (-1)^i
+    times the determinant without wrench i.
+    """
     wrenches = [(*n, cross(q, n)) for q, n in zip(points, normals, strict=True)]
     return [(-1) ** i * arb_mat([*wrenches[:i], *wrenches[i + 1 :]]).det() for i in range(4)]
 
 
 def measure_wrench_span(vector: Sequence[arb], wrench_length: float) -> arb:
-    """Return how far wrenches are from lying in one plane: the sum of the sizes of their minors.
+    """Return the sum of the absolute values of the minors ``vector``, divided by ``wrench_length`` (L in mm).
 
-    Moments are in parts of L, in mm.
+    ``vector`` is from :func:`compute_minors`. The result has no unit and is 0 where the wrenches are
+    coplanar.
     """
     return sum((abs(entry) for entry in vector), arb(0)) / wrench_length
 
 
 @frozen(eq=False)
 class Balance:
-    """How four contacts press on the workpiece when nothing else does.
+    """The forces with which four contacts press on the workpiece when no load acts.
 
     Parameters
     ----------
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
     vector : the null vector of the wrenches, not scaled, see :func:`compute_minors`.
     shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
-    clamp : the force that what moves passes on in the direction in which it clamps, for these shares.
-    ways : those of the pegs in the workpiece's frame.
+    clamp : the clamping force that the moving contacts exert in total, for these shares.
+    ways : for each peg the unit vector of its motion as the travel grows, in the workpiece's frame; (0, 0) if fixed.
     """
 
     points: tuple[Point, ...]
@@ -218,7 +232,9 @@ class Balance:
 
     @classmethod
     def from_contacts(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
-        """Return the balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
+        """Return the balance of four contacts; ``clamping`` is 1 where less
+        travel clamps, -1 where more does.
+        """
         points = tuple(contact.compute_center_in_part(pose) for contact in contacts)
         normals = tuple(contact.compute_outward_normal(pose) for contact in contacts)
         vector = tuple(compute_minors(points, normals))
@@ -233,16 +249,19 @@ class Balance:
 
     @property
     def forces(self) -> list[arb]:
-        """Force of each peg per unit of clamping force."""
+        """The force of each peg per unit of clamping force."""
         return [share / self.clamp for share in self.shares]
 
     @property
     def margin(self) -> arb:
+        """The closure margin: the least of the shares."""
         return find_least(self.shares)
 
     @cached_property
     def inverse(self) -> list[list[arb]] | None:
-        """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None if uncertain."""
+        """The inverse of the 4 x 4 matrix of rows (n_x, n_y, q x n, n · w), see
+        ``figures``; None if it may be singular.
+        """
         contacts = zip(self.points, self.normals, self.ways, strict=True)
         return invert_matrix(
             [
@@ -253,18 +272,22 @@ class Balance:
 
     @property
     def responses(self) -> list[list[arb]]:
-        """Force of each peg per unit of the load (g_x, g_y, moment), in three rows; see ``inverse``."""
+        """The force of each peg per unit of load: one row each for g_x, g_y and the
+        moment; [] where ``inverse`` is None.
+        """
         return [] if self.inverse is None else self.inverse[:3]
 
     def project_on_closing(self, forces: Sequence[arb]) -> list[arb]:
-        """Return the component of forces along those of what moves: the part that locking it takes up."""
+        """Return the orthogonal projection of peg forces on the closing forces:
+        the part that a locked jaw takes up.
+        """
         own = self.forces
         share = compute_inner_product(forces, own) / compute_inner_product(own, own)
         return [share * force for force in own]
 
 
 def bound_relative_error(forces: Sequence[arb]) -> arb:
-    """Return the relative error to which forces and figures of the file agree with the derived ones.
+    """Return the relative error within which forces and figures in the file must agree with the derived ones.
 
     An error of the pose moves a fixture by as many times more as its forces exceed the clamping force, and
     its forces by that factor again.
@@ -274,11 +297,12 @@ def bound_relative_error(forces: Sequence[arb]) -> arb:
 
 
 def compute_inner_product(a: Sequence[arb], b: Sequence[arb]) -> arb:
+    """Return the inner product of two vectors of equal length."""
     return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
 
 
 def invert_matrix(rows: list[list[arb]]) -> list[list[arb]] | None:
-    """Return the inverse of a square matrix; None where there may be none."""
+    """Return the inverse of a square matrix; None where it may be singular."""
     try:
         inverse: list[list[arb]] = arb_mat(rows).inv().tolist()
     except ZeroDivisionError:
@@ -289,15 +313,20 @@ def invert_matrix(rows: list[list[arb]]) -> list[list[arb]] | None:
 def judge_closure(
     balance: Balance, wrench_length: float, names: Sequence[str], slack_words: str
 ) -> Iterator[Finding]:
-    """Check whether four contacts of some names close, and whether what moves clamps.
+    """Yield a finding for each condition of force closure that four contacts break, or that is at its limit.
 
-    ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm, and ``slack_words`` what is
-    wrong where the clamping force is none.
+    The wrenches must span space, all shares must be positive, and the moving contacts must clamp.
+
+    Parameters
+    ----------
+    wrench_length : L in mm, half the diameter of the peg-centre locus.
+    names : of the contacts, for the messages.
+    slack_words : the message's start where the clamping force is too small.
     """
     vector, spanned = balance.vector, measure_wrench_span(balance.vector, wrench_length)
     yield from judge_slack(
         spanned - LEAST_SPAN,
-        f"the contacts do not hold the part: their wrenches span only {number(spanned)}",
+        f"the contacts do not hold the part: their wrenches span only {format_middle(spanned)}",
     )
     total = sum(vector, arb(0))
     if not (total > 0 or total < 0):
@@ -307,12 +336,12 @@ def judge_closure(
     for name, share in zip(names, balance.shares, strict=True):
         yield from judge_slack(
             share - LEAST_SHARE,
-            f"the contacts do not hold the part: the share of {name} in the closure is {number(share)}",
+            f"the contacts do not hold the part: the share of {name} in the closure is {format_middle(share)}",
             f"the share of {name} in the closure is exactly at its limit",
         )
     yield from judge_slack(
         balance.clamp - LEAST_CLAMPING,
-        f"{slack_words}: the clamping force is {number(balance.clamp)}",
+        f"{slack_words}: the clamping force is {format_middle(balance.clamp)}",
         "the clamping force is exactly at its limit",
     )
 
@@ -323,11 +352,12 @@ Wrench = tuple[arb, arb, arb]
 def compute_wrench_radius(
     center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]
 ) -> arb | None:
-    """Return the wrench radius of contacts about a centre, L in mm; None where all wrenches may be on one
-    line.
+    """Return the distance from the origin to the hull of wrenches about
+    ``center``; None if they may lie on one line.
 
-    The nearest plane through three wrenches counts that has all others on one side. Several may lie in one
-    plane, or two be equal, to ``FLAT``; where that is in doubt the ball holds both cases.
+    ``length`` is L in mm. The result is the distance to the nearest plane through three wrenches that has all
+    others on one side. Wrenches may be coplanar or equal to within ``FLAT``; in doubt the ball holds both
+    cases.
     """
     (x, y), nearest = center, None
     arms = [(px - x, py - y) for px, py in points]
@@ -358,13 +388,15 @@ def subtract_wrenches(a: Wrench, b: Wrench) -> Wrench:
 
 
 def make_joint_outline(workpiece: Workpiece) -> BallOutline:
-    """Return the outline of a workpiece at the precision in force, with the faces of all outlines in its tables."""
+    """Return the whole part's outline at the current precision; its tables also
+    hold the faces of all other outlines.
+    """
     whole = BallOutline.from_workpiece(workpiece)
     if not workpiece.outlines:
         return whole
     own = {
         "": whole,
-        **{role: BallOutline.from_workpiece(*workpiece.outline_of(role)) for role, _ in workpiece.outlines},
+        **{role: BallOutline.from_workpiece(*workpiece.find_outline(role)) for role, _ in workpiece.outlines},
     }
     tables: dict[str, Any] = {
         name: {face: value for one in own.values() for face, value in getattr(one, name).items()}
@@ -374,5 +406,8 @@ def make_joint_outline(workpiece: Workpiece) -> BallOutline:
 
 
 def select_outline_for(outline: BallOutline, carrier: str) -> BallOutline:
-    """Return what the pegs of a carrier of a name keep from; a clamp's name ends with its direction."""
+    """Return the outline that the pegs of a named carrier must keep clear of.
+
+    A clamp's name ends with its direction, as in "clamp +x".
+    """
     return outline.own.get(carrier.split(" ")[0], outline.own[""]) if outline.own else outline

@@ -71,7 +71,7 @@ from workhold.verification.tolerances import (
 )
 from workhold.verification.touching import Barrier, find_barriers, measure_edge_distances, measure_feature
 
-__all__ = ["Measure", "find_missing_figure", "judge_written_numbers"]
+__all__ = ["FigureMeasure", "find_missing_figure", "judge_written_numbers"]
 
 # Figures of which any number in a range may be right.
 COUNTS = ("warnings", "penalty")
@@ -100,14 +100,16 @@ class DirectedLoad:
 
     @classmethod
     def from_load(cls, load: Load) -> DirectedLoad:
-        """Return a load at the precision in force."""
+        """Return a load at the current precision; without points its force acts at the origin."""
         low, high = (arb(angle) for angle in load.directions)
         points = tuple(make_exact_point(x, y) for x, y in load.points) or (make_exact_point(0.0, 0.0),)
         sides = compute_direction(low), compute_direction(high), compute_direction((low + high) / 2)
         return cls(points, arb(load.force), arb(load.moment), *sides, compute_direction((high - low) / 2)[0])
 
     def find_largest_product(self, x: arb, y: arb) -> arb:
-        """Return the largest scalar product of (x, y) with a direction in the range."""
+        """Return the largest scalar product of (x, y) with a unit vector in the load's range of
+        directions.
+        """
         size, at_ends = (
             compute_norm((x, y)),
             compute_dot_product(self.low, (x, y)).max(compute_dot_product(self.high, (x, y))),
@@ -123,7 +125,7 @@ def compute_direction(degrees: arb) -> Point:
 
 
 @frozen(eq=False)
-class Measure:
+class FigureMeasure:
     """What the figures of quality of all fixtures of a result have in common, at one precision.
 
     Parameters
@@ -166,7 +168,7 @@ class Measure:
     beside: dict[tuple[int, float, float], list[Barrier]] = field(factory=dict, init=False)
 
     @classmethod
-    def from_query(cls, wrench_length: float, diameter: float, query: Query) -> Measure:
+    def from_query(cls, wrench_length: float, diameter: float, query: Query) -> FigureMeasure:
         """Return the measure at the precision in force."""
         outline, outer = make_joint_outline(query.workpiece), query.workpiece.outer_count
         silhouette = [side for face, side in outline.faces.items() if face < outer]
@@ -202,7 +204,9 @@ class Measure:
         beams: Sequence[PegBeam | None] | None = None,
         states_bending: bool = True,
     ) -> Mapping[str, arb]:
-        """Return the figures of a fixture by their keys; no load reaction without loads.
+        """Return the figures of quality of a fixture by key.
+
+        Without loads there are no load figures, and only forces where the pose is not known well enough.
 
         Parameters
         ----------
@@ -226,7 +230,7 @@ class Measure:
             out["wrench_radius"] = radius
         out |= {
             "location_error": self.compute_location_error(balance.inverse, faces),
-            "end_distance": find_least([self.end_distance(*peg) for peg in pegs]),
+            "end_distance": find_least([self.compute_end_distance(*peg) for peg in pegs]),
             "edge_distance": find_least([arb(self.wrench_length), *edges]),
             "tilt": compute_tilt(pose, self.direction),
             "smallest_face": find_least([contact.size for contact in contacts]),
@@ -234,7 +238,7 @@ class Measure:
         if self.has_ends:
             out["jaw_contact"] = next(contact.size for contact in contacts if contact.is_flush)
         if self.loads or self.walk is not None:
-            out["load_reaction"] = self.load_reaction(balance)
+            out["load_reaction"] = self.compute_load_reaction(balance)
             out["jaw_force_needed"] = self.compute_needed_jaw_force(balance)
         if beams is not None:
             out |= self.compute_bending(beams, balance.forces, balance.inverse)
@@ -247,7 +251,13 @@ class Measure:
     def compute_bending(
         self, beams: Sequence[PegBeam | None], forces: Sequence[arb], inverse: Sequence[Sequence[arb]]
     ) -> dict[str, arb]:
-        """Return the largest deflection and stress of a peg, and the farthest that all of them move a point."""
+        """Return "pin_deflection" in mm, "pin_stress" in MPa and
+        "pin_movement" in mm at the stated jaw force.
+
+        Deflection and stress are the largest of any peg; the movement is the largest of a point of the part
+        when all pegs give way. ``forces`` are per unit of jaw force; a beam is None for a contact that does
+        not bend.
+        """
         pressed = [abs(force) * self.stated_force for force in forces]
         pairs = list(zip(beams, pressed, strict=True))
         ways = [arb(0) if beam is None else beam.compute_deflection(force) for beam, force in pairs]
@@ -261,17 +271,23 @@ class Measure:
         }
 
     def find_barriers(self, contact: BallContact, face: int) -> list[Barrier]:
-        """Return the barriers on the contact feature of a face that a peg touches."""
+        """Return the ranges (from, to) of the peg's path along a face in which
+        the peg would enter another side.
+
+        They are arc lengths in mm, see ``touching.find_barriers``. They are computed once per face and pair
+        of radii.
+        """
         key = face, float(contact.radius), float(contact.clear_radius)
         if key not in self.beside:
             others = (other for _, other in self.outline.others[face])
             self.beside[key] = find_barriers(contact.side, contact.radius, contact.clear_radius, others)
         return self.beside[key]
 
-    def end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
-        """Return the distance in mm of a peg on a face from the nearer end of its contact feature.
+    def compute_end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
+        """Return the distance in mm from a peg's centre to the nearer end of its path along a face.
 
-        A whole circle has no end; half its circumference counts.
+        The path ends where the face ends, or where the peg would enter another side. ``center`` is in the
+        part's frame. On a whole circle, which has no end, half the path's circumference counts.
         """
         side, radius = contact.side, contact.radius
         ends = measure_edge_distances(side, radius, self.find_barriers(contact, face), center, (False, False))
@@ -282,11 +298,11 @@ class Measure:
         )
 
     def compute_edge_distance(self, contact: BallContact, face: int, center: Point) -> arb | None:
-        """Return the distance in mm of a peg on a face from the nearer edge of its contact feature; None for
-        no edge.
+        """Return the distance in mm from a peg's centre to the nearer edge of its path
+        along a face; None where it has none.
 
-        A tangent joint is none, unless it is with a hollow that leaves a peg no way on. Where either is in
-        doubt, any distance between the two is right.
+        An end of the path at a tangent joint is no edge, unless the neighbour is a concave arc too tight for
+        the peg. In doubt the ball holds both readings.
         """
         beside, outline, radius = self.find_barriers(contact, face), self.outline, contact.radius
         readings: list[tuple[bool, bool]] = []
@@ -309,7 +325,8 @@ class Measure:
         return near if near is far else near.union(arb(self.wrench_length) if far is None else far)
 
     def compute_needed_jaw_force(self, balance: Balance | SeatBalance) -> arb:
-        """Return the jaw force in N above which no peg of a screw vise lets go, and never less than 0.
+        """Return the jaw force in N above which no peg loses contact under any
+        load of a screw vise, 0 or more.
 
         Let f0 balance a load while the jaw keeps its force, and let P project on the forces of the jaw, or of
         both clamps. Locking leaves f0 - P f0, so the figure is the largest of ((P f0)_i - f0_i) / h_i.
@@ -321,7 +338,7 @@ class Measure:
         return most
 
     def find_largest_under_loads(self, most: arb, a: arb, b: arb, c: arb) -> arb:
-        """Return the largest of ``most`` and of a f_x + b f_y + c m under all loads and the program."""
+        """Return the largest of ``most`` and of a f_x + b f_y + c m over all loads and the program's path."""
         for load in self.loads:
             for x, y in load.points:
                 most = most.max(
@@ -334,13 +351,14 @@ class Measure:
         )
 
     def compute_location_error(self, inverse: Sequence[Sequence[arb]], faces: Sequence[int]) -> arb:
-        """Return the largest movement in mm of a point of the silhouette, over all corners of the box of
-        tolerances.
+        """Return the largest movement in mm of a point of the silhouette over all
+        signs of the peg and face tolerances.
 
+        ``inverse`` has one column per contact, ``faces`` the face of each; pegs on one face share its error.
         A point q moves by v + t (-q_y, q_x), t being the turn. The square |v|² + t² |q|² + 2 t (q x v) is a
         convex function of q. So the movement is largest at a joint, or where a convex arc about m is farthest
-        along the movement of m: there it is |v(m)| + r |t|. Both signs of all errors move alike, so the last
-        error keeps its sign.
+        along the movement of m: there it is |v(m)| + r |t|. Opposite signs of all errors move points equally
+        far, so the last error keeps its sign.
         """
         generators, located = [], range(len(inverse[0]))
         for face in {faces[k] for k in located}:
@@ -357,7 +375,10 @@ class Measure:
         return self.find_farthest_movement(movements)
 
     def find_farthest_movement(self, movements: Sequence[Sequence[arb]]) -> arb:
-        """Return the largest movement in mm of a point of the silhouette over some: shifts of the origin, and turns."""
+        """Return the largest movement in mm of a point of the silhouette over some rigid movements.
+
+        Each movement is (x, y, turn): the shift of the origin in mm and a small turn in radians.
+        """
         terms = arb_mat([[x * x + y * y, t * t, 2 * t * y, -2 * t * x] for x, y, t in movements]).transpose()
         most = compute_square_root(find_largest((self.corners * terms).entries()))
         if self.arcs:
@@ -370,12 +391,12 @@ class Measure:
                         most = most.max(bound_arc_movement(arc, x, y, t, most))
         return most
 
-    def load_reaction(self, balance: Balance | SeatBalance) -> arb:
-        """Return the largest peg force in N under some load, with the least clamping that leaves no force
-        negative.
+    def compute_load_reaction(self, balance: Balance | SeatBalance) -> arb:
+        """Return the largest peg force in N over all loads, at the least clamping
+        that keeps every peg force at 0 or more.
 
-        Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest
-        -f0_i / lambda_i. So peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i. This is
+        Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest -f0_i
+        / lambda_i. So peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i. This is
         linear in the load's direction for each i.
         """
         most, rows = arb(0), balance.responses
@@ -386,8 +407,8 @@ class Measure:
 
 
 def find_bending_limits(query: Query) -> tuple[float, float]:
-    """Return the largest stress of a pin in MPa and the farthest movement by pins in mm, of the toolkit or
-    the usual.
+    """Return the largest allowed pin stress in MPa and part movement in mm:
+    the toolkit's, or the default limits.
     """
     own = query.toolkit.pins
     stress, movement = (None, None) if own is None else (own.stress_limit, own.movement_limit)
@@ -395,7 +416,12 @@ def find_bending_limits(query: Query) -> tuple[float, float]:
 
 
 def bound_arc_movement(arc: ArcSide, x: arb, y: arb, turn: arb, known: arb) -> arb:
-    """Return the largest movement of a point inside a convex arc, or the ``known`` one where an end moves most."""
+    """Return the largest movement in mm of an interior point of a convex arc;
+    ``known`` where an end moves farthest.
+
+    The movement is a shift (x, y) of the origin in mm and a small ``turn`` in radians; in doubt the ball
+    holds both.
+    """
     way = x - turn * arc.center[1], y + turn * arc.center[0]
     moved = compute_norm(way) + abs(turn) * arc.radius
     within = arc.measure_within((way[1], -way[0]) if turn > 0 else (-way[1], way[0]))
@@ -403,12 +429,14 @@ def bound_arc_movement(arc: ArcSide, x: arb, y: arb, turn: arb, known: arb) -> a
 
 
 def make_moment_rows(points: Sequence[Point]) -> arb_mat:
-    """Return the rows 1, x² + y², x, y of points, (N, 4)."""
+    """Return the matrix (N, 4) with a row 1, x² + y², x, y for each point."""
     return arb_mat([(1, x * x + y * y, x, y) for x, y in points])
 
 
 def find_hull_candidates(points: Sequence[Point]) -> list[Point]:
-    """Return the points that may be corners of the convex hull of all (Andrew's monotone chain, 1979)."""
+    """Return all points that may be corners of the convex hull, lower chain
+    first (Andrew's monotone chain, 1979).
+    """
     ordered = sorted(points, key=lambda point: (float(point[0]), float(point[1])))
     chain: list[Point] = []
     for run in (ordered, ordered[::-1]):
@@ -424,7 +452,9 @@ def find_hull_candidates(points: Sequence[Point]) -> list[Point]:
 
 
 def find_missing_figure(fixture: Fixture, query: Query) -> str:
-    """Return a sentence on a figure of quality that is missing or superfluous, without a full stop; or nothing."""
+    """Return a sentence, without full stop, on the first figure of quality that
+    is missing or superfluous; else "".
+    """
     for figure in FIGURES:
         of_loads = figure in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
         wanted, why = query.is_loaded or not of_loads, "no loads"
@@ -442,19 +472,18 @@ def find_missing_figure(fixture: Fixture, query: Query) -> str:
 
 
 def has_ends(query: Query) -> bool:
-    """Return whether the part lies on a wall that has ends."""
+    """Return whether the toolkit has a wall or jaw of finite width."""
     return any(carrier.width is not None for carrier in query.toolkit.carriers)
 
 
 def judge_written_numbers(
     fixture: Fixture, names: Sequence[str], balance: Balance | SeatBalance, figures: Mapping[str, arb]
 ) -> Iterator[Finding]:
-    """Check whether the forces of pegs of some names and the figures of quality of the file are the derived
-    ones.
+    """Yield a finding for each peg force and figure of quality in the file that differs from the derived one.
 
-    The file's numbers were computed in double precision from a rounded pose. A derived end distance is a
-    range where the clearance passes slowly through zero, and so is a count beside the edge of what it counts.
-    Any number in the range is right.
+    ``names`` are those of the pegs. The file's numbers were computed in double precision from a rounded pose.
+    A derived figure may be a range (an end distance where the clearance passes slowly through zero, a count
+    at the edge of its rule), and any number in the range is right.
     """
     part = bound_relative_error(balance.forces)
     for name, peg, force in zip(names, fixture.pegs, balance.forces, strict=True):

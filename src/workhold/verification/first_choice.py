@@ -53,7 +53,11 @@ class EffectiveJudge:
     least: float | None
 
     def compute_effective_error(self, fixture: Fixture) -> tuple[int, int]:
-        """Return the effective error in whole billionths of a mm, at least and at most."""
+        """Return the least and greatest possible effective error in whole billionths of a mm.
+
+        The effective error is the written location error times each factor that holds. The fixture must state
+        its location error.
+        """
         written = fixture.quality.get("location_error", inf)
         low, high = written * (1 - DIGITS), written * (1 + DIGITS)
         for times, (surely, perhaps) in self.list_factors(fixture):
@@ -61,13 +65,17 @@ class EffectiveJudge:
         return floor(low * BILLION + 0.5 - HALF), floor(high * BILLION + 0.5 + HALF)
 
     def count_error_steps(self, fixture: Fixture) -> Range:
-        """Return how many steps its effective error is above the least, at least and at most."""
+        """Return the least and greatest number of steps (factor 1.1) by which the
+        effective error exceeds ``self.least``.
+        """
         least = round((self.least or 0.0) * BILLION)
         low, high = (count_steps_above(end, least) for end in self.compute_effective_error(fixture))
         return low, high
 
     def list_factors(self, fixture: Fixture) -> Iterator[tuple[float, tuple[bool, bool]]]:
-        """Yield each factor, with whether it surely holds of a fixture, and whether it may."""
+        """Yield (factor, (holds certainly, may hold)) for each rule that
+        multiplies a fixture's location error.
+        """
         low, high = classify_angle(fixture.pose.theta_deg)
         yield TURNED, (low == high == 1, 1 in (low, high))
         yield ASLANT, (low == high == 2, high == 2)
@@ -79,11 +87,14 @@ class EffectiveJudge:
         yield HANGING, self.hangs_over(fixture)
 
     def find_carrier(self, peg: Peg) -> Carrier:
+        """Return the carrier of the query's toolkit on which a peg stands."""
         return self.query.toolkit.find_carrier(peg.carrier)
 
     @cached_property
     def holes(self) -> frozenset[int]:
-        """Faces of holes, where nobody asked for these."""
+        """The numbers of the faces of the part's holes, empty where jaws open
+        outward or no other face may be touched.
+        """
         part = self.query.workpiece.numbered
         outside = {face.number for face in part.faces if face.number not in part.inside}
         left = outside - set(self.query.restrictions.avoid) - self.query.workpiece.untouchable
@@ -91,11 +102,15 @@ class EffectiveJudge:
         return frozenset() if opens or not left else part.inside
 
     def is_inside(self, peg: Peg) -> bool:
-        """Return whether a peg stands in a hole of the part that the query does not ask for."""
+        """Return whether a peg stands in a hole of the part although other faces
+        could have been used (see ``holes``).
+        """
         return peg.face in self.holes and self.find_carrier(peg).contact.is_placed
 
     def touches_an_end(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Return whether a contact is near the end of a straight face, surely and perhaps."""
+        """Return (certainly, perhaps): whether some peg's centre is nearer than its
+        radius to an end of a straight face.
+        """
         faces = {face.number: face.segment for face in self.query.workpiece.numbered.faces}
         surely = perhaps = False
         for peg in fixture.pegs:
@@ -111,7 +126,9 @@ class EffectiveJudge:
         return surely, perhaps
 
     def hangs_over(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Return whether the part hangs over the plate wherever all stands on it: surely, perhaps."""
+        """Return (certainly, perhaps): whether the part overhangs the plates however
+        the whole fixture is shifted by holes.
+        """
         surely = perhaps = False
         for axis in (0, 1):
             one, other = (self.is_over(fixture, axis, spare) for spare in (2 * AGREEMENT, 0.0))
@@ -119,13 +136,18 @@ class EffectiveJudge:
         return surely, perhaps
 
     def is_over(self, fixture: Fixture, axis: int, spare: float) -> bool:
-        """Return whether the part reaches beyond the plates by more than a length, wherever all stands."""
+        """Return whether the part reaches more than ``spare`` mm beyond the
+        plates along an axis (0 for x, 1 for y).
+
+        True only if that holds for every shift by whole holes that keeps the pegs on their plates; False
+        where a plate is endless.
+        """
         toolkit, plates = self.query.toolkit, self.query.toolkit.plates
         counts = [(plate.columns, plate.rows)[axis] for plate in plates]
         if None in counts:
             return False
         pitch, travel = plates[0].pitch[axis], fixture.travel
-        first = [plate.place(0, 0, travel)[axis] for plate in plates]
+        first = [plate.compute_hole_center(0, 0, travel)[axis] for plate in plates]
         low = min(first) - pitch / 2
         high = max(at + ((count or 0) - 0.5) * pitch for at, count in zip(first, counts, strict=True))
         least, most = self.compute_extent(fixture, axis)
@@ -143,7 +165,9 @@ class EffectiveJudge:
         return not any(least + k * pitch >= below and most + k * pitch <= high + spare for k in shifts)
 
     def compute_extent(self, fixture: Fixture, axis: int) -> Range:
-        """Return the least and the largest place that the part reaches along x or y of the toolkit."""
+        """Return the least and greatest x (axis 0) or y (axis 1) of the clamped
+        part in the toolkit's frame, in mm.
+        """
         part, turn = self.query.workpiece, radians(fixture.pose.theta_deg)
         values = list[float]()
         for loop in part.loops[: part.pieces]:
@@ -159,7 +183,11 @@ class EffectiveJudge:
 def find_arc_extremes(
     a: tuple[float, float], b: tuple[float, float], bulge: float, axis: int
 ) -> Iterator[float]:
-    """Yield where a convex arc from a to b reaches farthest along x or y."""
+    """Yield the x (axis 0) or y (axis 1) at which a convex arc from a to b is
+    extreme between its ends; 0 to 2 numbers.
+
+    ``bulge`` is positive: the tangent of a quarter of the arc's angle.
+    """
     chord = hypot(b[0] - a[0], b[1] - a[1])
     radius = chord * (1 + bulge * bulge) / (4 * bulge)
     # From the middle of the chord to the centre, on the left of the way.
@@ -174,7 +202,9 @@ def find_arc_extremes(
 
 
 def place_point(fixture: Fixture, turn: float, x: float, y: float) -> tuple[float, float]:
-    """Return a point of the part as it lies."""
+    """Return a point of the part's frame in the toolkit's frame, in mm;
+    ``turn`` is the pose's angle in radians.
+    """
     return (
         fixture.pose.x + cos(turn) * x - sin(turn) * y,
         fixture.pose.y + sin(turn) * x + cos(turn) * y,
@@ -182,13 +212,16 @@ def place_point(fixture: Fixture, turn: float, x: float, y: float) -> tuple[floa
 
 
 def map_to_part(fixture: Fixture, x: float, y: float) -> tuple[float, float]:
-    """Return a place on the toolkit in the part's own coordinates."""
+    """Return a point of the toolkit's frame in the part's frame, in mm."""
     turn, x, y = radians(fixture.pose.theta_deg), x - fixture.pose.x, y - fixture.pose.y
     return cos(turn) * x + sin(turn) * y, cos(turn) * y - sin(turn) * x
 
 
 def classify_angle(degrees: float) -> tuple[int, int]:
-    """Return 0 at 0 degrees, 1 at 90, 180 and 270, 2 elsewhere: at least and at most, near an edge of the rule."""
+    """Return the least and greatest class of an angle: 0 at 0 degrees, 1 at 90, 180 and 270, 2 elsewhere.
+
+    Both are equal unless the angle is within a rounding of the edge between classes.
+    """
     nearest = round(degrees / 90.0)
     off, square = abs(degrees - 90.0 * nearest), 0 if nearest % 4 == 0 else 1
     if off > 2 * WRITTEN_ANGLE:
@@ -197,7 +230,9 @@ def classify_angle(degrees: float) -> tuple[int, int]:
 
 
 def count_steps_above(error: int, least: int) -> int:
-    """Return the number of j from 1 on with error >= 1.1^j least, counted in whole numbers."""
+    """Return the largest j with error >= 1.1^j · max(least, 1), or 0; ``error``
+    and ``least`` in billionths of a mm.
+    """
     up, down = STEP
     steps, left, right = 0, error * down, max(least, 1) * up
     while left >= right:

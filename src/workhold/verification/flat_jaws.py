@@ -20,7 +20,7 @@ from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.friction import find_friction_coefficient
-from workhold.model.jaw_hold import JawHold, Patch, Rectangle
+from workhold.model.jaw_hold import JawHold, JawPatch, Rectangle
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.verification.jaw_forces import (
@@ -32,7 +32,7 @@ from workhold.verification.jaw_forces import (
 )
 from workhold.verification.jaw_program import find_program_force_faults
 from workhold.verification.tolerances import AGREEMENT
-from workhold.verification.tool_walk import Element, walk_of
+from workhold.verification.tool_walk import HoldingElement, make_walk
 
 __all__ = ["JawJudge"]
 
@@ -50,8 +50,11 @@ ENDLESS = 1e4
 
 
 @frozen
-class Lies:
-    """A stretch or a point of the part on a jaw: from x to x, the heights at which it touches, the face, or none."""
+class JawContact:
+    """A contact of the part with a jaw: from x = low to high along the jaw, from height bottom to top, in mm.
+
+    A point has low = high. ``face`` is the face that touches, or None at a corner.
+    """
 
     low: float
     high: float
@@ -69,17 +72,23 @@ class JawJudge:
 
     @property
     def jaws(self) -> JawPair:
+        """The pair of flat jaws of the query's toolkit."""
         jaws = self.query.toolkit.flat_jaws
         assert jaws is not None
         return jaws
 
     @property
     def height(self) -> float:
+        """The height of the part in mm; 1.0 where it is unknown."""
         known = self.query.part_height
         return UNKNOWN_HEIGHT if known is None else known
 
     def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
-        """Yield what is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
+        """Yield one sentence, without full stop, for each fault of a fixture at
+        index ``place`` of the list, from 0.
+
+        Keeps the fixtures seen, to find equal ones.
+        """
         hold = fixture.hold
         if not isinstance(hold, JawHold):
             yield "it is not held by flat jaws"
@@ -95,8 +104,8 @@ class JawJudge:
         if (first := self.seen.setdefault(key, place)) != place:
             yield f"it is the same as fixture {first + 1}"
 
-    def order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
-        """A fault for a fixture that what comes first puts before the one before it."""
+    def find_order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
+        """Yield one sentence for the first fixture that should precede the fixture before it."""
         rows = [rank_cautions(one.hold) for one in fixtures if isinstance(one.hold, JawHold)]
         for place, (before, after) in enumerate(pairwise(rows), 2):
             if after < before:
@@ -104,7 +113,12 @@ class JawJudge:
                 return
 
     def find_placement_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
-        outline, first = self.query.workpiece.outline_of(self.jaws.name_outline_role(hold.parallels))
+        """Yield one sentence for each fault of a fixture's pose, contacts,
+        restrictions, program clearance and grip.
+
+        Stops early at faults after which the rest cannot be derived.
+        """
+        outline, first = self.query.workpiece.find_outline(self.jaws.name_outline_role(hold.parallels))
         segments = [fixture.pose.carry(segment) for segment in outline.segments[: outline.outer_count]]
         face_of = {number: first + face.number for face in outline.outer_faces for number in face.segments}
         solid = outline.solid
@@ -155,23 +169,29 @@ class JawJudge:
         yield from self.find_grip_faults(fixture, hold, derived[0], derived[1], segments)
 
     def find_program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
-        """Check whether the program's tools keep clear of both jaws: of their sides, and not inside."""
+        """Yield one sentence where a tool of the program comes too near to a jaw's sides, or is inside a
+        jaw.
+        """
         program, jaws = self.query.program, self.jaws
         if program is None:
             return
-        walk, top, turn = walk_of(program), jaws.compute_top(hold.parallels), radians(-fixture.pose.theta_deg)
+        walk, top, turn = (
+            make_walk(program),
+            jaws.compute_top(hold.parallels),
+            radians(-fixture.pose.theta_deg),
+        )
         deep = ENDLESS if jaws.thickness is None else jaws.thickness
         at = fixture.pose.apply(0.0, 0.0)
 
         def drawn(x: float, y: float) -> tuple[float, float]:
-            """Return a place beside the jaws, as the part was drawn."""
+            """Return a point of the jaws' frame in the part's frame, in mm."""
             off = complex(x - float(at[0]), y - float(at[1])) * complex(cos(turn), sin(turn))
             return off.real, off.imag
 
         for name, low, high in (("fixed", -deep, 0.0), ("moving", hold.opening, hold.opening + deep)):
             ring = [drawn(*place) for place in ((0, low), (jaws.width, low), (jaws.width, high), (0, high))]
             near = [
-                walk.find_nearest(Element(name, name, start, end, 0.0, top))
+                walk.find_nearest(HoldingElement(name, name, start, end, 0.0, top))
                 for start, end in zip(ring, [*ring[1:], ring[0]], strict=True)
             ]
             for one in near:
@@ -193,7 +213,7 @@ class JawJudge:
                         return
 
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
-        """Return whether the convex hull of an outline has a straight edge, tried in many directions."""
+        """Return whether the convex hull of an outline has a straight edge; arcs are sampled."""
         points = np.array([point for one in segments for point in sample_segment(one)])
         hull = np.array(find_hull_corners([(float(x), float(y)) for x, y in points.round(9)]))
         sides = np.hypot(*(np.roll(hull, -1, axis=0) - hull).T)
@@ -206,9 +226,13 @@ class JawJudge:
         bands: dict[int, tuple[float, float] | None],
         face_of: dict[int, int],
         level: float,
-    ) -> list[Lies]:
-        """Return what of an outline lies on a jaw at a y."""
-        out = list[Lies]()
+    ) -> list[JawContact]:
+        """Return the stretches and points of an outline that lie on a jaw face at y = ``level`` mm.
+
+        ``bands`` gives the heights (bottom, top) of each segment, None for no upright face; ``face_of`` its
+        face number. Corners come last, and only where no stretch contains them; such a contact has no face.
+        """
+        out = list[JawContact]()
         ends = list[tuple[float, int]]()
         for number, one in enumerate(segments):
             band = bands[number]
@@ -217,13 +241,13 @@ class JawJudge:
             if isinstance(one, Line) and all(on):
                 if band is not None:
                     (x0, _), (x1, _) = sorted(points)
-                    out.append(Lies(x0, x1, *band, face_of[number]))
+                    out.append(JawContact(x0, x1, *band, face_of[number]))
                 continue
             if isinstance(one, Arc) and one.sign > 0:
                 foot = one.center[0], one.center[1] + (one.radius if level > 0 else -one.radius)
-                if abs(foot[1] - level) <= ON_JAW and abs(one.parameter(foot)) <= one.half_sweep + 1e-9:
+                if abs(foot[1] - level) <= ON_JAW and abs(one.find_parameter(foot)) <= one.half_sweep + 1e-9:
                     if band is not None:
-                        out.append(Lies(foot[0], foot[0], *band, face_of[number]))
+                        out.append(JawContact(foot[0], foot[0], *band, face_of[number]))
                     continue
             ends += [(x, number) for (x, _), is_on in zip(points, on, strict=True) if is_on]
         for x, _ in ends:
@@ -234,13 +258,18 @@ class JawJudge:
             if any(band is None for band in some):
                 continue
             bottom, top = max(band[0] for band in some if band), min(band[1] for band in some if band)
-            out.append(Lies(x, x, bottom, top, None))
+            out.append(JawContact(x, x, bottom, top, None))
         return out
 
     def shift_faults(
-        self, hold: JawHold, gripped: Sequence[Sequence[Lies]], ends: tuple[float, float]
+        self, hold: JawHold, gripped: Sequence[Sequence[JawContact]], ends: tuple[float, float]
     ) -> Iterator[str]:
-        """Check whether the part lies along the jaws where stop or middle say."""
+        """Yield one sentence where the part's place along the jaws is not the one
+        that its stop, or centring, asks for.
+
+        ``gripped`` are the contacts of the fixed and the moving jaw, ``ends`` the part's least and greatest x
+        in mm.
+        """
         jaws = self.jaws
         if hold.stop == "left":
             off = ends[0] - jaws.stop_offset
@@ -256,9 +285,11 @@ class JawJudge:
             yield f"the part lies {off:.9g} mm along the jaws from where {'the stop' if hold.stop else 'the middle'} is"
 
     def find_grip_faults(
-        self, fixture: Fixture, hold: JawHold, fixed: Patch, moving: Patch, segments: Sequence[Segment]
+        self, fixture: Fixture, hold: JawHold, fixed: JawPatch, moving: JawPatch, segments: Sequence[Segment]
     ) -> Iterator[str]:
-        """Check whether the push clamps, and whether figures are those that follow."""
+        """Yield one sentence where the jaws do not clamp the part, or a written figure
+        or force differs from the derived one.
+        """
         corners = [np.array(list_extreme_pressures(patch)[1]) for patch in (fixed, moving)]
         if measure_hull_distance(*corners) > EITHER:
             yield "the jaws do not press opposite each other: the part turns away as they close"
@@ -301,9 +332,11 @@ class JawJudge:
             yield f"the jaw force needed is {stated:.9g} N in the file, and {max(worst):.9g} N are asked for"
 
     def compare_figures(
-        self, hold: JawHold, fixed: Patch, moving: Patch
+        self, hold: JawHold, fixed: JawPatch, moving: JawPatch
     ) -> Iterator[tuple[str, float, float]]:
-        """Yield the figures by name as written and as derived."""
+        """Yield (name, written, derived) for the grip, the contact area and, where
+        written, the height above the jaws.
+        """
         tops = [min(one[3] for one in patch.rectangles) for patch in (fixed, moving)]
         feet = [max(one[2] for one in patch.rectangles) for patch in (fixed, moving)]
         yield "the grip", hold.grip, max(min(tops) - max(feet), 0.0)
@@ -316,7 +349,9 @@ class JawJudge:
             yield "what stands above the jaws", hold.above, max(self.height - top, 0.0)
 
     def derive_ratios(self, hold: JawHold) -> Iterator[tuple[str, float]]:
-        """Yield the figures by key that follow from what else is written."""
+        """Yield (key, value) of the figures of quality that follow from the hold's own fields and the
+        query.
+        """
         yield "grip", hold.grip
         yield "contact_area", hold.contact_area
         needs = [need for need in hold.forces_needed if need is not None]
@@ -330,7 +365,11 @@ class JawJudge:
     def stop_points(
         self, hold: JawHold, segments: Sequence[Segment]
     ) -> tuple[list[tuple[float, float, float]], float]:
-        """Return where the work stop may push, and which way along x."""
+        """Return the points where the work stop may push, and 1.0 where it pushes along +x or -1.0 along -x.
+
+        The points are the extreme ones at heights 0 and the jaws' top, in mm in the jaws' frame; [] without a
+        stop.
+        """
         if hold.stop is None:
             return [], 1.0
         way = 1.0 if hold.stop == "left" else -1.0
@@ -344,7 +383,11 @@ class JawJudge:
     def find_force_faults(
         self, number: int, load: Load, need: float | None, fixture: Fixture, held: HeldBetweenJaws
     ) -> Iterator[str]:
-        """Check whether a load asks for the jaw force that is written."""
+        """Yield one sentence where the written jaw force for a load differs from the derived one.
+
+        ``number`` counts loads from 1; ``need`` is the written force in N, None where no force is said to
+        suffice. Yields nothing where the method does not converge.
+        """
         low, high = load.directions
         turns = (
             [low]
@@ -392,8 +435,10 @@ SAMPLES = 256
 
 
 def rank_cautions(hold: JawHold) -> tuple[bool, bool, bool]:
-    """Return whether a jaw touches corners alone, whether one cannot press all over, and whether the vise is
-    too weak.
+    """Return the sort key of a hold, better ones first.
+
+    It says whether a jaw touches corners alone, whether a jaw cannot press all over, and whether some load
+    needs more jaw force than the vise has.
     """
     needs = [need for need in hold.forces_needed if need is not None]
     strong = hold.max_force is None or not needs or max(needs) <= hold.max_force
@@ -405,40 +450,44 @@ def rank_cautions(hold: JawHold) -> tuple[bool, bool, bool]:
 
 
 def sample_segment(segment: Segment) -> list[tuple[float, float]]:
-    """Return the points along a segment, close together on an arc."""
+    """Return points along a segment: both ends of a line, ``SAMPLES`` + 1 evenly spaced points of an arc."""
     if isinstance(segment, Line):
         return [segment.start, segment.end]
     half = segment.half_extent
-    return [segment.at(half * (2 * k / SAMPLES - 1)) for k in range(SAMPLES + 1)]
+    return [segment.compute_point(half * (2 * k / SAMPLES - 1)) for k in range(SAMPLES + 1)]
 
 
 def find_extreme_points(segment: Segment) -> list[tuple[float, float]]:
-    """Return the ends of a segment, and of an arc the points farthest along the axes."""
+    """Return the ends of a segment, and of an arc also its points with the least or greatest x or y."""
     points = [segment.start, segment.end]
     if isinstance(segment, Arc):
         (x, y), radius = segment.center, segment.radius
         for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1)):
             point = x + a * radius, y + b * radius
-            if abs(segment.parameter(point)) <= segment.half_sweep + 1e-9:
+            if abs(segment.find_parameter(point)) <= segment.half_sweep + 1e-9:
                 points.append(point)
     return points
 
 
 def compute_segment_box(segment: Segment) -> tuple[float, float, float, float]:
-    """Return the least x and y, greatest x and y."""
+    """Return the least x, least y, greatest x and greatest y of a segment."""
     x, y = zip(*find_extreme_points(segment), strict=True)
     return min(x), min(y), max(x), max(y)
 
 
-def find_grip(lies: Sequence[Lies], top: float, least: float) -> list[Lies]:
-    """Return what of a part a jaw grips: stretches, or else points."""
-    cut = [Lies(one.low, one.high, max(one.bottom, 0.0), min(one.top, top), one.face) for one in lies]
+def find_grip(lies: Sequence[JawContact], top: float, least: float) -> list[JawContact]:
+    """Return the contacts cut to heights 0 to ``top`` and at least ``least`` mm high:
+    the stretches, or if none, the points.
+    """
+    cut = [JawContact(one.low, one.high, max(one.bottom, 0.0), min(one.top, top), one.face) for one in lies]
     high = [one for one in cut if one.top - one.bottom >= least - 1e-9]
     return [one for one in high if one.high > one.low] or high
 
 
-def make_patch(lies: Sequence[Lies], width: float) -> Patch:
-    """Return what lies on a jaw of a width, neighbours of one band together."""
+def make_patch(lies: Sequence[JawContact], width: float) -> JawPatch:
+    """Return the contacts cut to a jaw of this width as a patch; touching
+    stretches of equal heights are joined.
+    """
     rows = list[list[float]]()
     for one in sorted(lies, key=lambda one: (one.low, one.bottom, one.top)):
         low, high = max(one.low, 0.0), min(one.high, width)
@@ -455,10 +504,11 @@ def make_patch(lies: Sequence[Lies], width: float) -> Patch:
         else:
             rows.append([low, high, one.bottom, one.top])
     faces = tuple(sorted({one.face for one in lies if one.face is not None}))
-    return Patch(tuple((a, b, c, d) for a, b, c, d in rows), faces, not faces)
+    return JawPatch(tuple((a, b, c, d) for a, b, c, d in rows), faces, not faces)
 
 
 def are_alike(mine: Sequence[Rectangle], theirs: Sequence[Rectangle]) -> bool:
+    """Return whether two lists of rectangles are equal to within ``AGREEMENT``, in any order."""
     return len(mine) == len(theirs) and all(
         abs(a - b) <= AGREEMENT
         for one, other in zip(sorted(mine), sorted(theirs), strict=True)
@@ -467,9 +517,10 @@ def are_alike(mine: Sequence[Rectangle], theirs: Sequence[Rectangle]) -> bool:
 
 
 def measure_hull_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """Return how far two hulls of points (N, 2) and (M, 2) are apart; below 0 how deep they overlap.
+    """Return the distance between the convex hulls of points (N, 2) and (M, 2),
+    or minus the depth of their overlap.
 
-    It is how far the origin lies outside the hull of all differences.
+    It is the signed distance of the origin from the hull of all differences.
     """
     differences = [(float(x), float(y)) for x, y in (one[:, None] - other[None]).reshape(-1, 2).round(12)]
     hull = find_hull_corners(differences)
@@ -485,7 +536,7 @@ def measure_hull_distance(one: NDArray[np.float64], other: NDArray[np.float64]) 
 
 
 def measure_distance_to_origin(p: tuple[float, float], q: tuple[float, float]) -> float:
-    """Return the distance of the origin from a straight piece."""
+    """Return the distance of the origin from the straight segment from p to q."""
     dx, dy = q[0] - p[0], q[1] - p[1]
     square = dx * dx + dy * dy
     share = 0.0 if square == 0 else min(max(-(p[0] * dx + p[1] * dy) / square, 0.0), 1.0)

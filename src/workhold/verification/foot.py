@@ -38,34 +38,42 @@ class Foot:
     """
 
     def __init__(self, loops: Sequence[Sequence[Segment]]) -> None:
-        self.sides = np.array([side for loop in loops for side in chords(loop)])
+        self.sides = np.array([side for loop in loops for side in cut_into_chords(loop)])
         low, high = self.extent
-        self.area, self.centre, self.second = self.moments(low, high)
+        self.area, self.centre, self.second = self.compute_moments(low, high)
         self.hull = find_hull_corners([(float(x), float(y)) for x, y in self.sides[:, :2].round(9)])
 
     @property
     def extent(self) -> tuple[Array, Array]:
-        """The least and the greatest x and y."""
+        """The least (x, y) and the greatest (x, y) of the foot, each (2,), in mm."""
         return self.sides[:, :2].min(axis=0), self.sides[:, :2].max(axis=0)
 
-    def moments(self, low: Array, high: Array) -> tuple[float, Array, Array]:
-        """The area, centre and second moments of what lies in a box; centre and moments NaN where nothing does."""
+    def compute_moments(self, low: Array, high: Array) -> tuple[float, Array, Array]:
+        """Return area, centre (2,) and second moments (2, 2) over the area of the foot's part in a box.
+
+        ``low`` and ``high`` are the box's corners (2,). Without area the centre and the moments are NaN.
+        """
         total = np.zeros(6)
         for x0, y0, x1, y1 in self.sides:
-            total -= under(x0, y0, x1, y1, low, high)
+            total -= integrate_under(x0, y0, x1, y1, low, high)
         area = float(total[0])
         if area <= 0.0:
             return 0.0, np.full(2, np.nan), np.full((2, 2), np.nan)
         x, y, xx, xy, yy = total[1:] / area
         return area, np.array([x, y]), np.array([[xx - x * x, xy - x * y], [xy - x * y, yy - y * y]])
 
-    def pressure_at(self, middle: Array) -> Array:
-        """The pressures (H,) at the hull's corners of unit force whose resultant is at a point (2,)."""
+    def compute_pressures(self, middle: Array) -> Array:
+        """Return the pressures (H,) in 1/mm² at the hull's corners, linear in x
+        and y, of a unit force acting at (2,).
+        """
         slope = np.linalg.solve(self.second, middle - self.centre)
         return np.asarray((1.0 + (np.array(self.hull) - self.centre) @ slope) / self.area)
 
-    def pressing(self, friction: float, centre: Array) -> PressingJaw:
-        """The plate below it, which presses upward; wrenches about a centre (3,)."""
+    def make_pressing_jaw(self, friction: float, centre: Array) -> PressingJaw:
+        """Return the plate below the foot as a jaw that presses upward.
+
+        Wrenches are about ``centre`` (3,); ``friction`` is the coefficient of friction.
+        """
         rows, acting = list[Array](), list[Array]()
         for (x, y), (far_x, far_y) in zip(self.hull, [*self.hull[1:], self.hull[0]], strict=True):
             inward = np.array([y - far_y, far_x - x]) / np.hypot(far_x - x, far_y - y)
@@ -75,15 +83,17 @@ class Foot:
             acting.append(self.centre + self.second @ inward / mean)
         pressures, at = np.array(rows), np.array(acting)
         up = compute_wrenches(np.column_stack([at, np.zeros(len(at))]) - centre, (0.0, 0.0, 1.0))
-        places, areas = self.cells()
+        places, areas = self.make_cells()
         cells = np.column_stack([places, np.zeros(len(places))]) - centre
         turns = [2 * np.pi * k / WAYS for k in range(WAYS)]
         rubbing = np.stack([compute_wrenches(cells, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
         local = pressures @ np.column_stack([np.ones(len(places)), places]).T
         return PressingJaw(up, rubbing, friction * np.maximum(local, 0.0) * areas)
 
-    def cells(self) -> tuple[Array, Array]:
-        """The centres (C, 2) and areas (C,) of what squares of a grid have of it."""
+    def make_cells(self) -> tuple[Array, Array]:
+        """Return the centres (C, 2) and areas (C,) of the foot's parts in the
+        squares of a grid; slivers are left out.
+        """
         low, high = self.extent
         counts = np.ceil((high - low) / sqrt(self.area / CELLS)).astype(int)
         size = (high - low) / counts
@@ -91,15 +101,20 @@ class Foot:
         for across in range(counts[0]):
             for up in range(counts[1]):
                 corner = low + size * (across, up)
-                area, centre, _ = self.moments(corner, corner + size)
+                area, centre, _ = self.compute_moments(corner, corner + size)
                 if area > LEAST_CELL * size.prod():
                     places.append(centre)
                     areas.append(area)
         return np.array(places), np.array(areas)
 
 
-def under(x0: float, y0: float, x1: float, y1: float, low: Array, high: Array) -> Array:
-    """The integrals (6,) of 1, x, y, xx, xy, yy between a box's lower edge and a side, with the sign of its x."""
+def integrate_under(x0: float, y0: float, x1: float, y1: float, low: Array, high: Array) -> Array:
+    """Return the integrals (6,) of 1, x, y, xx, xy, yy over the area between the
+    box's lower edge and a directed side.
+
+    The side from (x0, y0) to (x1, y1) is cut off at the box; the result is negative where x falls along the
+    side.
+    """
     out = np.zeros(6)
     if x0 == x1:
         return out
@@ -117,8 +132,10 @@ def under(x0: float, y0: float, x1: float, y1: float, low: Array, high: Array) -
     return out if x1 > x0 else -out
 
 
-def chords(loop: Sequence[Segment]) -> list[tuple[float, float, float, float]]:
-    """The chords of a loop, arcs cut so finely as is claimed."""
+def cut_into_chords(loop: Sequence[Segment]) -> list[tuple[float, float, float, float]]:
+    """Return the chords (x, y, next x, next y) of a closed loop; an arc's chords
+    are at most ``CHORD`` mm off the arc.
+    """
     points = list[tuple[float, float]]()
     for one in loop:
         if not isinstance(one, Arc):

@@ -33,7 +33,7 @@ from workhold.verification.contacts import Balance, bound_relative_error
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
 from workhold.verification.tolerances import Finding, judge_written_number
-from workhold.verification.tool_walk import ToolWalk, make_element_name, walk_of
+from workhold.verification.tool_walk import ToolWalk, make_element_name, make_walk
 
 __all__ = ["ForceWalk", "make_force_walk", "judge_program_forces"]
 
@@ -74,7 +74,10 @@ class ForceWalk:
 
     @classmethod
     def from_program(cls, program: Program, forces: CuttingForces) -> ForceWalk:
-        walk, stretches = walk_of(program), forces.stretches
+        """Return the walk over the stretches that press on the part, grouped
+        into blocks of ``RUN`` stretches.
+        """
+        walk, stretches = make_walk(program), forces.stretches
         move = stretches.move
         first = np.arange(0, len(move), RUN)
         ends = [walk.compute_places_at(move, share) for share in (stretches.first, stretches.last)]
@@ -100,8 +103,9 @@ class ForceWalk:
     def find_worst(
         self, a: arb, b: arb, c: arb, known: float = 0.0, line: object = None, tool: object = None
     ) -> arb:
-        """Return the largest a g_x + b g_y + c m of a tool along the path, moments about the origin, or
-        ``known``.
+        """Return the largest a g_x + b g_y + c m of a tool along the path, or ``known`` if that is larger.
+
+        Forces are in N, moments about the part's origin in N mm; NaN where a coefficient is not finite.
 
         Parameters
         ----------
@@ -124,7 +128,9 @@ class ForceWalk:
         return arb(found, spare + ROUNDED * size + FINE * found)
 
     def search(self, a: float, b: float, c: float, known: float) -> float:
-        """Return the largest value over all blocks, the most promising first."""
+        """Return the largest value over all blocks, or ``known`` if larger; blocks
+        with the largest bounds come first.
+        """
         x, y = a - self.center[:, 1] * c, b + self.center[:, 0] * c
         bounds = self.force * (np.hypot(x, y) + abs(c) * self.reach) + abs(c) * self.torque
         found = known
@@ -136,7 +142,9 @@ class ForceWalk:
         return found
 
     def look(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
-        """Return the largest value on some stretches, to a part of it; ``found`` if that is more."""
+        """Return the largest value on the stretches ``rows``, to a bound_relative_errors ``FINE``, or ``found`` if
+        larger.
+        """
         moves, low, high = (
             self.move[rows],
             self.forces.stretches.first[rows],
@@ -165,10 +173,10 @@ class ForceWalk:
         return found
 
     def evaluate_at(self, moves: IntArray, share: Array, a: float, b: float, c: float) -> Array:
-        """Return v (R,) of moves at shares of them: the largest over all directions that count.
+        """Return the largest value (R,) over all load directions, at a share (0 to 1) of each move.
 
-        The coefficients of a force at a place p are (a - p_y c, b + p_x c). In the direction nearest to
-        theirs it does most. The torque does |c| T more, whichever way round.
+        The coefficients of a force at a place p are (a - p_y c, b + p_x c). The worst direction is the
+        allowed one nearest to that vector. The torque T adds |c| T, whichever way the tool turns.
         """
         x, y = self.walk.compute_places_at(moves, share).T
         x, y = a - y * c, b + x * c
@@ -186,7 +194,7 @@ class ForceWalk:
 
 @lru_cache(maxsize=8)
 def make_force_walk(program: Program) -> ForceWalk | None:
-    """Return the walk along a program with its forces; None where it has none."""
+    """Return the walk along a program with its forces; None where the program has no forces. Cached."""
     return None if program.forces is None else ForceWalk.from_program(program, program.forces)
 
 
@@ -202,7 +210,7 @@ def judge_program_forces(
     hardware: ToolkitRules,
     balance: Balance | SeatBalance,
 ) -> Iterator[Finding]:
-    """Yield what is wrong with the forces of the program that a file states of a fixture."""
+    """Yield a finding for each program force in a fixture's file entry that differs from the derived one."""
     said, walk = fixture.asking, None if query.program is None else make_force_walk(query.program)
     if walk is None or said is None:
         if said is not None:
@@ -244,11 +252,13 @@ def judge_program_forces(
     )
     none = [arb(0)] * len(names)
     for key, functions, own, worst in (("jaw", asked, none, need), ("contact", each, share, total)):
-        yield from place_findings(said[key], walk, names, functions, own, worst, spare)
+        yield from judge_place(said[key], walk, names, functions, own, worst, spare)
 
 
 def find_entry_fault(said: Any) -> str:
-    """Return what an entry lacks, behind "the forces of its program"; empty where it lacks nothing."""
+    """Return the fault of a program-force entry, as words that follow "the
+    forces of its program"; "" for none.
+    """
     if not isinstance(said, dict) or any(key not in said for key in KEYS):
         return f"do not have {', '.join(KEYS)}"
     if any(not isinstance(said[key], dict) or any(one not in said[key] for one in ASKED) for key in KEYS[:2]):
@@ -260,7 +270,7 @@ def find_entry_fault(said: Any) -> str:
     return ""
 
 
-def place_findings(
+def judge_place(
     said: dict[str, Any],
     walk: ForceWalk,
     names: Sequence[str],
@@ -269,9 +279,10 @@ def place_findings(
     worst: arb,
     spare: arb,
 ) -> Iterator[Finding]:
-    """Check whether a line, a tool and a contact are those of the worst value.
+    """Yield a finding where the named line, tool and contact do not reach the worst value.
 
-    ``functions`` are what the load does to each contact, ``own`` what the contact has without it.
+    ``functions`` are the coefficients of the load for each contact, ``own`` what each contact has without
+    load, and ``spare`` the relative tolerance.
     """
     if said["line"] is None:
         return
@@ -289,7 +300,7 @@ def place_findings(
 
 
 def find_largest_or_zero(values: Iterator[arb]) -> arb:
-    """Return the largest of some numbers, 0 or more."""
+    """Return the largest of some numbers and 0."""
     out = arb(0)
     for value in values:
         out = out.max(value)

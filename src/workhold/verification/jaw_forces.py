@@ -18,7 +18,7 @@ import numpy as np
 from attrs import field, frozen
 from numpy.typing import NDArray
 
-from workhold.model.jaw_hold import Patch, Rectangle
+from workhold.model.jaw_hold import JawPatch, Rectangle
 
 __all__ = [
     "LENGTH",
@@ -40,11 +40,13 @@ LENGTH = 50.0
 
 
 class UnsettledError(Exception):
-    """The method came to no end."""
+    """The method did not converge."""
 
 
 def find_hull_corners(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the corners of the convex hull counter-clockwise, by wrapping."""
+    """Return the corners of the convex hull counter-clockwise from the leftmost
+    (gift wrapping); sorted if below three.
+    """
     left = sorted(set(points))
     if len(left) < 3:
         return left
@@ -65,8 +67,9 @@ def find_hull_corners(points: Sequence[tuple[float, float]]) -> list[tuple[float
 
 
 def compute_area_moments(rectangles: Sequence[Rectangle]) -> tuple[float, Array, Array]:
-    """Return the area of rectangles, its centre (2,), and its second moments (2, 2) about that; of lines
-    those of lengths.
+    """Return the area of rectangles, its centre (2,), and its second moments (2, 2) about the centre.
+
+    Where all rectangles have zero width, lengths take the place of areas.
     """
     line = all(x0 == x1 for x0, x1, _, _ in rectangles)
     areas = np.array([(z1 - z0) * (1.0 if line else x1 - x0) for x0, x1, z0, z1 in rectangles])
@@ -79,11 +82,10 @@ def compute_area_moments(rectangles: Sequence[Rectangle]) -> tuple[float, Array,
     return area, centre, second
 
 
-def list_extreme_pressures(patch: Patch) -> tuple[Array, list[tuple[float, float]]]:
-    """Return the pressures (R, 3) of unit force, p = (1, x, z) . row, each of which vanishes along one side
-    of the hull.
+def list_extreme_pressures(patch: JawPatch) -> tuple[Array, list[tuple[float, float]]]:
+    """Return the extreme linear pressures of unit force and the corners of the patch's hull.
 
-    The second are the hull's corners.
+    The rows (R, 3) give p = (1, x, z) · row. Each pressure vanishes along one side of the hull.
     """
     area, centre, _ = compute_area_moments(patch.rectangles)
     corners = find_hull_corners(
@@ -105,9 +107,10 @@ def list_extreme_pressures(patch: Patch) -> tuple[Array, list[tuple[float, float
     return np.array(rows), corners
 
 
-def compute_resultant_points(patch: Patch) -> Array:
-    """Return where the resultants (R, 2) of these pressures act: from the centre on, the second moments times
-    the slope.
+def compute_resultant_points(patch: JawPatch) -> Array:
+    """Return the points (R, 2) as (x, z) in mm at which the resultants of the extreme pressures act.
+
+    They are the centre plus the second moments times the pressure's slope.
     """
     pressures, _ = list_extreme_pressures(patch)
     _, centre, second = compute_area_moments(patch.rectangles)
@@ -116,13 +119,13 @@ def compute_resultant_points(patch: Patch) -> Array:
 
 @frozen(eq=False)
 class PressingJaw:
-    """A jaw at y in mm that presses along ``way``, with the cells of its patch.
+    """The wrenches that a jaw can exert with unit force.
 
     Parameters
     ----------
-    pressing : (R, 6) wrenches of its pressures.
-    rubbing : (C, 16, 6) wrenches of unit friction of its cells.
-    bearing : (R, C) the friction that each pressure lets each cell bear.
+    pressing : (R, 6) wrenches of its extreme pressures.
+    rubbing : (C, 16, 6) wrenches of unit friction at each of C cells of the patch, in 16 directions.
+    bearing : (R, C) the largest friction at each cell under each extreme pressure.
     """
 
     pressing: Array
@@ -130,7 +133,8 @@ class PressingJaw:
     bearing: Array
 
     @classmethod
-    def from_patch(cls, patch: Patch, y: float, way: float, friction: float) -> PressingJaw:
+    def from_patch(cls, patch: JawPatch, y: float, way: float, friction: float) -> PressingJaw:
+        """Return the jaw at y mm with a patch; ``way`` is 1 or -1 as it presses along +y or -y."""
         pressures, _ = list_extreme_pressures(patch)
         acting = compute_resultant_points(patch)
         pressing = compute_wrenches(
@@ -157,7 +161,7 @@ class PressingJaw:
         return cls(pressing, rubbing, friction * np.maximum(local, 0.0) * np.array(areas))
 
     def find_best_wrench(self, twist: Array) -> tuple[float, Array]:
-        """Return the wrench with unit force that works most with a twist (6,), and its work."""
+        """Return the largest work with a twist (6,) of any wrench of unit force, and that wrench (6,)."""
         works = self.rubbing @ twist
         chosen = works.argmax(axis=1)
         friction = self.bearing @ np.take_along_axis(works, chosen[:, None], axis=1)[:, 0]
@@ -168,7 +172,9 @@ class PressingJaw:
 
 
 def compute_wrenches(points: Array, force: tuple[float, float, float]) -> Array:
-    """Return the wrenches (N, 6) of a force at points (N, 3)."""
+    """Return the wrenches (N, 6) of one force at points (N, 3): force in N,
+    then moments divided by ``LENGTH``.
+    """
     forces = np.tile(force, (len(points), 1))
     x, y, z = points.T
     fx, fy, fz = forces.T
@@ -193,20 +199,26 @@ class HeldBetweenJaws:
     side: Array = field(init=False)
 
     @side.default
-    def small_side(self) -> Array:
-        """A small side (6,) without any symmetry."""
+    def make_small_side(self) -> Array:
+        """Return a small right-hand side (6,) with no two equal entries, which keeps
+        simplex steps from being degenerate.
+        """
         return MOVED * np.array([0.61803399, 0.41421356, 0.73205081, 0.23606798, 0.64575131, 0.31662479])
 
     @classmethod
     def from_patches(
         cls,
-        fixed: Patch,
-        moving: Patch,
+        fixed: JawPatch,
+        moving: JawPatch,
         opening: float,
         friction: float,
         stop: Sequence[tuple[float, float, float]],
         stop_way: float,
     ) -> HeldBetweenJaws:
+        """Return the part held between two patches at y = 0 and y = ``opening``.
+
+        ``stop`` holds the points where a work stop pushes, along +x (``stop_way`` 1) or -x (-1).
+        """
         feet = [
             (end, y, 0.0)
             for patch, y in ((fixed, 0.0), (moving, opening))
@@ -224,8 +236,8 @@ class HeldBetweenJaws:
     def compute_needed_force(
         self, point: tuple[float, float, float], force: tuple[float, float, float], moment: float
     ) -> float | None:
-        """Return the least jaw force in N for a force at a point and a moment about z; None where none is
-        enough.
+        """Return the least jaw force in N that holds a force in N at a point and a
+        moment about z; None if none suffices.
 
         Raises
         ------
@@ -238,9 +250,10 @@ class HeldBetweenJaws:
         return None if found is None else found[0]
 
     def answer(self, load: Array) -> tuple[float, Array] | None:
-        """Return the least jaw force in N for a load (6,), and its prices (6,); None where no force is enough.
+        """Return the least jaw force in N for a load (6,), and its dual prices
+        (6,); None where no force suffices.
 
-        No load asks for less than -prices . load. Moments are divided by :data:`LENGTH`.
+        Every load asks for at least -prices · load. Moments are divided by :data:`LENGTH`.
 
         Raises
         ------
@@ -254,7 +267,14 @@ class HeldBetweenJaws:
         return None if least is None else (max(least[0], 0.0) * size, least[1])
 
     def solve_least_cost(self, side: Array) -> tuple[float, Array] | None:
-        """Return the least cost of forces whose wrenches sum to a side (6,), and the prices (6,) of the side."""
+        """Return the least jaw force of wrenches that sum to ``side`` (6,), and the
+        dual prices (6,); None if infeasible.
+
+        Raises
+        ------
+        UnsettledError
+            When the simplex method does not converge.
+        """
         # The first basis stands for what is not balanced yet.
         columns, prices = np.diag(np.where(side < 0, -1.0, 1.0)), np.zeros(6)
         missing = np.ones(6, np.bool_)
@@ -285,7 +305,11 @@ class HeldBetweenJaws:
         return float(costs @ amount), prices
 
     def find_entering_wrench(self, prices: Array, is_first: bool) -> tuple[float, Array, float]:
-        """Return what gains most at some prices (6,): the gain, its wrench and its cost."""
+        """Return the column with the largest reduced gain at prices (6,): its
+        gain, its wrench (6,) and its cost.
+
+        ``is_first`` says that the first phase is on, in which the moving jaw's force costs nothing.
+        """
         found = []
         for jaw, cost in ((self.fixed, 0.0), (self.moving, 0.0 if is_first else 1.0)):
             work, best = jaw.find_best_wrench(prices)

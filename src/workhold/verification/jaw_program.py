@@ -16,10 +16,10 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.model.fixture import Fixture
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.program import Program
 from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, UnsettledError, compute_wrenches
-from workhold.verification.tool_walk import walk_of
+from workhold.verification.tool_walk import make_walk
 
 __all__ = ["find_program_force_faults"]
 
@@ -61,7 +61,12 @@ class PressingPath:
     def from_program(
         cls, program: Program, fixture: Fixture, height: float, safety: float, centre: Array, still: Array
     ) -> PressingPath:
-        walk, forces, moves = walk_of(program), program.forces, program.moves
+        """Return the sampled places of a program's path at which tools press on the part, in the jaws' frame.
+
+        ``height`` is the part's in mm; ``safety`` multiplies forces and torques. The program must state
+        forces.
+        """
+        walk, forces, moves = make_walk(program), program.forces, program.moves
         assert forces is not None
         stretches = forces.stretches
         rows, shares = list[IntArray](), list[Array]()
@@ -96,7 +101,7 @@ class PressingPath:
         )
 
     def select_moves(self, moves: IntArray) -> PressingPath:
-        """Return the places on some moves."""
+        """Return the places whose move is among these move numbers."""
         own = np.isin(self.move, moves)
         return PressingPath(
             self.move[own],
@@ -109,8 +114,13 @@ class PressingPath:
             self.still,
         )
 
-    def load(self, place: int, turn: float, pull: float, twist: float) -> Array:
-        """Return the wrench (6,) of a tool in a place, with a direction in radians, an axial force and a torque."""
+    def compute_wrench(self, place: int, turn: float, pull: float, twist: float) -> Array:
+        """Return the wrench (6,) of a tool at a place: its radial force at the angle
+        ``turn`` in radians, pull and twist.
+
+        ``pull`` is the axial force along -z in N, ``twist`` the torque in N mm; moments are divided by
+        ``LENGTH``.
+        """
         force = float(self.force[place])
         x, y, z = self.point[place].tolist()
         row = compute_wrenches(np.array([[x, y, z]]), (force * cos(turn), force * sin(turn), -pull))[0]
@@ -118,7 +128,9 @@ class PressingPath:
         return np.asarray(row + self.still)
 
     def find_dearest_load(self, prices: Array) -> Array:
-        """Return the load (6,) of all whose price is the least: -prices . load is what it asks for at least."""
+        """Return the load (6,) of the whole path with the greatest -prices · load,
+        a lower bound of its jaw force in N.
+        """
         x, y, z = self.point.T
         a, b, c, k, m, n = -prices / np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])
         along, across = a + z * m - y * n, b - z * k + x * n
@@ -132,10 +144,14 @@ class PressingPath:
         )
         place = int(worth.argmax())
         twist = float(self.torque[place]) * (1.0 if n > 0.0 else -1.0)
-        return self.load(place, float(turn[place]), float(pull[place]), twist)
+        return self.compute_wrench(place, float(turn[place]), float(pull[place]), twist)
 
     def find_hardest_force(self, held: HeldBetweenJaws, starts: list[Array]) -> float | None:
-        """Return the largest jaw force in N that ascents come upon; None where a load is held by none."""
+        """Return the largest jaw force in N found by ascents from some prices; None
+        where no jaw force holds some load.
+
+        Each ascent alternates between the dearest load at given prices and that load's own prices.
+        """
         worst, known = 0.0, set[bytes]()
         for prices in starts:
             for _ in range(MOST_STEPS):
@@ -152,16 +168,16 @@ class PressingPath:
         return worst
 
     def list_tried_loads(self) -> Iterator[Array]:
-        """Give loads of a few places in several directions."""
+        """Yield loads (6,) at the first, middle and last place in ``TRIED`` directions each."""
         for place in sorted({0, len(self.move) // 2, len(self.move) - 1}):
             for number in range(TRIED):
                 turn = float(self.against[place]) + self.spread * (2.0 * number / TRIED - 1.0)
-                yield self.load(place, turn, float(self.axial[place, 0]), float(self.torque[place]))
+                yield self.compute_wrench(place, turn, float(self.axial[place, 0]), float(self.torque[place]))
 
 
 def find_program_force_faults(
     program: Program,
-    need: ProgramNeed | None,
+    need: ProgramJawForce | None,
     fixture: Fixture,
     held: HeldBetweenJaws,
     height: float,
@@ -169,7 +185,9 @@ def find_program_force_faults(
     frame: tuple[Array, Array] = (np.zeros(3), np.zeros(6)),
     force_name: str = "jaw force",
 ) -> Iterator[str]:
-    """Give what is wrong with the force that a file says a program asks for, without a full stop.
+    """Yield one sentence, without full stop, where the jaw force that a file states for its program is wrong.
+
+    Yields nothing more where the method does not converge.
 
     Parameters
     ----------
@@ -177,8 +195,6 @@ def find_program_force_faults(
     held : the part between the jaws.
     height : of the part, in mm.
     safety : factor on the loads.
-    frame : what moments are taken about (3,) in mm, and a wrench (6,) that acts besides the tools.
-    force_name : what the force is called.
     """
     path = PressingPath.from_program(program, fixture, height, safety, *frame)
     if (need is None) != (not len(path.move)):

@@ -4,7 +4,7 @@ Both are rules of docs/quality.md. Warnings and penalties are counted in balls. 
 so a figure may lie on either side of the number that decides; then the ball holds both counts.
 
 In the order ("Which comes first") fixtures that are none for a workshop come last. In the usual one a
-warning, steps of the effective error and the angle come before figures (``verification.first_choice``). Every
+warning, steps of the effective error and the angle come before figures (``verification.choose_first_toolkit``). Every
 figure but the last
 counts to two significant digits, the last to nine decimals; what is equal stands in the order of types,
 holes, orientations and faces. Fixtures whose seating is known come first, its warnings counting as those of
@@ -31,7 +31,7 @@ from workhold.model.seating import Seating
 from workhold.verification.ball_geometry import LineSide, Side
 from workhold.verification.contacts import BallPose
 from workhold.verification.first_choice import EffectiveJudge, classify_angle
-from workhold.verification.listing import Claim
+from workhold.verification.listing import SeatingClaim
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import (
     WAYS,
@@ -63,15 +63,22 @@ from workhold.verification.tolerances import (
     WEAK_CLOSURE,
 )
 
-__all__ = ["find_main_direction", "order_faults", "compute_penalty", "rank", "compute_tilt", "count_warnings"]
+__all__ = [
+    "find_main_direction",
+    "find_order_faults",
+    "compute_penalty",
+    "rank",
+    "compute_tilt",
+    "count_warnings",
+]
 
 
 def find_main_direction(faces: Sequence[Side]) -> arb:
-    """Return the direction in degrees of the straight faces that are longest with those along or square to
-    them.
+    """Return the direction in degrees of the straight faces that have most length parallel or square to them.
 
-    The longest of them counts, the first of equally long ones; they are chosen in doubles. It is the
-    drawing's own x where there is no straight face, or others have about as much length.
+    Among about equal candidates the longest face counts, then the first. It is 0 (the drawing's x) where
+    there is no straight face, or where different directions have about as much length. Candidates are
+    compared in doubles.
     """
     lines = [side for side in faces if isinstance(side, LineSide)]
     if not lines:
@@ -99,7 +106,11 @@ def find_main_direction(faces: Sequence[Side]) -> arb:
 
 
 def compute_tilt(pose: BallPose, direction: arb) -> arb:
-    """Return the angle in degrees from the main direction to the nearer of the jaws' two; 0 if it counts as square."""
+    """Return the angle in degrees from the part's main direction to the nearest
+    axis of the jaws; 0 if within the limit.
+
+    ``direction`` is the main direction in degrees in the part's frame.
+    """
     angle = pose.theta * 180 / arb.pi() + direction
     off = abs(angle - 90 * round(float(angle.mid()) / 90))
     within = SQUARE_TILT - off
@@ -107,14 +118,17 @@ def compute_tilt(pose: BallPose, direction: arb) -> arb:
 
 
 def count_if_above(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
-    """Return whether a value with a relative error, and a hair, is above a limit: at least and at most, 0 or 1."""
+    """Return the least and greatest possible count, 0 or 1, of a value above a limit.
+
+    ``part`` is the value's bound_relative_errors error; ``HAIR`` is added as an absolute one.
+    """
     spare = HAIR + part * abs(value)
     above = value - limit
     return int(bool(above > spare)), int(not above < -spare)
 
 
 def sum_ranges(pairs: Sequence[tuple[int, int]]) -> arb:
-    """Return the count of several things, each between two whole numbers."""
+    """Return the sum of counts, each given as (least, greatest), as a ball that holds every possible sum."""
     low, high = (arb(sum(ends)) for ends in zip(*pairs, strict=True))
     return low.union(high) if low < high else low
 
@@ -128,16 +142,21 @@ def count_warnings(
     bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT),
     states_bending: bool = True,
 ) -> arb:
-    """Return how many warnings there are.
+    """Return the number of warnings of a fixture, as a ball where rounding decides.
 
-    They are for contacts near an edge, a weak closure, a strong peg, a large location error, and a peg that
-    lets go. At a jaw force that is known they are for a peg that is bent too hard, and for pegs that give
-    way.
+    Each of these counts: a contact near an edge, a weak closure, a strong peg, a large location error, and,
+    at a known jaw force, a peg that loses contact, too high a pin stress, and too large a movement by bent
+    pins.
 
-    ``off`` is the sum of the tolerances in mm, ``part`` the relative error of the file's figures, and
-    ``bending`` the largest stress in MPa and the farthest movement in mm by bent pegs. ``states_bending``
-    says whether the file states how far pegs bend. Where it was made before there was that figure, it may
-    have counted it or not.
+    Parameters
+    ----------
+    figures : figures of quality by key.
+    edges : distances in mm of contacts from edges.
+    off : sum of the tolerances in mm.
+    jaw_force : in N; None where none is given.
+    part : relative error of the file's figures.
+    bending : largest stress in MPa, and farthest movement in mm by bent pegs.
+    states_bending : whether the file states how far pegs bend; an older file may have counted that or not.
     """
     pairs = [count_if_above(-edge, -NEAR_EDGE, part) for edge in edges]
     pairs.append(count_if_above(-figures["closure_margin"], -WEAK_CLOSURE, part))
@@ -153,7 +172,11 @@ def count_warnings(
 
 
 def compute_penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) -> arb:
-    """Return the points for the location error, rounded up, and for a tilt, a strong peg and a small face."""
+    """Return the penalty points for location error (rounded up), tilt, a strong peg and a small face.
+
+    ``off`` is the sum of the tolerances and ``diameter`` the part's, in mm; ``part`` is the figures' relative
+    error.
+    """
     points = [(0, 0)]
     if off > 0:
         steps = POINTS_PER_DECADE * (figures["location_error"] / off).log() / arb(10).log()
@@ -181,19 +204,24 @@ MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 @frozen(eq=False)
 class OrderJudge:
-    """What comes before the figures in the usual order of a query."""
+    """The sort keys that precede the figures in a query's usual order."""
 
     query: Query
     effective: EffectiveJudge
 
     def rank_first_keys(self, fixture: Fixture, figures: Mapping[str, float]) -> list[Range]:
-        """Return whether there is a warning, the steps above the least error, and the class of the angle."""
+        """Return three keys, each as (least, greatest): has a warning, steps above
+        the least error, class of the angle.
+        """
         warned = float(figures.get("warnings", 0.0) > HAIR)
         low, high = classify_angle(fixture.pose.theta_deg)
         return [(warned, warned), self.effective.count_error_steps(fixture), (low, high)]
 
     def find_least_error_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
-        """Return what is wrong with the least effective error of all; ``is_whole`` where all are listed."""
+        """Return a sentence where the written least effective error is missing or wrong, else "".
+
+        ``is_whole`` says that all fixtures found are listed; otherwise only too large a value is a fault.
+        """
         if not fixtures:
             return ""
         least = self.effective.least
@@ -223,7 +251,7 @@ class OrderJudge:
         return ""
 
 
-def order_faults(
+def find_order_faults(
     fixtures: Sequence[Fixture],
     query: Query,
     hardware: ToolkitRules,
@@ -231,10 +259,16 @@ def order_faults(
     is_whole: bool = False,
     is_chosen: bool = False,
 ) -> Iterator[str]:
-    """Yield a fault for a fixture out of order, where the figures ranked by are written.
+    """Yield one sentence for the first fixture that is out of order.
 
-    ``least`` is the least effective error of all in mm, as written. ``is_whole`` says whether all that was
-    found is listed, and ``is_chosen`` whether the best may be among what is not.
+    Yields nothing where a figure that decides the order is not written, or a fixture stands on unknown
+    carriers.
+
+    Parameters
+    ----------
+    least : the least effective error of all in mm, as written; None where none is.
+    is_whole : whether all that was found is listed.
+    is_chosen : whether somebody chose the listed fixtures, so that the best may be missing.
     """
     usual = query.without_seating
     if any(key not in fixture.quality for fixture in fixtures for key in list_ranking_figures(usual.rank_by)):
@@ -249,7 +283,9 @@ def order_faults(
     off = query.tolerance.peg + query.tolerance.face
 
     def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
-        """Return what a fixture is ordered by, with some figures."""
+        """Return the sort key of a fixture as ranges, with these figures in
+        the order that ``asked`` asks for.
+        """
         first = judge.rank_first_keys(fixture, figures) if judge is not None and asked.has_house_order else []
         return [
             rank_unfit(fixture, off),
@@ -295,8 +331,10 @@ def order_faults(
 
 
 def collect_stated_figures(fixture: Fixture) -> dict[str, float] | None:
-    """Return the figures of quality and seating, whose warnings count as well; None where no seating is stated."""
-    claim: Claim | None = fixture.seating
+    """Return the figures of quality and seating by key, seating warnings added
+    to "warnings"; None without seating.
+    """
+    claim: SeatingClaim | None = fixture.seating
     if claim is None:
         return None
     figures = {**fixture.quality, **claim.seating.figures}
@@ -304,14 +342,16 @@ def collect_stated_figures(fixture: Fixture) -> dict[str, float] | None:
 
 
 def count_seating_warnings(seating: Seating) -> int:
-    """Return how many warnings of quality a seating counts as: two for a small opening, one for a close reading."""
-    opening, reading = seating.capture_opening, seating.reading_of()
+    """Return the number of warnings that a seating counts as: two for a small
+    capture opening, one for a close reading.
+    """
+    opening, reading = seating.capture_opening, seating.find_least_reading()
     small = opening is not None and opening < SMALL_CAPTURE
     return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING)
 
 
 def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
-    """Yield what the figures of a fixture count as, the first counting most and smaller being better."""
+    """Yield (least, greatest) of each figure's rounded sort value, in ranking order; smaller is better."""
     for place, key in enumerate(ranking, 1):
         value = -figures[key] if MORE_IS_BETTER[key] else figures[key]
         if isinf(value):
@@ -328,7 +368,7 @@ def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> 
 
 
 def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
-    """Return whether a fixture certainly comes before another one that is as good."""
+    """Return whether a fixture certainly precedes another equally good one."""
     (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
         rank(fixture, hardware) for fixture in (one, other)
     )
@@ -338,12 +378,12 @@ def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
 
 
 def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
-    """Return the numbers that order fixtures that are equally good.
+    """Return the sort key of equally good fixtures: (type, directions and holes; angle in radians; faces).
 
-    Without a wall and with one thing that moves a fixture is turned so that it clamps along -x. Then columns
-    count from the first peg of each carrier, rows from the lowest of all. With as many pegs on both jaws that
-    are alike it counts as it is at an orientation below half a turn. All others count in the holes in which
-    they stand.
+    Without a wall and with one moving carrier, a fixture is first turned so that it clamps along -x. Then
+    columns count from the first peg of each carrier, rows from the lowest of all. If both jaws are alike and
+    hold as many pegs, a fixture turned by half a turn or more is taken half a turn back. All other fixtures
+    count by the holes in which they stand.
     """
     ways = [list(WAYS).index(name) for name in list_directions(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
@@ -379,14 +419,16 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
 
 
 def make_peg_key(peg: Peg) -> tuple[int, int, int]:
-    """Return the numbers that order the pegs of one carrier."""
+    """Return the sort key of pegs of one carrier."""
     return peg.column, peg.row, peg.face
 
 
 def rank_unfit(fixture: Fixture, off: float) -> Range:
-    """Return a range about 1 for a fixture that is unfit for a workshop, about 0 for one that is fit.
+    """Return (least, greatest) of a number that is 1.0 for a fixture unfit
+    for a workshop and 0.0 for a fit one.
 
-    It is 0 to 1 without the figures. ``off`` is the sum of the tolerances of peg and face, in mm.
+    Both differ where rounding decides; they are (0.0, 1.0) where the file lacks the figures. ``off`` is the
+    sum of the tolerances of peg and face, in mm.
     """
     margin, error = (fixture.quality.get(key) for key in ("closure_margin", "location_error"))
     if margin is None or error is None:
@@ -397,9 +439,10 @@ def rank_unfit(fixture: Fixture, off: float) -> Range:
 
 
 def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
-    """Return whether one row of numbers is certainly less than another, at the first that may differ.
+    """Return whether row ``one`` sorts before row ``other``; None where they are equal.
 
-    None where the rows are equal.
+    At the first entry whose ranges are not equal numbers, True means that the range of ``one`` is certainly
+    less.
     """
     for (low, high), (least, most) in zip(one, other, strict=True):
         if high < least:

@@ -26,36 +26,36 @@ from workhold.files.result.fixture_forms import check_seating, read_head_seating
 from workhold.files.result.forms import Head
 from workhold.files.result.hold_text import is_hold
 from workhold.files.result.holds import AnyHoldPart, read_holds
-from workhold.files.result.notes import note_faults, read_notes
+from workhold.files.result.notes import find_note_faults, read_notes
 from workhold.files.result.parts import HEAD, check_head, describe_columns_from_head, parse_head, read_parts
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.clamps import ratios
-from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.clamps import compute_force_ratios
+from workhold.model.fixture import ClampPair, Fixture, Peg
 from workhold.model.notes import ChosenOnly, Note
 from workhold.model.pose import Pose
 from workhold.model.quality import list_figures_in_columns
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 from workhold.model.seating import Seating
 from workhold.model.solid import BESIDE_TOP
 from workhold.verification.reading import add_working_forces, read_fixtures
 from workhold.verification.rules.hardware import ToolkitRules
 
 __all__ = [
-    "Claim",
-    "Listing",
-    "claim_of",
+    "SeatingClaim",
+    "WrittenListing",
+    "make_claim",
     "collect_claims",
     "read_listing",
 ]
 
 
 @frozen
-class Claim:
+class SeatingClaim:
     """The seating of a fixture.
 
     Parameters
@@ -73,26 +73,34 @@ class Claim:
         return self.seating.capture_opening
 
 
-def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> Claim:
-    """Return the claim that fields make of a fixture, counted from 1, in a pose; refuse fields that cannot be used."""
+def make_claim(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> SeatingClaim:
+    """Return the seating claim of fixture ``number`` (from 1) from the fields of its file.
+
+    Raises
+    ------
+    InputError
+        When the fields cannot be used.
+    """
     seating = check_seating(fields, pose, Path(path), number)
-    return Claim(fields, seating.in_toolkit(query.toolkit, query.opening))
+    return SeatingClaim(fields, seating.with_toolkit(query.toolkit, query.opening))
 
 
 def add_seating_claims(
     fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result"
 ) -> list[Fixture]:
-    """Return the fixtures, whose seating is given by fields or is one of the model, with what is claimed of
-    it.
+    """Return the fixtures with each seating (fields, or a ``Seating``) replaced by a ``SeatingClaim``.
 
-    Refuses fields that cannot be used.
+    Raises
+    ------
+    InputError
+        When the fields of a seating cannot be used.
     """
     out = list(fixtures)
     for place, fixture in enumerate(out):
         seating = fixture.seating
         if seating is not None:
-            fields = seating.as_fields() if isinstance(seating, Seating) else seating
-            out[place] = evolve(fixture, seating=claim_of(fields, fixture.pose, query, path, place + 1))
+            fields = seating.to_fields() if isinstance(seating, Seating) else seating
+            out[place] = evolve(fixture, seating=make_claim(fields, fixture.pose, query, path, place + 1))
     return out
 
 
@@ -107,7 +115,9 @@ DECIMALS = 10
 
 @frozen(eq=False)
 class FixturesInColumns(Sequence[Fixture]):
-    """The fixtures of columns; their pegs stand in the order of their type, in the holes of a toolkit.
+    """The fixtures of a file in columns, made one by one when asked for, in the holes of a toolkit.
+
+    The pegs of each stand in the order of its type.
 
     Raises
     ------
@@ -117,7 +127,7 @@ class FixturesInColumns(Sequence[Fixture]):
 
     columns: Columns
     toolkit: Toolkit
-    claims: tuple[Claim, ...] = ()
+    claims: tuple[SeatingClaim, ...] = ()
 
     def __attrs_post_init__(self) -> None:
         for start in range(0, len(self), BLOCK):
@@ -151,7 +161,9 @@ class FixturesInColumns(Sequence[Fixture]):
         return evolve(made, seating=self.claims[place]) if place < len(self.claims) else made
 
     def make_fixture(self, place: int) -> Fixture:
-        """Return the fixture of a place, without its seating."""
+        """Return the fixture at index ``place``, without its seating; numbers
+        that columns do not hold are NaN.
+        """
         numbers = {name: values[place].tolist() for name, values in self.columns.items()}
         arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
         pegs, pairs = [], isinstance(travelled, list)
@@ -160,11 +172,11 @@ class FixturesInColumns(Sequence[Fixture]):
         each = (numbers[name] for name in ("column", "row", "face", "force"))
         for carrier, along, column, row, face, force in zip(carriers, travels, *each, strict=True):
             one = self.toolkit.carriers[carrier]
-            x, y = one.place(column, row, along)
+            x, y = one.compute_hole_center(column, row, along)
             if not one.contact.is_placed:
                 # Where the part lies on it follows from the pose, and is not written.
                 x = nan
-            called = None if one.on is None or min(column, row) < 0 else one.place_name(column, row)
+            called = None if one.on is None or min(column, row) < 0 else one.name_place(column, row)
             # Nor which way a flat looks.
             looks = None if one.flat is None else nan
             pegs.append(
@@ -176,15 +188,15 @@ class FixturesInColumns(Sequence[Fixture]):
         if not pairs:
             return Fixture(arrangement.name, tuple(pegs), pose, travelled, known, arrangement.direction)
         # The ends of its ratio follow from the reactions, and are not written.
-        low, high = (float(end[0]) for end in ratios(np.array([numbers["force"]])))
+        low, high = (float(end[0]) for end in compute_force_ratios(np.array([numbers["force"]])))
         reactions = tuple((one, other) for one, other in numbers["force"])
-        pair = Pair((travelled[0], travelled[1]), (low, high), reactions, numbers["pairs"])
+        pair = ClampPair((travelled[0], travelled[1]), (low, high), reactions, numbers["pairs"])
         listed = Fixture(arrangement.name, tuple(pegs), pose, travelled[0], known, arrangement.direction)
         return add_working_forces(listed, pair)
 
 
 @frozen(eq=False)
-class Listing:
+class WrittenListing:
     """A result as it is written.
 
     Parameters
@@ -204,7 +216,7 @@ class Listing:
     complete: bool
     notes: Sequence[Note]
     statistics: Mapping[str, int]
-    proof: Proof | None
+    proof: ProofReport | None
     faults: tuple[str, ...] = ()
     pairs: int | None = None
     seats: int | None = None
@@ -212,11 +224,14 @@ class Listing:
 
     @property
     def is_whole(self) -> bool:
+        """Whether the search was complete and every fixture found is listed."""
         return self.complete and dict(self.found) == dict(self.counts) and self.query.best is None
 
     @property
     def is_chosen(self) -> bool:
-        """Whether somebody chose what is listed, which says nothing of the others."""
+        """Whether a note says that somebody chose the listed fixtures, so that nothing is said of the
+        others.
+        """
         return ChosenOnly(sum(self.found.values()), len(self.fixtures)) in self.notes
 
     @property
@@ -224,9 +239,9 @@ class Listing:
         return ToolkitRules.from_query(self.query)
 
 
-def collect_claims(result: Result) -> Listing:
-    """Return what a result claims that is not in a file."""
-    return Listing(
+def collect_claims(result: Result) -> WrittenListing:
+    """Return the claims of a result that is in memory, not in a file."""
+    return WrittenListing(
         result.query,
         add_seating_claims(list(result), result.query),
         result.counts,
@@ -242,8 +257,8 @@ def collect_claims(result: Result) -> Listing:
     )
 
 
-def read_listing(path: str | Path) -> Listing:
-    """Return what a result file claims.
+def read_listing(path: str | Path) -> WrittenListing:
+    """Return the claims of a result file.
 
     Raises
     ------
@@ -255,9 +270,9 @@ def read_listing(path: str | Path) -> Listing:
     try:
         query = head.to_query()
         types, notes = query.toolkit.types, read_notes(head, query)
-        return Listing(
+        return WrittenListing(
             query,
-            held_by_friction(taken, query)
+            make_friction_fixtures(taken, query)
             if query.toolkit.holds_by_friction
             else complete_fixtures(taken, seatings, ToolkitRules.from_query(query), query, path),
             read_counts_by_type(head.counts, "counts", types),
@@ -270,7 +285,7 @@ def read_listing(path: str | Path) -> Listing:
             (
                 *find_missing_keys(head),
                 *find_turned_loops(head.workpiece.loops, query),
-                *note_faults(head, notes),
+                *find_note_faults(head, notes),
             ),
             head.pairs,
             head.seats,
@@ -280,15 +295,25 @@ def read_listing(path: str | Path) -> Listing:
         raise InputError(f"{path} cannot be verified: {error}") from error
 
 
-def held_by_friction(taken: Any, query: Query) -> list[Fixture]:
-    """The fixtures of flat jaws, or of straps; refuse others."""
+def make_friction_fixtures(taken: Any, query: Query) -> list[Fixture]:
+    """Return the fixtures of flat jaws, or of straps, from their parsed parts.
+
+    Raises
+    ------
+    InputError
+        When they are fixtures of another kind.
+    """
     if not isinstance(taken, list) or not all(isinstance(one, AnyHoldPart) for one in taken):
         raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
     return [part.to_fixture(query.toolkit, query.unit_force) for part in taken]
 
 
 def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[AnyHoldPart] | Columns, list[Any]]:
-    """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
+    """Return the head of a file, its fixtures (or columns), and the seatings of
+    the first ones of a file in columns.
+
+    The seatings are [] for a file of lines, whose fixtures hold their own.
+    """
     try:
         if is_archive(path):
             # All of it is read once, to compare its checksums.
@@ -301,7 +326,7 @@ def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[AnyHo
 
 
 def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[AnyHoldPart]:
-    """Fixtures with pegs, or such as flat jaws hold."""
+    """Return the fixtures with pegs, or of flat jaws or straps, as the first item says."""
     iterator = iter(items)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
@@ -315,10 +340,14 @@ def complete_fixtures(
     query: Query,
     path: Path,
 ) -> Sequence[Fixture]:
-    """Return the fixtures with the travels of their clamps and with the seating that stands apart in a file
-    of columns.
+    """Return the fixtures with their clamps' travels and their seating claims.
 
-    Refuses the first one that is of another kind, or whose seating cannot be used.
+    ``seatings`` are those of the first fixtures of a file in columns.
+
+    Raises
+    ------
+    InputError
+        When a fixture is of another kind, or a seating cannot be used.
     """
     if not isinstance(fixtures, list):
         listed = FixturesInColumns(fixtures, hardware.toolkit)
@@ -328,7 +357,7 @@ def complete_fixtures(
             )
         poses = [fixture.pose for fixture in listed[: len(seatings)]]
         numbered = enumerate(zip(seatings, poses, strict=True), 1)
-        claims = tuple(claim_of(fields, pose, query, path, k) for k, (fields, pose) in numbered)
+        claims = tuple(make_claim(fields, pose, query, path, k) for k, (fields, pose) in numbered)
         return evolve(listed, claims=claims)
     out = []
     for number, fixture in enumerate(fixtures, 1):
@@ -342,7 +371,9 @@ def complete_fixtures(
 
 
 def find_missing_keys(head: Head) -> list[str]:
-    """Return a fault for every key of the form that is missing, for which a reader would take the usual value."""
+    """Return one sentence for each key that the file's form needs and that is
+    missing, so that a default would be read.
+    """
     # Of a vise and a toolkit one is enough, a missing account is named in any case, and a fit decides
     # nothing. A departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
@@ -387,7 +418,13 @@ def find_missing_keys(head: Head) -> list[str]:
 def read_counts_by_type(
     counts: Mapping[str, int] | None, key: str, types: Sequence[str], usual: Mapping[str, int] | None = None
 ) -> Mapping[str, int]:
-    """Return the numbers of fixtures by type; refuse those that are not of the toolkit's types."""
+    """Return the numbers of fixtures by type; ``usual`` where ``counts`` is None.
+
+    Raises
+    ------
+    InputError
+        When the types are not exactly ``types``.
+    """
     counts = usual if counts is None else counts
     if counts is None or set(counts) != set(types):
         raise InputError(
@@ -397,7 +434,10 @@ def read_counts_by_type(
 
 
 def find_turned_loops(loops: Sequence[Any], query: Query) -> list[str]:
-    """Return a fault for every loop without the material on its left, which makes its numbers ambiguous."""
+    """Return one sentence for each loop, counted from 0, that does not have the material on its left.
+
+    Such a loop is read in reverse, which makes the numbers of its segments ambiguous.
+    """
     return [
         f"loop {index} does not have the material on its left"
         for index, (written, used) in enumerate(zip(loops, query.workpiece.loops, strict=True))

@@ -33,7 +33,7 @@ class PegBeam:
     height: arb
 
     def compute_deflection(self, force: arb) -> arb:
-        """Return how far it gives way in mm under a force in N: by bending, and by shear."""
+        """Return the tip deflection in mm under a force in N, by bending and shear."""
         radius = self.diameter / 2
         second_moment = arb.pi() * radius**4 / 4
         bends = force * self.height**3 / (3 * ELASTIC_MODULUS * second_moment)
@@ -41,14 +41,16 @@ class PegBeam:
         return bends + shears
 
     def compute_stress(self, force: arb) -> arb:
-        """Return the stress in MPa at its root, moment over section modulus."""
+        """Return the bending stress in MPa at the root under a force in N: moment over section modulus."""
         return force * self.height / (arb.pi() * (self.diameter / 2) ** 3 / 4)
 
 
 def make_beams(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
-    """Return the beam of each contact, None of a clamp's tip and of a wall.
+    """Return the beam of each contact of a fixture; an entry is None for a
+    clamp's tip or a wall, which do not bend.
 
-    None stands for all where it is not known how high pegs press, and where pegs are points.
+    Returns None where the pegs' heights are unknown, where a peg has no radius, or where there is no beam at
+    all.
     """
     if not query.knows_heights:
         return None
@@ -58,7 +60,7 @@ def make_beams(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
         if carrier.contact not in (ROUND_PIN, FLAT_PIN):
             beams.append(None)
             continue
-        run = run_of(peg.face, fixture.pose.inverse.apply(peg.x, peg.y), query)
+        run = find_run(peg.face, fixture.pose.inverse.apply(peg.x, peg.y), query)
         if run is None or carrier.peg_radius == 0.0:
             return None
         beams.append(PegBeam(2 * arb(carrier.peg_radius), (run[0] + run[1]) / 2))
@@ -70,8 +72,11 @@ def find_stated_force(query: Query) -> arb:
     return arb(STATED_FORCE if query.jaw_force is None else query.jaw_force)
 
 
-def run_of(number: int, point: tuple[float, float], query: Query) -> tuple[arb, arb] | None:
-    """Return the heights over which a peg at a point of the part can press on a face; None where none are known."""
+def find_run(number: int, point: tuple[float, float], query: Query) -> tuple[arb, arb] | None:
+    """Return the heights in mm, from and to, over which a peg can press on a face; None where none are known.
+
+    ``number`` is the face's number, ``point`` the peg's centre in the part's frame.
+    """
     if query.workpiece.solid is None:
         heights = [one for one in (query.thickness, query.peg_height) if one is not None]
         return arb(0), arb(min(heights))
@@ -93,7 +98,7 @@ def run_of(number: int, point: tuple[float, float], query: Query) -> tuple[arb, 
 
 
 def compute_share_along(segment: Segment, point: tuple[float, float]) -> float:
-    """Return where a point is along a segment, as a share of it from where it begins."""
+    """Return a point's position along a segment: 0 at its start, 1 at its end, beyond these outside it."""
     x, y = point
     if isinstance(segment, Line):
         (ax, ay), (bx, by) = segment.start, segment.end
@@ -108,7 +113,10 @@ def compute_share_along(segment: Segment, point: tuple[float, float]) -> float:
 
 
 def interpolate_cubic(rows: Rows, share: float, end: int) -> float:
-    """Return an end of a run at a share of its segment: of every four rows a cubic, by Neville's scheme."""
+    """Return the lower (``end`` 1) or upper (``end`` 2) height of a run at a share of its segment.
+
+    Rows are (share, low, high). Every four rows define a cubic, evaluated by Neville's scheme.
+    """
     first = 0
     while first + 6 < len(rows) and rows[first + 3][0] < share:
         first += 3

@@ -46,7 +46,7 @@ from workhold.verification.ball_geometry import (
 from workhold.verification.contacts import BallContact, BallPose, evaluate_contact_system, make_joint_outline
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.wall import WallContact
-from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
+from workhold.verification.tolerances import AGREEMENT, Finding, format_middle, judge_slack
 
 __all__ = [
     "find_broken_restriction",
@@ -65,11 +65,11 @@ MOST_STEPS = 12
 
 
 def enclose_zero(system: System, start: Sequence[float]) -> list[arb] | None:
-    """Return a proven enclosure of the one zero near a start, or None without a proof at the precision in
-    force.
+    """Return a proven enclosure of the one zero near ``start``; None where it
+    cannot be proven at the current precision.
 
-    Newton's method on midpoints finds a place; the proof does not depend on how it was found. The box around
-    it has half the digits of the precision as its radius.
+    Newton's method on midpoints finds the zero, and Krawczyk's theorem proves it. The box around it has a
+    radius of 2^(-bits/2).
     """
     size = len(start)
     middle = arb_mat(size, 1, list(start))
@@ -94,7 +94,9 @@ def enclose_zero(system: System, start: Sequence[float]) -> list[arb] | None:
 
 
 def enclose_written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
-    """Return all poses that agree with the file's, with travels in mm that agree with some likewise."""
+    """Return a ball of all poses within ``AGREEMENT`` of the written pose and of the written travels in
+    mm.
+    """
     off = arb(0, AGREEMENT)
     theta = (written.theta_deg + off) * arb.pi() / 180
     return BallPose.from_turn_and_place(
@@ -103,23 +105,23 @@ def enclose_written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
 
 
 def judge_gaps(touching: Sequence[tuple[str, BallContact, int]], around: BallPose) -> Iterator[Finding]:
-    """Check whether any pose that agrees with the file's, and travels likewise, could touch all faces.
+    """Yield a refuting finding for each contact that no pose near the written one can bring into touch.
 
-    The gaps are enclosed over all of them at once; one that certainly is not the peg radius refutes.
+    ``touching`` holds (name, contact, face number); ``around`` is the ball of poses.
     """
     for name, contact, face in touching:
         off = contact.side.compute_gap(contact.compute_center_in_part(around)) - contact.radius
         if off > 0 or off < 0:
-            yield Finding(True, f"{name} is {number(off)} mm away from touching face {face}")
+            yield Finding(True, f"{name} is {format_middle(off)} mm away from touching face {face}")
 
 
 def prove_pose(
     contacts: Sequence[BallContact], written: Pose, travels: Mapping[str, float]
 ) -> tuple[BallPose | None, list[Finding]]:
-    """Return the proven solution of the contact equations near the file's pose, if any, and what is wrong
-    with it.
+    """Return the proven solution of the contact equations near the file's pose, or
+    None, and findings against the file.
 
-    ``travels`` in mm are those of the file, by what each is called.
+    ``travels`` are those of the file in mm, by name.
     """
     values = [written.theta_deg, written.x, written.y, *travels.values()]
     zero = enclose_zero(partial(evaluate_contact_system, contacts), [radians(written.theta_deg), *values[1:]])
@@ -132,13 +134,15 @@ def prove_pose(
     found = [zero[0] * 180 / arb.pi(), *zero[1:]]
     for (name, unit), derived, value in zip(names, found, values, strict=True):
         off = abs(derived - value)
-        words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
+        words = f"the {name} in the file is {format_middle(off)} {unit} from the one that touches {touched}"
         findings += judge_slack(AGREEMENT - off, words)
     return BallPose.from_turn_and_place(*zero), findings
 
 
 def find_broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return the restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
+    """Return a sentence, without full stop, on the first restriction that a
+    fixture breaks; "" where it keeps all.
+    """
     restrictions = query.restrictions
     avoided = find_avoided_faces(query)
     bare = find_faces_without_band(query.workpiece)
@@ -165,7 +169,9 @@ def find_broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRul
 
 
 def find_untouched_face(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return the first face that a fixture is to touch and does not, as :func:`find_broken_restriction` says it."""
+    """Return a sentence on the first face that the query asks to touch and the
+    fixture does not touch; "" for none.
+    """
     if not query.restrictions.touch:
         return ""
     touched = {face for peg in fixture.pegs for face in (peg.face, peg.beside) if face is not None}
@@ -178,7 +184,7 @@ def find_untouched_face(fixture: Fixture, query: Query, hardware: ToolkitRules) 
 
 
 def find_imprecision(fixture: Fixture, query: Query) -> str:
-    """Return the location error of a fixture where it is larger than asked; the figure itself is derived elsewhere."""
+    """Return a sentence where the fixture's written location error exceeds the limit asked for; else ""."""
     most, error = query.max_location_error, fixture.quality.get("location_error", inf)
     if most is None or error <= most + AGREEMENT:
         return ""
@@ -186,7 +192,9 @@ def find_imprecision(fixture: Fixture, query: Query) -> str:
 
 
 def find_faces_without_band(workpiece: Workpiece) -> set[int]:
-    """Return the numbers of the faces with a segment that no upright face of the solid stands over."""
+    """Return the numbers of the faces with a segment over which the solid has
+    no upright face; empty for a prism.
+    """
     bands = workpiece.numbered.bands
     return {
         face.number
@@ -196,8 +204,9 @@ def find_faces_without_band(workpiece: Workpiece) -> set[int]:
 
 
 def find_avoided_faces(query: Query) -> set[int]:
-    """Return the numbers of the faces that are to be avoided, with those of other outlines of the solid's
-    same faces.
+    """Return the numbers of the faces to avoid, in all outlines.
+
+    A face of another outline counts where it comes from the same face of the solid as an avoided segment.
     """
     avoid, every = set(query.restrictions.avoid), query.workpiece.numbered
     if query.workpiece.outlines and every.over:
@@ -209,7 +218,9 @@ def find_avoided_faces(query: Query) -> set[int]:
 def find_restriction_broken_at_wall(
     fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]
 ) -> str:
-    """Return the restriction on faces or zones that a wall breaks, as :func:`find_broken_restriction` says it."""
+    """Return a sentence where the part lies on a wall with an avoided face, or a
+    wall stands in a keep-out zone; else "".
+    """
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     for wall in hardware.walls:
         # Of a corner on a wall both faces are to be avoided.
@@ -226,13 +237,15 @@ def find_restriction_broken_at_wall(
 
 
 def map_peg_to_part(fixture: Fixture, peg: Peg) -> Point:
-    """Return a peg's centre in the part's frame; in balls, and not by ``Pose``, which is what is checked."""
+    """Return a peg's centre in the part's frame in mm, computed in balls independently of ``Pose``."""
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     return turn_vector(make_exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)
 
 
 def compute_zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
-    """Return y in mm of the lowest point of a zone, once it is turned about the workpiece's origin."""
+    """Return the lowest y in mm of a zone turned about the part's origin by
+    the angle with this cosine and sine.
+    """
     heights = []
     for side in make_loop_sides(zone.loop):
         heights += [turn_vector(point, cosine, sine)[1] for point in (side.start, side.end)]
@@ -242,7 +255,7 @@ def compute_zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
 
 
 def compute_zone_distance(zone: Zone, point: Point) -> arb:
-    """Return the distance in mm from a point to a zone, 0 inside."""
+    """Return the distance in mm from a point to a zone, 0 inside it; both in the part's frame."""
     sides = make_loop_sides(zone.loop)
     nearest = find_least([side.compute_distance(point) for side in sides])
     # On the chord of an arc, as at a circle's centre, turns are not certain. Nearer than any side all is
@@ -258,8 +271,8 @@ def compute_zone_distance(zone: Zone, point: Point) -> arb:
 
 
 def compute_turn_around(sides: Sequence[Side], point: Point) -> arb:
-    """Return the angle in radians that closed sides turn around a point off them: a whole turn inside, none
-    outside.
+    """Return the angle in radians that a closed chain of sides turns around a
+    point not on it: 2 pi inside, 0 outside.
 
     A side turns as its chord does, and an arc by a whole turn more or less when the point lies between it and
     its chord.
@@ -270,7 +283,7 @@ def compute_turn_around(sides: Sequence[Side], point: Point) -> arb:
         total += arb.atan2(cross(a, b), compute_dot_product(a, b))
         if isinstance(side, ArcSide):
             beside = side.sign * cross(a, b) < 0
-            ray = side.from_center(point)
+            ray = side.measure_from_center(point)
             if beside and compute_dot_product(ray, ray) < side.radius * side.radius:
                 total += side.sign * 2 * arb.pi()
     return total

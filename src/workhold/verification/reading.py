@@ -1,6 +1,6 @@
 """Fixtures of a result file from their JSON objects, number for number as it writes them.
 
-Every function below ``fixtures_of`` raises an ``UnusableError`` that says what is missing or of a wrong kind.
+Every function below ``make_fixtures`` raises an ``UnusableError`` that says what is missing or of a wrong kind.
 
 Glossary
 --------
@@ -19,10 +19,10 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import WALL
-from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.fixture import ClampPair, Fixture, Peg
 from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE
-from workhold.verification.rules.travel import WAYS, clamp_place
+from workhold.verification.rules.travel import WAYS, name_clamp_place
 
 __all__ = ["read_fixtures", "add_working_forces"]
 
@@ -32,16 +32,22 @@ NUMBERS = {3: "three", 5: "five"}
 
 
 class UnusableError(Exception):
-    """A value of the wrong kind; the message goes behind the place."""
+    """A value of the wrong kind; its message is appended to the place in the file."""
 
     @classmethod
     def from_entry(cls, item: Mapping[str, Any], key: str, kind: str) -> UnusableError:
-        """Return the error for a key of a JSON object that is missing, or not of a kind."""
+        """Return the error for a key of a JSON object that is missing, or not of the wanted ``kind``."""
         return cls(f"{key} is {item[key]!r}, not {kind}" if key in item else f"the key {key} is missing")
 
 
 def read_fixtures(items: Iterable[Any], path: Path) -> list[Fixture]:
-    """Return the fixtures from their JSON objects; refuse the first one that cannot be used, counted from 1."""
+    """Return the fixtures from their JSON objects.
+
+    Raises
+    ------
+    InputError
+        At the first one that cannot be used; its message counts from 1.
+    """
     fixtures = []
     for number, item in enumerate(items, 1):
         try:
@@ -52,6 +58,7 @@ def read_fixtures(items: Iterable[Any], path: Path) -> list[Fixture]:
 
 
 def read_fixture(item: Any) -> Fixture:
+    """Return a fixture from its JSON object, its seating still as fields."""
     if not isinstance(item, dict):
         raise UnusableError("it is no fixture")
     is_pair, has_wall = "directions" in item, "wall" in item
@@ -80,7 +87,7 @@ def read_fixture(item: Any) -> Fixture:
     )
     if is_pair:
         low, high = read_two_numbers(item, "ratio", least=1)
-        pair = Pair((0.0, 0.0), (low, high), tuple(forces), read_whole_number(item, "pairs"))
+        pair = ClampPair((0.0, 0.0), (low, high), tuple(forces), read_whole_number(item, "pairs"))
         fixture = add_working_forces(fixture, pair)
     fixture = add_flat_directions(fixture, item["flats"]) if "flats" in item else fixture
     # What its fields say is looked at where the query is known.
@@ -88,7 +95,9 @@ def read_fixture(item: Any) -> Fixture:
 
 
 def add_flat_directions(fixture: Fixture, flats: Any) -> Fixture:
-    """Return a fixture with which way the flats of its pegs in holes look, in degrees, null for none."""
+    """Return a fixture with the directions in degrees of its pegs' flats, one
+    per peg in a hole, None for no flat.
+    """
     standing = [place for place, peg in enumerate(fixture.pegs) if not peg.is_on_wall]
     if not isinstance(flats, list) or len(flats) != len(standing):
         raise UnusableError("flats is not one number or null for each peg")
@@ -99,8 +108,10 @@ def add_flat_directions(fixture: Fixture, flats: Any) -> Fixture:
     return evolve(fixture, pegs=tuple(pegs))
 
 
-def add_working_forces(fixture: Fixture, pair: Pair) -> Fixture:
-    """Return a fixture held by a pair of clamps, with forces per unit of both clamps' at the working ratio."""
+def add_working_forces(fixture: Fixture, pair: ClampPair) -> Fixture:
+    """Return a fixture with a pair of clamps and its peg forces at the working
+    ratio, per unit of both clamps' forces.
+    """
     ratio = pair.working_ratio
     forces = [(one + ratio * other) / (1 + ratio) for one, other in pair.reactions]
     pegs = tuple(evolve(p, force=f) for p, f in zip(fixture.pegs, forces, strict=True))
@@ -108,7 +119,7 @@ def add_working_forces(fixture: Fixture, pair: Pair) -> Fixture:
 
 
 def read_directions(item: Mapping[str, Any]) -> list[str]:
-    """Return the directions of the clamps of a fixture, none, one or two."""
+    """Return the clamp directions of a fixture ("+x" and the like): none, one or two."""
     if "directions" in item:
         directions: Any = item["directions"]
         is_two = isinstance(directions, list) and len(directions) == 2
@@ -122,6 +133,7 @@ def read_directions(item: Mapping[str, Any]) -> list[str]:
 
 
 def read_pose(item: Mapping[str, Any]) -> Pose:
+    """Return the pose of a fixture: degrees and mm."""
     pose = item.get("pose")
     if not isinstance(pose, dict):
         raise UnusableError("it has no pose")
@@ -129,6 +141,7 @@ def read_pose(item: Mapping[str, Any]) -> Pose:
 
 
 def read_quality(item: Mapping[str, Any]) -> dict[str, float]:
+    """Return those known figures of quality that the object has, by key."""
     quality = item.get("quality")
     if not isinstance(quality, dict):
         raise UnusableError("it has no quality")
@@ -137,7 +150,7 @@ def read_quality(item: Mapping[str, Any]) -> dict[str, float]:
 
 
 def read_two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:
-    """Return two numbers of a JSON object; of those after the first ``least`` a null is infinite."""
+    """Return two numbers of a JSON object; from index ``least`` on, null stands for inf."""
     values = item.get(key)
     if not isinstance(values, list) or len(values) != 2:
         raise UnusableError.from_entry(item, key, "two numbers")
@@ -149,7 +162,9 @@ def read_two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple
 
 
 def read_wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
-    """Return the forces of the two ends of the contact with a wall under each of two clamps."""
+    """Return the forces of the two ends of the contact with a wall, each as (under clamp 1, under clamp
+    2).
+    """
     forces = wall.get("forces")
     if not isinstance(forces, list) or len(forces) != 2:
         raise UnusableError("the forces of its wall are not two pairs of numbers")
@@ -157,7 +172,9 @@ def read_wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
 
 
 def read_wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
-    """Return the two ends of the contact with a wall from a JSON object; with two clamps forces stand elsewhere."""
+    """Return the two ends of the contact with a wall as pegs; their forces
+    are 0 with two clamps (``is_pair``).
+    """
     if not isinstance(item, dict):
         raise UnusableError("its wall is not given by places, segments and forces")
     pairs = []
@@ -183,7 +200,11 @@ def read_wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
 
 
 def read_peg(item: Mapping[str, Any], directions: list[str]) -> Peg:
-    """Return a peg from its JSON object; of two clamps each has its direction, which else is that of the fixture."""
+    """Return a peg from its JSON object.
+
+    ``directions`` are those of the fixture: none for jaws, one that holds for its clamp, or two, where each
+    clamp states its own.
+    """
     if not directions:
         column, row, segment = (read_whole_number(item, key) for key in ("column", "row", "segment"))
         x, y, force = (read_real(item, key) for key in ("x", "y", "force"))
@@ -217,11 +238,14 @@ def read_peg(item: Mapping[str, Any], directions: list[str]) -> Peg:
         raise UnusableError(f"the {line} of its clamp is not that of its hole")
     place[line] = read_whole_number(item, line)
     column, row = place["column"], place["row"]
-    called = clamp_place(PLATE, direction, column, row, hole is not None) if min(column, row) >= 0 else None
+    called = (
+        name_clamp_place(PLATE, direction, column, row, hole is not None) if min(column, row) >= 0 else None
+    )
     return Peg(f"clamp {direction}", column, row, *contact, called)
 
 
 def read_word(item: Mapping[str, Any], key: str) -> str:
+    """Return a string of a JSON object."""
     value = item.get(key)
     if not isinstance(value, str):
         raise UnusableError.from_entry(item, key, "a word")
@@ -229,7 +253,7 @@ def read_word(item: Mapping[str, Any], key: str) -> str:
 
 
 def read_real(item: Mapping[str, Any], key: str) -> float:
-    """Return a finite number of a JSON object."""
+    """Return a finite number of a JSON object, of at most 1e300 in size."""
     value: Any = item.get(key)
     if type(value) not in (int, float) or abs(value) > 1e300 or not isfinite(value):
         raise UnusableError.from_entry(item, key, "a number")
@@ -237,7 +261,7 @@ def read_real(item: Mapping[str, Any], key: str) -> float:
 
 
 def read_whole_number(item: Mapping[str, Any], key: str) -> int:
-    """Return a whole number of a JSON object of a sensible size."""
+    """Return an integer of a JSON object, of at most 2^31 in size."""
     value = item.get(key)
     if type(value) is not int or abs(value) > 2**31:
         raise UnusableError.from_entry(item, key, "a whole number")

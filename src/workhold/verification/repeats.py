@@ -73,14 +73,15 @@ class PartRotations:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece) -> PartRotations:
+        """Return the rotations that carry every outline of a workpiece onto itself."""
         every = enumerate(workpiece.every_outline)
         marks = np.array(
             [[*list_face_marks(face.segment), number] for number, one in every for face in one.faces]
         )
         center = marks[:, 0].mean()
         marks[:, :3] -= center
-        most = order_of(marks, PERHAPS * SAME)
-        least = most if most == 1 else order_of(marks, CERTAIN * SAME)
+        most = count_rotations(marks, PERHAPS * SAME)
+        least = most if most == 1 else count_rotations(marks, CERTAIN * SAME)
         return cls(most, (float(center.real), float(center.imag)), least == most)
 
     @property
@@ -90,19 +91,25 @@ class PartRotations:
 
 
 def list_face_marks(face: Segment) -> list[complex]:
-    """Return the middle, start, end and radius of a face, negative in a hollow; of a whole circle thrice its centre."""
+    """Return a face's middle, start, end and radius as complex numbers; the radius
+    is negative if concave, 0 if straight.
+
+    A whole circle has its centre three times.
+    """
     radius = face.sign * face.radius if isinstance(face, Arc) else 0.0
     points = (
-        [face.center] * 3 if isinstance(face, Arc) and face.is_full else [face.at(0.0), face.start, face.end]
+        [face.center] * 3
+        if isinstance(face, Arc) and face.is_full
+        else [face.compute_point(0.0), face.start, face.end]
     )
     return [*(complex(*point) for point in points), complex(radius)]
 
 
-def order_of(marks: NDArray[np.complex128], off: float) -> int:
-    """Return the largest number of rotations that carry each mark (N, 5) about 0 to within a distance in mm
-    of another one.
+def count_rotations(marks: NDArray[np.complex128], off: float) -> int:
+    """Return the largest order n such that a turn by 1/n carries every mark
+    to within ``off`` mm of another one.
 
-    The last of a face's marks is the number of its outline, which stays.
+    The marks (N, 5) are taken about 0; the last column is the outline's number, which a turn does not change.
     """
     outer = marks[np.abs(marks[:, 0]) > off]
     orders = (n for n in range(len(outer), 1, -1) if len(outer) % n == 0)
@@ -110,7 +117,9 @@ def order_of(marks: NDArray[np.complex128], off: float) -> int:
 
 
 def has_image(one: NDArray[np.complex128], order: int, marks: NDArray[np.complex128], off: float) -> bool:
-    """Return whether one of the marks (N, 5) is where a part of a turn carries some (5,)."""
+    """Return whether the turn by 1/``order`` carries the mark ``one`` (5,) to
+    within ``off`` mm of a row of marks (N, 5).
+    """
     turned = one * np.array([*[np.exp(2j * pi / order)] * 3, 1.0, 1.0])
     return bool((np.abs(marks - turned).max(axis=1) <= off).any())
 
@@ -140,11 +149,15 @@ class KnownFixtures:
 
     @classmethod
     def make_empty(cls, turning: PartRotations, hardware: ToolkitRules) -> KnownFixtures:
-        """Return nothing seen yet of fixtures of a workpiece that is carried onto itself in these ways."""
+        """Return a store without fixtures for a workpiece with these rotations."""
         return cls(hardware, turning.angles, turning.center)
 
     def add(self, index: int, fixture: Fixture) -> int | None:
-        """Add a fixture that is not refuted, and return the index of an earlier one that is the same."""
+        """Add a fixture that is not refuted, and return the index of an earlier equal one, or None.
+
+        Also counts ``sets``: a fixture that is new, and no rotation of an earlier one, adds one to its type's
+        count.
+        """
         first, alone = self.find(fixture), True
         for key, place in list_patterns(fixture, self.hardware):
             known = self.known.setdefault(key, [])
@@ -156,22 +169,24 @@ class KnownFixtures:
         return first
 
     def find(self, fixture: Fixture) -> int | None:
-        """Return the index of a fixture taken in that is the same, if any."""
+        """Return the index of an earlier added fixture that is the same, or None."""
         named = ((place, self.known.get(key, ())) for key, place in list_patterns(fixture, self.hardware))
         return next((k for place, known in named for k, other in known if are_same_place(place, other)), None)
 
     def turn_place(self, place: Place, angle: float) -> Place:
-        """Return the place of a workpiece that lies the same way after it is turned about its own centre."""
+        """Return the place of the workpiece after it is turned in its own frame by
+        ``angle`` radians about ``center``.
+        """
         x, y = place[1] - self.center[0], place[2] - self.center[1]
         turned_x, turned_y = cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y
         return place[0] - angle, self.center[0] + turned_x, self.center[1] + turned_y, *place[3:]
 
 
 def list_patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Place]]:
-    """Yield each pattern that names a fixture.
+    """Yield each (pattern, place) of a fixture: equal patterns and places mean the same fixture.
 
-    There are two where a half turn of the toolkit leaves the holes as they are, and none where the pegs are
-    not those of a fixture.
+    There are two where half a turn of the toolkit gives the same pattern, and none where the pegs are not
+    those of a fixture.
     """
     there = {peg.carrier for peg in fixture.pegs}
     clamps = [find_direction(peg) for peg in fixture.pegs if find_direction(peg)]
@@ -185,11 +200,12 @@ def list_patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Ke
 
 
 def make_pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, Place]:
-    """Return the pattern as it is (sign 1) or after half a turn of the toolkit (-1), which swaps two jaws.
+    """Return the pattern and place as they are (sign 1) or after half a turn of
+    the toolkit (-1), which swaps two jaws.
 
-    Columns count from the first of each carrier, rows from the lowest; beside a wall that and what stands
-    still keep theirs. Clamps are their directions and lines, of which the lines do not count where one pair
-    stands for all of its seat.
+    Columns count from the first peg of each carrier, rows from the lowest peg; beside a wall rows keep their
+    numbers. Clamps are given by direction and line; the lines are left out where one listed pair stands for
+    all of its seat.
     """
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices][::sign]
     lowest = min(sign * peg.row for group in groups for peg in group)
@@ -227,7 +243,7 @@ def make_pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[K
 
 
 def are_same_place(a: Place, b: Place, most: float = SAME) -> bool:
-    """Return whether two places of the workpiece agree."""
+    """Return whether two places of the workpiece agree to ``most`` (radians for the turn, mm else)."""
     turn = (a[0] - b[0] + pi) % tau - pi
     return abs(turn) <= most and all(abs(p - q) <= most for p, q in zip(a[1:], b[1:], strict=True))
 
@@ -237,7 +253,9 @@ SAME_SEAT = 1e-5
 
 
 def find_pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
-    """Yield a fault for the first fixture that is not among the seats of one whose pegs stand as its own do."""
+    """Yield one sentence for the first fixture that stands on a seated fixture's
+    pegs but is not among its listed seats.
+    """
     if not query.toolkit.closes_at_once:
         return
     seated = [fixture for fixture in fixtures[: query.seating or 0] if fixture.seating is not None]
@@ -270,7 +288,7 @@ def find_pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[s
 
 
 @frozen
-class Stance:
+class PegStance:
     """How the pegs of a fixture stand to each other.
 
     Parameters
@@ -287,7 +305,8 @@ class Stance:
     met: tuple[float, ...]
 
 
-def describe_stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
+def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
+    """Return how the placed pegs of a fixture stand to each other; some carrier must move."""
     by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.find_carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]
@@ -298,9 +317,11 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
     ux, uy = carrier.travel.unit
 
     def along(peg: Peg) -> float:
+        """Return how far a peg is from the first one along the direction of travel, in mm."""
         return (peg.x - first_x) * ux + (peg.y - first_y) * uy
 
     def across(peg: Peg) -> float:
+        """Return how far a peg is from the first one to the left of the direction of travel, in mm."""
         return (peg.y - first_y) * ux - (peg.x - first_x) * uy
 
     places = [(peg.x - first_x, peg.y - first_y) for peg in still]
@@ -308,7 +329,7 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
     numbers, met = [across(tip), *(part for place in places for part in place)], list[float]()
     if carrier.on is not None:
         # A clamp's stroke is counted from its hole, and a wall stands where it is.
-        x, y = carrier.place(tip.column, tip.row)
+        x, y = carrier.compute_hole_center(tip.column, tip.row)
         numbers += [x - first_x, y - first_y] if carrier.measure == "stroke" else []
         numbers += [first_y] if WALL_END in toolkit.contacts else []
         reach = [carrier.peg_radius + toolkit.find_carrier(peg.carrier).peg_radius for peg in still]
@@ -318,11 +339,13 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
             if abs(across(peg) - across(tip)) < near
         ]
     key = (fixture.direction, len(still), *(round(part, 5) + 0.0 for part in numbers))
-    return Stance(key, (first_x, first_y), along(tip), tuple(met))
+    return PegStance(key, (first_x, first_y), along(tip), tuple(met))
 
 
 def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:
-    """Return whether a seat is on four faces, in a pose and at a difference."""
+    """Return whether a seat is an unmirrored fixture seat with this pose and
+    this difference, to ``SAME_SEAT``.
+    """
     turn = (seat["pose"]["theta_deg"] - pose["theta_deg"] + 180.0) % 360.0 - 180.0
     away = max(abs(seat["pose"][name] - pose[name]) for name in ("x", "y"))
     kind = seat["kind"] == "fixture" and not seat["mirrored"]

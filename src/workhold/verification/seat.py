@@ -26,7 +26,7 @@ from math import inf
 from attrs import frozen
 from flint import arb, arb_mat
 
-from workhold.model.fixture import Pair
+from workhold.model.fixture import ClampPair
 from workhold.verification.ball_geometry import (
     Point,
     compute_dot_product,
@@ -49,17 +49,17 @@ from workhold.verification.tolerances import (
     MOST_FORCE,
     NO_REACTION,
     Finding,
+    format_middle,
     judge_slack,
     judge_written_number,
-    number,
 )
 
 __all__ = [
     "CLAMPS",
     "LOCATORS",
     "LocatorWrenches",
-    "Push",
-    "Ratio",
+    "ClampPush",
+    "ClampForceRatio",
     "SeatBalance",
     "compute_closure_margin",
     "find_ratio",
@@ -84,17 +84,21 @@ class LocatorWrenches:
 
     @classmethod
     def from_contacts(cls, contacts: Sequence[BallContact], pose: BallPose) -> LocatorWrenches:
-        """Return the seat of three locators, or of the two ends of a wall's contact and one."""
+        """Return the wrenches of three contacts: three locators, or the two ends
+        of a wall's contact and a locator.
+        """
         return cls(
             [contact.compute_center_in_part(pose) for contact in contacts],
             [contact.compute_outward_normal(pose) for contact in contacts],
         )
 
-    def make_push(self, contact: BallContact, pose: BallPose) -> Push:
-        """Return what a clamp does here; it pushes along -n, and clamps against its way."""
+    def make_push(self, contact: BallContact, pose: BallPose) -> ClampPush:
+        """Return the reactions to a clamp at a pose; the clamp pushes along -n, and
+        clamps against its direction of travel.
+        """
         point = contact.compute_center_in_part(pose)
         normal = contact.side.compute_outward_normal(point)
-        return Push(
+        return ClampPush(
             self.compute_reactions(point, normal),
             compute_dot_product(turn_vector(contact.way, pose.cosine, -pose.sine), normal),
         )
@@ -110,7 +114,11 @@ class LocatorWrenches:
         return arb_mat(self.wrenches).det()
 
     def compute_reactions(self, point: Point, normal: Point) -> tuple[arb, arb, arb]:
-        """Return what the locators take up per unit of force on the face of a clamp at a point, by Cramer's rule."""
+        """Return the locators' forces per unit of force on a clamp's face, by Cramer's rule.
+
+        ``point`` and ``normal`` are the clamp's centre and the outward unit normal there, in the part's
+        frame.
+        """
         own = (*normal, cross(point, normal))
         replaced = (arb_mat([*self.wrenches[:k], own, *self.wrenches[k + 1 :]]) for k in range(LOCATORS))
         a, b, c = (-matrix.det() / self.determinant for matrix in replaced)
@@ -118,13 +126,13 @@ class LocatorWrenches:
 
 
 @frozen(eq=False)
-class Push:
-    """A clamp at a seat.
+class ClampPush:
+    """What the locators take up of a clamp's force.
 
     Parameters
     ----------
-    taken : by the locators per unit of force on its face.
-    push : the share of its own force that a unit on its face is.
+    taken : the forces of the three locators per unit of force on the clamp's face.
+    push : the clamp's own force that goes with a unit of force on its face.
     """
 
     taken: tuple[arb, arb, arb]
@@ -132,23 +140,23 @@ class Push:
 
     @cached_property
     def reactions(self) -> list[arb]:
-        """Forces of the locators per unit of the clamp's own."""
+        """The forces of the three locators per unit of the clamp's own force."""
         return [entry / self.push for entry in self.taken]
 
     @property
     def most(self) -> arb:
-        """The most that a locator takes up."""
+        """The largest absolute locator force per unit of force on the clamp's face."""
         return find_largest([abs(entry) for entry in self.taken])
 
     @cached_property
     def alone(self) -> arb:
-        """The least share of all forces on a locator: above zero where the clamp holds the part alone."""
+        """The least locator force as a share of all forces: above 0 where the clamp holds the part alone."""
         a, b, c = self.taken
         return a.min(b).min(c) / (1 + abs(a) + abs(b) + abs(c))
 
 
 @frozen(eq=False)
-class Ratio:
+class ClampForceRatio:
     """The open interval of the second clamp's force over the first's in which all locators are pressed.
 
     Parameters
@@ -179,8 +187,11 @@ class Ratio:
         return cosine / (cosine + sine), sine / (cosine + sine)
 
 
-def find_ratio(one: Push, other: Push) -> Ratio | None:
-    """Return the interval for two clamps; None where a reaction is exactly at the edge of what counts as none."""
+def find_ratio(one: ClampPush, other: ClampPush) -> ClampForceRatio | None:
+    """Return the interval of force ratios in which all locators are pressed by two clamps.
+
+    It may be empty (``freedom`` negative). Returns None where it is uncertain whether a reaction counts as 0.
+    """
     low, high = arb(0), None
     for first, second in zip(one.reactions, other.reactions, strict=True):
         a, b = round_tiny_reaction_to_zero(first), round_tiny_reaction_to_zero(second)
@@ -192,21 +203,23 @@ def find_ratio(one: Push, other: Push) -> Ratio | None:
             high = -a / b if high is None else high.min(-a / b)
         elif not a > 0:
             high = arb(0)
-    return Ratio(low, high)
+    return ClampForceRatio(low, high)
 
 
 def round_tiny_reaction_to_zero(reaction: arb) -> arb | None:
-    """Return a reaction, 0 for one that counts as none; None where that is not certain."""
+    """Return 0 for a reaction smaller than ``NO_REACTION`` in size, else the
+    reaction; None where that is uncertain.
+    """
     size = abs(reaction)
     return arb(0) if size < NO_REACTION else reaction if size > NO_REACTION else None
 
 
-def compute_closure_margin(one: Push, other: Push) -> arb:
-    """Return the largest least entry of null vectors of all five wrenches that sum to 1; 0 or less for none.
+def compute_closure_margin(one: ClampPush, other: ClampPush) -> arb:
+    """Return the closure margin: the largest least entry of null vectors of all five wrenches that sum to 1.
 
-    They are (1 - s) (a1, 1, 0) + s (a2, 0, 1), scaled. Over 0 <= s <= 1 every entry is linear before scaling,
-    so the least of them is the largest where two are equal. Two whose difference may be constant are equal
-    nowhere or everywhere, and then another two are where it counts.
+    It is 0 where the wrenches do not close. Null vectors are (1 - s) (a1, 1, 0) + s (a2, 0, 1), scaled. Over
+    0 <= s <= 1 every entry is linear before scaling, so the least entry is greatest where two entries are
+    equal. Two entries whose difference may be constant are skipped, because another two then decide.
     """
     ends = list(zip((*one.taken, arb(1), arb(0)), (*other.taken, arb(0), arb(1)), strict=True))
     best = arb(0)
@@ -227,26 +240,25 @@ def compute_closure_margin(one: Push, other: Push) -> arb:
 
 @frozen(eq=False)
 class SeatBalance:
-    """How five contacts press.
+    """The forces of three locators and two clamps.
 
     Parameters
     ----------
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
-    seat : the locators, of which a wall's ends are two.
+    seat : the locators; the ends of a wall's contact count as two.
     pushes : both clamps.
-    known_ratio : in which their forces may be; None where a reaction is exactly at the edge of what counts as
-        none.
+    known_ratio : the interval of the clamps' force ratio; None where it is uncertain whether a reaction counts as 0.
     """
 
     points: Sequence[Point]
     normals: Sequence[Point]
     seat: LocatorWrenches
-    pushes: tuple[Push, Push]
-    known_ratio: Ratio | None
+    pushes: tuple[ClampPush, ClampPush]
+    known_ratio: ClampForceRatio | None
 
     @classmethod
     def from_contacts(cls, contacts: Sequence[BallContact], pose: BallPose) -> SeatBalance:
-        """Return the balance of three contacts that stand still and then two clamps."""
+        """Return the balance of five contacts: three fixed ones, then two clamps."""
         seat = LocatorWrenches.from_contacts(contacts[:LOCATORS], pose)
         first, second = (seat.make_push(contact, pose) for contact in contacts[LOCATORS:])
         points, normals = zip(
@@ -259,37 +271,43 @@ class SeatBalance:
         return cls(points, normals, seat, (first, second), find_ratio(first, second))
 
     @property
-    def ratio(self) -> Ratio:
-        """The ratio of a fixture that closes."""
+    def ratio(self) -> ClampForceRatio:
+        """The interval of the clamps' force ratio; ``known_ratio`` must not be None."""
         assert self.known_ratio is not None
         return self.known_ratio
 
     def judge_pushes(self, wrench_length: float) -> Iterator[Finding]:
-        """Check whether the locators fix the pose, both clamps push, and neither holds the part alone; L in mm."""
+        """Yield a finding where the locators do not fix the pose, a clamp does not
+        push, or one clamp holds the part alone.
+
+        ``wrench_length`` is L in mm.
+        """
         spanned = abs(self.seat.determinant) / wrench_length
         yield from judge_slack(
             spanned - LEAST_SEAT,
-            f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}",
+            f"the locators do not fix the pose: their wrenches have a determinant of only {format_middle(spanned)}",
         )
         for name, push in zip(CLAMPS, self.pushes, strict=True):
             yield from judge_slack(
                 push.push - LEAST_PUSH,
-                f"{name} does not push the part: its share is {number(push.push)}",
+                f"{name} does not push the part: its share is {format_middle(push.push)}",
                 f"the push of {name} is exactly at its limit",
             )
             yield from judge_slack(
                 MOST_FORCE * push.push - push.most,
-                f"{name} presses a locator with {number(push.most / push.push)} times its own force",
+                f"{name} presses a locator with {format_middle(push.most / push.push)} times its own force",
                 f"the force of a locator under {name} is exactly at its limit",
             )
             yield from judge_slack(
                 NO_REACTION - push.alone,
-                f"{name} holds the part without the other: its least share is {number(push.alone)}",
+                f"{name} holds the part without the other: its least share is {format_middle(push.alone)}",
                 f"whether {name} holds the part without the other is exactly at its limit",
             )
 
     def judge_closure(self) -> Iterator[Finding]:
-        """Check whether both clamps together press the part against all locators."""
+        """Yield a finding where at no ratio of the clamps' forces all locators are
+        pressed, or where that is uncertain.
+        """
         if self.known_ratio is None:
             yield Finding(False, "a locator's force is exactly at the edge of what counts as none")
             return
@@ -300,20 +318,22 @@ class SeatBalance:
             return
         yield from judge_slack(
             self.margin - LEAST_SHARE,
-            f"the clamps do not hold the part: the closure margin is {number(self.margin)}",
+            f"the clamps do not hold the part: the closure margin is {format_middle(self.margin)}",
             "the closure margin is exactly at its limit",
         )
 
     @cached_property
     def reactions(self) -> list[tuple[arb, arb]]:
-        """The force of each peg per unit of the first clamp's force, and of the second's."""
+        """For each of the five pegs, its force per unit of the first clamp's
+        force and per unit of the second's.
+        """
         one, other = self.pushes
         own = [(1 / one.push, arb(0)), (arb(0), 1 / other.push)]
         return [*zip(one.reactions, other.reactions, strict=True), *own]
 
     @cached_property
     def forces(self) -> list[arb]:
-        """Force of each peg per unit of both clamps' at the working ratio."""
+        """The force of each peg at the working ratio, per unit of the sum of both clamps' forces."""
         first, second = self.ratio.forces
         return [first * a + second * b for a, b in self.reactions]
 
@@ -325,20 +345,26 @@ class SeatBalance:
 
     @cached_property
     def margin(self) -> arb:
+        """The closure margin, see :func:`compute_closure_margin`."""
         return compute_closure_margin(*self.pushes)
 
     @cached_property
     def inverse(self) -> list[list[arb]] | None:
-        """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
+        """The inverse (3 x 3) of the rows (n, q x n) of the locators; None where it may be singular."""
         return invert_matrix([list(wrench) for wrench in self.seat.wrenches])
 
     @property
     def responses(self) -> list[list[arb]]:
-        """Force of each peg per unit of a load, in three rows; a clamp keeps its own force."""
+        """The force of each of the five pegs per unit of load: one row each for
+        g_x, g_y and the moment; 0 for clamps.
+        """
         return [[*row, arb(0), arb(0)] for row in self.inverse or ()]
 
-    def number_findings(self, pair: Pair, names: Sequence[str]) -> Iterator[Finding]:
-        """Check whether the reactions of pegs of some names and the ends of the ratio in the file are these."""
+    def judge_numbers(self, pair: ClampPair, names: Sequence[str]) -> Iterator[Finding]:
+        """Yield a finding for each reaction, and each end of the ratio's interval, that differs in the file.
+
+        ``names`` are those of the pegs.
+        """
         part = bound_relative_error(self.forces)
         for name, said, derived in zip(names, pair.reactions, self.reactions, strict=True):
             for clamp, value, force in zip(CLAMPS, said, derived, strict=True):
@@ -351,7 +377,7 @@ class SeatBalance:
         part *= 1 + find_largest([1 / b for b in least]) if least else arb(1)
         yield from judge_written_number("the lower end of its ratio", low, ratio.low, part * (1 + ratio.low))
         if (ratio.high is None) != (high == inf):
-            end = "has none" if ratio.high is None else f"is {number(ratio.high)}"
+            end = "has none" if ratio.high is None else f"is {format_middle(ratio.high)}"
             yield Finding(True, f"the upper end of its ratio {end}, and the file says otherwise")
         elif ratio.high is not None:
             yield from judge_written_number(
@@ -359,7 +385,9 @@ class SeatBalance:
             )
 
     def project_on_closing(self, forces: Sequence[arb]) -> list[arb]:
-        """Return the part of some forces that lies in the plane of those with which both clamps press."""
+        """Return the orthogonal projection of peg forces on the plane spanned by both clamps' closing
+        forces.
+        """
         ones, others = zip(*self.reactions, strict=True)
         aa, ab, bb = (
             compute_inner_product(ones, ones),

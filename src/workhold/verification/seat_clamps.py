@@ -15,7 +15,7 @@ from attrs import evolve, frozen
 from flint import arb
 
 from workhold.fixels.toolkit import Carrier
-from workhold.model.fixture import Fixture, Pair, Peg
+from workhold.model.fixture import ClampPair, Fixture, Peg
 from workhold.model.query import Query
 from workhold.verification.ball_geometry import (
     ArcSide,
@@ -45,8 +45,8 @@ from workhold.verification.rules.travel import (
 )
 from workhold.verification.seat import (
     LOCATORS,
+    ClampPush,
     LocatorWrenches,
-    Push,
     SeatBalance,
     compute_closure_margin,
     find_ratio,
@@ -60,10 +60,10 @@ from workhold.verification.tolerances import (
     SAME,
     SAME_FREEDOM,
     Finding,
+    format_middle,
     judge_slack,
-    number,
 )
-from workhold.verification.tool_walk import Element, walk_of
+from workhold.verification.tool_walk import HoldingElement, make_walk
 from workhold.verification.touching import find_points_on_line, judge_touching
 
 __all__ = ["SeatClamp", "SeatOnPlate", "count_pairs_at_seat"]
@@ -109,14 +109,16 @@ class SeatClamp:
     line: int
     face: int
     tip: Point
-    push: Push
+    push: ClampPush
     holes: Sequence[BoltHole]
     sure: bool
 
 
 @frozen(eq=False)
 class SeatPair:
-    """Two clamps that hold the part: freedom in degrees, closure margin, and whether they certainly do."""
+    """Two clamps that hold the part: freedom in degrees, closure margin, and whether they certainly hold
+    it.
+    """
 
     freedom: arb
     margin: arb
@@ -154,6 +156,9 @@ class SeatOnPlate:
         hardware: ToolkitRules,
         outline: BallOutline,
     ) -> SeatOnPlate:
+        """Return the seat of a fixture at a proven pose; ``contacts`` are those of its pegs in their
+        order.
+        """
         named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
         held = [(name, peg, contact) for name, peg, contact in named if not contact.is_flush]
         locators = [(name, contact) for name, _, contact in held]
@@ -172,7 +177,9 @@ class SeatOnPlate:
         return self.hardware.tips[direction].peg_radius
 
     def list_pairs(self, directions: Sequence[str]) -> Iterator[SeatPair]:
-        """Yield the pairs of clamps in two directions that hold the part here, those in doubt with them."""
+        """Yield the pairs of clamps in two directions that hold the part at
+        this seat, uncertain pairs included.
+        """
         one, other = directions
         found = {direction: self.list_clamps(direction) for direction in dict.fromkeys(directions)}
         both = combinations(found[one], 2) if one == other else product(found[one], found[other])
@@ -190,7 +197,11 @@ class SeatOnPlate:
                 yield SeatPair(freedom, margin, sure and ratio is not None)
 
     def list_clamps(self, direction: str) -> list[SeatClamp]:
-        """Return all clamps that may push in a direction and do not hold the part alone."""
+        """Return all clamps that may push in a direction and do not hold the
+        part alone, uncertain ones included.
+
+        They are in the order of faces, then of lines.
+        """
         found: list[SeatClamp] = []
         avoided = find_avoided_faces(self.query) | find_faces_without_band(self.query.workpiece)
         for face, side in sorted(self.outline.faces.items()):
@@ -204,7 +215,11 @@ class SeatOnPlate:
         return found
 
     def list_lines(self, side: Side, direction: str) -> list[int]:
-        """Return the numbers of the rows, or columns, that fit on the plate and on which a tip may touch a side."""
+        """Return the numbers of the rows (clamps along x) or columns (along y)
+        on which a tip may touch a side.
+
+        Only lines that fit on the plate together with the seat's pegs are returned.
+        """
         upright = direction.endswith("y")
         axis = self.compute_axis(upright)
         ends = [side.center] if isinstance(side, ArcSide) else [side.start, side.end]
@@ -221,17 +236,21 @@ class SeatOnPlate:
         return [line for line in range(low, high + 1) if self.hardware.fits(noun, [*numbers, line])]
 
     def compute_axis(self, upright: bool) -> Point:
-        """Return the plate's x for columns, or y for rows, in the workpiece's frame."""
+        """Return the unit vector in the part's frame across the lines: the plate's x
+        if ``upright`` (columns), else its y.
+        """
         way = (1.0, 0.0) if upright else (0.0, 1.0)
         return turn_vector(make_exact_point(*way), self.pose.cosine, -self.pose.sine)
 
     def shift(self, upright: bool) -> arb:
-        """Return how far along that axis the workpiece's origin is from column or row 0, in mm."""
+        """Return the distance in mm, across the lines, of the part's origin
+        from column 0 (``upright``) or row 0.
+        """
         x, y = self.lattice.offset
         return self.pose.x - x if upright else self.pose.y - y
 
     def list_clamps_on_line(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
-        """Yield the clamps on a line that touch a side and may keep all rules of their own."""
+        """Yield the clamps on a row or column that touch a side and do not certainly break a rule."""
         upright, radius = direction.endswith("y"), arb(self.find_tip_radius(direction))
         if isinstance(side, ArcSide) and not side.compute_offset_radius(radius) > 0:
             return
@@ -245,12 +264,14 @@ class SeatOnPlate:
                 continue
             x, y = turn_vector(point, self.pose.cosine, self.pose.sine)
             tip = x + self.pose.x, y + self.pose.y
-            clamp = self.clamp(BallContact(tip, way, side, radius), face, line, direction)
+            clamp = self.make_clamp(BallContact(tip, way, side, radius), face, line, direction)
             if clamp is not None:
                 yield clamp
 
-    def clamp(self, contact: BallContact, face: int, line: int, direction: str) -> SeatClamp | None:
-        """Return a clamp whose tip is where a contact is; None where it certainly breaks a rule of its own."""
+    def make_clamp(self, contact: BallContact, face: int, line: int, direction: str) -> SeatClamp | None:
+        """Return the clamp whose tip is at a contact; None where it certainly breaks a rule or has no
+        hole.
+        """
         margin = self.query.contact_margin
         touches = decide_verdict(judge_touching("a clamp", contact, face, self.pose, self.outline, margin))
         if touches is False:
@@ -274,8 +295,10 @@ class SeatOnPlate:
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 
     def is_passed(self, tip: BallContact, hole: BallContact) -> bool | None:
-        """Return whether the program's tools pass clear of a clamp from its tip to a hole; None where that is
-        in doubt.
+        """Return whether the program's tools keep clear of a clamp body from its tip to
+        a hole; None where that is uncertain.
+
+        Returns True where the query has no program to check.
         """
         if self.query.passed is None:
             return True
@@ -286,14 +309,18 @@ class SeatOnPlate:
             for u, v in (one.compute_center_in_part(self.pose) for one in (tip, hole))
         )
         radius = float(tip.clear_radius.mid())
-        element = Element("a clamp", "", (x, y), (from_x, from_y), radius, height, low=low)
-        near = walk_of(program).find_nearest(element)
+        element = HoldingElement("a clamp", "", (x, y), (from_x, from_y), radius, height, low=low)
+        near = make_walk(program).find_nearest(element)
         if near.high < program.clearance - IN_DOUBT:
             return False
         return True if near.low > program.clearance + IN_DOUBT else None
 
     def list_bolt_holes(self, contact: BallContact, line: int, direction: str) -> Iterator[BoltHole]:
-        """Yield where a clamp may be bolted whose tip is where a contact is, whatever the other clamp does."""
+        """Yield the holes in which a clamp with its tip at a contact may be
+        bolted, regardless of the other clamp.
+
+        A clamp without a stroke yields one entry, its tip.
+        """
         upright, rules = direction.endswith("y"), self.hardware.stroke
         if rules.span is None:
             stands = decide_verdict(rules.judge("a clamp", self.locators, contact, self.pose, self.outline))
@@ -318,7 +345,9 @@ class SeatOnPlate:
     def list_hole_choices(
         self, one: SeatClamp, other: SeatClamp
     ) -> Iterator[tuple[BoltHole, BoltHole, bool]]:
-        """Yield the holes in which two clamps may be bolted together, and whether they certainly may."""
+        """Yield (hole of one, hole of the other, certain) for each choice in which two
+        clamps fit the plate and keep clear.
+        """
         apart = arb(self.find_tip_radius(one.direction)) + self.find_tip_radius(other.direction) - HAIR
         for first, second in product(one.holes, other.holes):
             columns = [peg.column for peg in self.pegs] + [
@@ -334,12 +363,16 @@ class SeatOnPlate:
     def judge_pair(
         self,
         fixture: Fixture,
-        pair: Pair,
+        pair: ClampPair,
         contacts: Sequence[BallContact],
         pose: BallPose,
         balance: SeatBalance,
     ) -> Iterator[Finding]:
-        """Check whether the clamps are bolted with the least total travel and stand for the pairs of the seat."""
+        """Yield a finding where the clamps are not bolted with the least total
+        travel, or another pair is better.
+
+        Also yields one where the number of pairs that the fixture stands for is wrong.
+        """
         if self.hardware.stroke.span is not None:
             yield from self.judge_strokes(fixture, contacts, pose)
         if not self.hardware.every:
@@ -350,7 +383,7 @@ class SeatOnPlate:
     def judge_strokes(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose
     ) -> Iterator[Finding]:
-        """Check whether the clamps are bolted in the holes of the least total travel that have a place together."""
+        """Yield a finding for each choice of holes with a smaller total travel in which both clamps fit."""
         clamps = []
         for peg, contact in zip(fixture.pegs[LOCATORS:], contacts[LOCATORS:], strict=True):
             tip = evolve(contact, hole=contact.place(pose), travel=0)
@@ -366,12 +399,16 @@ class SeatOnPlate:
             less = total - HAIR - first.stroke - second.stroke
             if less < 0:
                 continue
-            words = f"{number(first.stroke + second.stroke)} mm of travel in all, not {number(total)}"
+            words = f"{format_middle(first.stroke + second.stroke)} mm of travel in all, not {format_middle(total)}"
             yield Finding(sure and bool(less > 0), f"the clamps could be bolted with {words}")
 
 
-def judge_best_pair(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -> Iterator[Finding]:
-    """Check whether a fixture stands for as many pairs as there are at its seat, and none of them is better."""
+def judge_best_pair(pair: ClampPair, balance: SeatBalance, pairs: Sequence[SeatPair]) -> Iterator[Finding]:
+    """Yield a finding where ``pair`` states a wrong number of pairs at its
+    seat, or one of ``pairs`` is better.
+
+    Better means freer by more than ``SAME_FREEDOM``, or as free with a larger closure margin.
+    """
     sure = [one for one in pairs if one.sure]
     if not len(sure) <= pair.count <= len(pairs):
         yield Finding(
@@ -383,22 +420,24 @@ def judge_best_pair(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair])
     freest = find_largest([freedom, *(one.freedom for one in sure)])
     yield from judge_slack(
         -(freest - freedom - SAME_FREEDOM - HAIR),
-        f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one "
-        f"{number(freedom)}",
+        f"another pair of clamps at its seat has a freedom of {format_middle(freest)} degrees, this one "
+        f"{format_middle(freedom)}",
     )
     rivals = [one.margin for one in sure if freest - one.freedom < SAME_FREEDOM - HAIR]
     widest = find_largest([margin, *rivals])
     yield from judge_slack(
         2 * HAIR - (widest - margin),
-        f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one "
-        f"{number(margin)}",
+        f"an equally free pair of clamps at its seat has a closure margin of {format_middle(widest)}, this one "
+        f"{format_middle(margin)}",
     )
 
 
 def count_pairs_at_seat(
     fixture: Fixture, query: Query, hardware: ToolkitRules, outline: BallOutline
 ) -> tuple[int, int] | None:
-    """Return the least and greatest number of pairs of clamps at a fixture's seat; None for no proven pose."""
+    """Return the least and greatest possible number of clamp pairs at a
+    fixture's seat; None without a proven pose.
+    """
     contacts = hardware.make_contacts(fixture, outline)
     pose, _ = prove_pose(contacts, fixture.pose, hardware.compute_travels(fixture))
     if pose is None:
@@ -409,7 +448,9 @@ def count_pairs_at_seat(
 
 
 def decide_verdict(findings: Iterable[Finding]) -> bool | None:
-    """Return whether nothing speaks against something; None where that is in doubt."""
+    """Return True without findings, False if one is definite (a rule is
+    broken), None if all are only uncertain.
+    """
     doubt = False
     for finding in findings:
         if finding.definite:
@@ -419,4 +460,5 @@ def decide_verdict(findings: Iterable[Finding]) -> bool | None:
 
 
 def are_touching(one: Point, other: Point) -> bool:
+    """Return whether two points certainly agree to ``SAME`` mm in x and in y."""
     return all(bool(abs(a - b) < SAME) for a, b in zip(one, other, strict=True))

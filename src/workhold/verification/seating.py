@@ -45,12 +45,12 @@ from workhold.verification.ball_geometry import (
     turn_vector,
 )
 from workhold.verification.contacts import BallPose
-from workhold.verification.listing import Claim
+from workhold.verification.listing import SeatingClaim
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import measure_travel
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
-__all__ = ["FloatOutline", "PartPlacement", "SeatingJudge", "StatedSeating", "stop_of", "make_wall_contact"]
+__all__ = ["FloatOutline", "PartPlacement", "SeatingJudge", "StatedSeating", "find_stop", "make_wall_contact"]
 
 # mm. A tip may be in a locator by this much: rounding.
 APART = 1e-6
@@ -76,27 +76,30 @@ class PartPlacement:
 
     @classmethod
     def from_pose(cls, pose: Mapping[str, float], mirrored: bool = False) -> PartPlacement:
+        """Return the placement of a pose as a file writes it, with the keys theta_deg, x and y."""
         return cls(pose["theta_deg"], pose["x"], pose["y"], mirrored)
 
     def turn_vector(self, way: Point) -> Point:
-        """Return a vector of the part as it lies, in balls."""
+        """Return a vector of the part's frame in the toolkit's frame, in balls;
+        a mirrored part is flipped first.
+        """
         sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
         return turn_vector((-way[0], way[1]) if self.mirrored else way, cosine, sine)
 
     def map_vector_to_part(self, way: Point) -> Point:
-        """Return a vector of the toolkit's frame as the part sees it, in balls."""
+        """Return a vector of the toolkit's frame in the part's frame, in balls."""
         sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
         x, y = turn_vector(way, cosine, -sine)
         return (-x, y) if self.mirrored else (x, y)
 
     def place_points(self, points: Array) -> Array:
-        """Return the points (N, 2) of the part as they lie, in doubles."""
+        """Return points (N, 2) of the part's frame in the toolkit's frame, in mm, in doubles."""
         c, s = cos(radians(self.theta_deg)), sin(radians(self.theta_deg))
         x, y = points[:, 0] * (-1.0 if self.mirrored else 1.0), points[:, 1]
         return np.stack([c * x - s * y + self.x, s * x + c * y + self.y], axis=1)
 
     def map_points_to_part(self, points: Array) -> Array:
-        """Return the points (N, 2) of the toolkit's frame as the part sees them, in doubles."""
+        """Return points (N, 2) of the toolkit's frame in the part's frame, in mm, in doubles."""
         c, s = cos(radians(self.theta_deg)), sin(radians(self.theta_deg))
         x, y = points[:, 0] - self.x, points[:, 1] - self.y
         return np.stack([(c * x + s * y) * (-1.0 if self.mirrored else 1.0), c * y - s * x], axis=1)
@@ -125,7 +128,10 @@ class StatedContact:
 def make_wall_contact(
     outline: BallOutline, contact: Mapping[str, int], place: PartPlacement
 ) -> StatedContact:
-    """Return a contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
+    """Return a stated contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc.
+
+    Where it names neither, ``off`` is inf.
+    """
     number, down, is_corner = contact["peg"], make_exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
     if is_corner and side is not None:
@@ -148,7 +154,11 @@ def make_peg_contact(
     center: tuple[float, float],
     radius: float,
 ) -> StatedContact:
-    """Return a contact with a face or a corner of a round peg about a center, of a radius in mm."""
+    """Return a stated contact of a face or a corner with a round peg; centre and
+    radius in mm in the toolkit's frame.
+
+    Where it names no face of the outline, ``off`` is inf.
+    """
     number, (x, y), face = contact["peg"], center, contact.get("face")
     local = place.map_vector_to_part(make_exact_point(x - place.x, y - place.y))
     side = outline.faces.get(contact["corner"] if face is None else face)
@@ -169,9 +179,11 @@ def make_peg_contact(
 def find_touching_faults(
     contacts: Sequence[StatedContact], on_wall: Sequence[int], wall: str
 ) -> Iterator[str]:
-    """Yield the contacts that do not touch as stated, are stated twice, or lack the wall's first end.
+    """Yield a verb phrase ("has a contact twice") for each fault of stated contacts.
 
-    The pegs ``on_wall`` are ends of the contact with what is called ``wall``.
+    Faults are a contact that does not touch, one stated twice, and ends of the wall that do not start with
+    the first. ``on_wall`` holds the numbers of the pegs that are ends of the contact with the wall named
+    ``wall``.
     """
     ends = [one.peg for one in contacts if one.peg in on_wall]
     if ends != list(on_wall[: len(ends)]):
@@ -185,10 +197,11 @@ def find_touching_faults(
             yield f"has peg {one.peg} not where it is said to touch"
 
 
-def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float | None:
-    """Return the travel in mm at which what moves is stopped without the part; None where nothing stops it.
+def find_stop(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float | None:
+    """Return the travel in mm at which the moving carrier stops without the
+    part; None where nothing stops it.
 
-    ``separation`` is the travel in mm at which a fixture has its pegs.
+    ``separation`` is the travel in mm at which the pegs have their places.
     """
     moved = [peg for peg in pegs if toolkit.find_carrier(peg.carrier).travel is not None]
     still = [peg for peg in pegs if peg not in moved and toolkit.find_carrier(peg.carrier).contact.is_placed]
@@ -217,10 +230,10 @@ PRESSES = 1e-9
 
 
 def can_balance(wrenches: Array, spare: float = 1e-9) -> bool:
-    """Return whether factors of 0 or more make wrenches (4, K) add up to (0, 0, 0, 1), what moves bearing
-    one.
+    """Return whether factors of 0 or more make the wrenches (4, K) sum to (0, 0, 0, 1), to within ``spare``.
 
-    If some do, then at most four that are independent do (Caratheodory's theorem).
+    The fourth row is the share of the moving pegs. If some factors do, then those of at most four independent
+    wrenches do (Caratheodory's theorem).
     """
     target = np.array([0.0, 0.0, 0.0, 1.0])
     if not np.isfinite(wrenches).all():
@@ -262,6 +275,7 @@ class FloatOutline:
 
     @classmethod
     def from_segments(cls, segments: Sequence[Side], workpiece: Workpiece) -> FloatOutline:
+        """Return the outline of segments in doubles; ``arm`` is measured from the workpiece's centre."""
         lines, arcs, points, edges = [], [], list[Array](), list[Array]()
         for side in segments:
             if isinstance(side, LineSide):
@@ -291,7 +305,7 @@ class FloatOutline:
         )
 
     def compute_lowest_height(self, place: PartPlacement) -> float:
-        """Return how high in mm the lowest point of the part is."""
+        """Return the least y in mm of the part as placed, in the toolkit's frame."""
         turn = radians(place.theta_deg)
         down = np.array([-sin(turn) * (-1.0 if place.mirrored else 1.0), -cos(turn)])
         x, y, radius, middle, half = self.arcs.T
@@ -300,7 +314,7 @@ class FloatOutline:
         return float(place.place_points(np.concatenate([self.points, below]))[:, 1].min())
 
     def measure_distances(self, points: Array) -> Array:
-        """Return the distances (N,) of points from the outline."""
+        """Return the distances (N,) in mm of points (N, 2) of the part's frame from the outline, unsigned."""
         found = np.full(len(points), np.inf)
         for ax, ay, bx, by in self.lines:
             t = ((points[:, 0] - ax) * (bx - ax) + (points[:, 1] - ay) * (by - ay)) / (
@@ -318,12 +332,14 @@ class FloatOutline:
         return found
 
     def is_free(self, pegs: Array, radii: Array, place: PartPlacement) -> bool:
-        """Return whether no disc about centres (N, 2) of radii (N,) in mm is in the part or reaches into it."""
+        """Return whether no disc with a centre (N, 2) in the toolkit's frame and a
+        radius (N,) in mm overlaps the placed part.
+        """
         points = place.map_points_to_part(pegs)
         return bool((self.measure_distances(points) >= radii).all() and not self.contains(points).any())
 
     def contains(self, points: Array) -> NDArray[np.bool_]:
-        """Return whether the part holds points (N,), as far as its polygon shows."""
+        """Return (N,) whether the part's polygon contains points (N, 2) of the part's frame."""
         ax, ay, bx, by = self.edges.T
         x, y = points[:, :1], points[:, 1:]
         crosses = (ay <= y) != (by <= y)
@@ -332,7 +348,9 @@ class FloatOutline:
         return np.asarray((crosses & right).sum(axis=1) % 2 == 1)
 
     def measure_farthest(self, one: PartPlacement, other: PartPlacement) -> float:
-        """Return how far in mm the outline as it lies in one way is from that in another."""
+        """Return the largest distance in mm of the outline placed as ``one``
+        from the outline placed as ``other``.
+        """
         return float(self.measure_distances(other.map_points_to_part(one.place_points(self.points))).max())
 
 
@@ -367,8 +385,10 @@ class SeatingJudge:
         return FloatOutline.from_segments(self.outline.segments, self.query.workpiece)
 
     def find_fault(self, fixture: Fixture) -> str:
-        """Return what is wrong with the seating of a fixture, a sentence without a full stop; empty for nothing."""
-        claim: Claim | None = fixture.seating
+        """Return the first fault of a fixture's stated seating, a sentence without
+        full stop; "" for none or no seating.
+        """
+        claim: SeatingClaim | None = fixture.seating
         if claim is None:
             return ""
         if len(fixture.travels) > 1:
@@ -384,30 +404,32 @@ class StatedSeating:
 
     judge: SeatingJudge
     fixture: Fixture
-    claim: Claim
+    claim: SeatingClaim
 
     @property
     def fields(self) -> Mapping[str, Any]:
+        """The fields of the seating, as the file writes them."""
         return self.claim.fields
 
     @cached_property
     def moving(self) -> list[bool]:
+        """For each peg of the fixture, whether it moves."""
         return [any(self.judge.hardware.find_way(peg)) for peg in self.fixture.pegs]
 
     @cached_property
     def way(self) -> tuple[float, float]:
-        """Along which they move as their travel grows."""
+        """The unit vector along which the moving pegs move as their travel grows."""
         return self.judge.hardware.find_way(self.fixture.pegs[self.moving.index(True)])
 
     @cached_property
     def on_wall(self) -> list[int]:
-        """Which of the pegs are ends of the contact with a wall."""
+        """The indices of the pegs that are ends of the contact with a wall."""
         carriers = [self.judge.hardware.carriers[peg.carrier] for peg in self.fixture.pegs]
         return [number for number, carrier in enumerate(carriers) if not carrier.contact.is_placed]
 
     @property
     def travel(self) -> float:
-        """How far in mm what moves has gone, of a clamp by where its tip is."""
+        """The travel in mm of the moving carrier; a clamp's follows from where its tip is written."""
         if self.fixture.direction is None:
             return self.fixture.travel
         tip = self.fixture.pegs[self.moving.index(True)]
@@ -415,10 +437,11 @@ class StatedSeating:
 
     @property
     def clamping(self) -> int:
-        """1 where the travel gets less as it clamps, -1 where it gets more."""
+        """1 where less travel clamps, -1 where more does."""
         return self.judge.query.toolkit.clamping
 
     def find_faults(self) -> Iterator[str]:
+        """Yield one clause for each fault of the seating: its seats, figures and pass."""
         seats = self.fields["seats"]
         own = [place for place, seat in enumerate(self.claim.seating.seats) if seat.is_own]
         if len(own) != 1:
@@ -436,12 +459,15 @@ class StatedSeating:
         if any(one > other + ROUNDED for one, other in pairwise(order)):
             yield "the seats are not in the order of their separations"
         for number, seat in enumerate(seats, 1):
-            for words in self.seat_faults(seat, mine):
+            for words in self.find_seat_faults(seat, mine):
                 yield f"seat {number} {words}"
         yield from self.find_figure_faults(mine)
         yield from self.pass_faults(mine)
 
-    def seat_faults(self, seat: Mapping[str, Any], own: Mapping[str, Any]) -> Iterator[str]:
+    def find_seat_faults(self, seat: Mapping[str, Any], own: Mapping[str, Any]) -> Iterator[str]:
+        """Yield a verb phrase ("lies beyond the stop") for each fault of a seat;
+        ``own`` is the fixture's own seat.
+        """
         apart = seat["jaw_separation"] - own["jaw_separation"]
         if abs(apart - seat["difference"]) > ROUNDED:
             yield "has a difference that is not that of the separations"
@@ -467,7 +493,9 @@ class StatedSeating:
             yield "is no equilibrium of its contacts"
 
     def is_own(self, contact: Mapping[str, int]) -> bool:
-        """Return whether a contact in the fixture's pose is the fixture's: on its face, or at its end on a wall."""
+        """Return whether a contact of the fixture's own seat is one of the fixture: on
+        the peg's face, or at its end on a wall.
+        """
         peg = self.fixture.pegs[contact["peg"]]
         if contact["peg"] not in self.on_wall:
             return contact.get("face") == peg.face
@@ -476,16 +504,19 @@ class StatedSeating:
 
     @cached_property
     def lying(self) -> PartPlacement:
+        """The placement of the part in the fixture."""
         return PartPlacement(self.fixture.pose.theta_deg, self.fixture.pose.x, self.fixture.pose.y)
 
     @cached_property
     def ends(self) -> list[Point]:
-        """Where each peg of the fixture, or end of its wall, touches; not every file says so of a wall."""
+        """For each peg of the fixture its centre, and for each end on a wall the point
+        that touches, in the toolkit's frame.
+        """
         contacts = self.judge.hardware.make_contacts(self.fixture, self.judge.outline)
         return [contact.place(BallPose.from_written(self.fixture.pose)) for contact in contacts]
 
     def name_seat(self, seat: Mapping[str, Any]) -> str:
-        """Return what a seat is called with its contacts."""
+        """Return the kind that the contacts of a seat make it: "curved", "pocket", "corner" or "fixture"."""
         contacts = seat["contacts"]
         if len(contacts) < 4:
             return "curved"
@@ -496,7 +527,7 @@ class StatedSeating:
         return "corner" if is_corner else "fixture"
 
     def find_figure_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
-        """Yield the figures that do not follow from seats and contacts."""
+        """Yield one clause for each figure that does not follow from the seats and contacts."""
         fields = self.fields
         opening, factor, reading = (fields[key] for key in ("capture_opening", "room_factor", "reading"))
         if abs(sum(own["forces"]) - factor) > BALANCED:
@@ -518,12 +549,16 @@ class StatedSeating:
             yield "the way out is nearer than the capture opening"
         yield from self.find_friction_faults(self.claim.seating.sticking_friction, own)
         if not are_equal_figures(
-            stop_of(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT
+            find_stop(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT
         ):
             yield "stop is not where what moves is stopped without the part"
 
     def counts_as_wrong(self, place: int, seat: Mapping[str, Any]) -> bool:
-        """Return whether a seat is a wrong one that counts."""
+        """Return whether a seat (at index ``place``) counts as wrong: the part does not
+        cover its place in the fixture there.
+
+        Seats beyond the opening that the query asks about do not count.
+        """
         seating, query = self.claim.seating, self.judge.query
         if seating.seats[place].is_own or seat["same_place"]:
             return False
@@ -532,7 +567,12 @@ class StatedSeating:
         return seating.most is None or seat["jaw_separation"] <= seating.most
 
     def pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
-        """Yield what is wrong with the pass, the cage and the placing."""
+        """Yield one clause for each fault of the stated pass, cage and placing.
+
+        The cage holds the poses from which the part still settles in its seat, the pass is the pose at which
+        it first gets out of the cage as the jaws open, and placing is how far off its place the part may be
+        put in.
+        """
         fields = self.fields
         opening, top, cage, placing = (fields[key] for key in ("capture_opening", "pass", "cage", "placing"))
         if top is None:
@@ -556,7 +596,9 @@ class StatedSeating:
         yield from (f"the pass {words}" for words in self.find_freedom_faults(there, rise))
         if not can_balance(self.make_wrenches(contacts, there), BALANCED):
             yield "the pass is no equilibrium of its contacts"
-        (x, y), (u, v) = (self.center(place) for place in (there, PartPlacement.from_pose(own["pose"])))
+        (x, y), (u, v) = (
+            self.locate_center(place) for place in (there, PartPlacement.from_pose(own["pose"]))
+        )
         turn = (top["pose"]["theta_deg"] - own["pose"]["theta_deg"] + 180.0) % 360.0 - 180.0
         away = hypot(x - u, y - v) + 2.0 * self.judge.rough.arm * sin(abs(radians(turn)) / 2.0)
         if placing is not None and placing > away + AGREEMENT:
@@ -567,7 +609,9 @@ class StatedSeating:
                 yield f"the cage leaves out the seat or its pass in {name}"
 
     def find_friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
-        """Check whether the part can stick below a friction, or cannot just above."""
+        """Yield one clause where the part can stick short of its seat below the
+        stated friction, or cannot just above it.
+        """
         place = PartPlacement.from_pose(own["pose"])
         contacts = [self.make_contact(contact, place, 0.0) for contact in own["contacts"]]
         low, high = stated * (1.0 - FRICTION), stated * (1.0 + FRICTION) + ROUNDED
@@ -577,7 +621,10 @@ class StatedSeating:
             yield "the part cannot stick at the sticking friction"
 
     def can_stick(self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float) -> bool:
-        """Return whether three of four contacts balance inside their cones."""
+        """Return whether some three of four contacts can balance within their friction cones.
+
+        ``friction`` is the coefficient of friction.
+        """
         edges = np.hstack([self.make_wrenches(contacts, place, sign * friction) for sign in (1.0, -1.0)])
         for three in combinations(range(4), 3):
             columns = [k + 4 * side for k in three for side in (0, 1)]
@@ -585,18 +632,20 @@ class StatedSeating:
                 return True
         return False
 
-    def center(self, place: PartPlacement) -> tuple[float, float]:
-        """Return where the part's centre lies, in doubles."""
+    def locate_center(self, place: PartPlacement) -> tuple[float, float]:
+        """Return the part's centre as placed, in the toolkit's frame in mm, in doubles."""
         x, y = place.place_points(np.array([self.judge.query.workpiece.center]))[0].tolist()
         return x, y
 
     def find_peg_center(self, number: int, apart: float) -> tuple[float, float]:
-        """Return a peg's centre when what moves has gone on by a length in mm."""
+        """Return the centre of a peg once its travel has grown by ``apart`` mm
+        from the fixture's; fixed pegs stay.
+        """
         peg, by = self.fixture.pegs[number], apart * self.moving[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
     def find_freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
-        """Yield a peg in the part, or the part in a wall."""
+        """Yield a verb phrase where a peg overlaps the placed part, or the part enters a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
         pegs = np.array([self.find_peg_center(number, apart) for number in numbers])
         carriers = self.judge.hardware.carriers
@@ -608,13 +657,17 @@ class StatedSeating:
                 yield f"has the part in the {wall.noun}"
 
     def covers_own_place(self, place: PartPlacement) -> bool | None:
-        """Return whether the part covers the place that it has in the fixture; None where that is nearly so."""
+        """Return whether the placed part covers the same area as in the fixture; None
+        where it is too near the limit to say.
+        """
         away = self.judge.rough.measure_farthest(place, self.lying)
         is_near = SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
         return None if is_near else away < SAME_PLACE
 
     def make_contact(self, contact: Mapping[str, int], place: PartPlacement, apart: float) -> StatedContact:
-        """Return a contact of the part as it lies, in balls."""
+        """Return a contact of the placed part in balls, the travel grown by ``apart`` mm from the
+        fixture's.
+        """
         number = contact["peg"]
         if number in self.on_wall:
             return make_wall_contact(self.judge.outline, contact, place)
@@ -626,8 +679,13 @@ class StatedSeating:
     def make_wrenches(
         self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float = 0.0
     ) -> Array:
-        """Return the wrenches (4, K) of contacts that press along normals and, by friction, along tangents."""
-        cx, cy = self.center(place)
+        """Return the wrenches (4, K) of unit normal forces, each with ``friction``
+        times that force along the tangent.
+
+        Rows: force x and y, moment about the part's centre over its arm, and share of the moving pegs along
+        their way.
+        """
+        cx, cy = self.locate_center(place)
         columns = []
         for one in contacts:
             nx, ny = (float(part.mid()) for part in one.normal)
@@ -641,12 +699,13 @@ class StatedSeating:
     def are_forces_balanced(
         self, contacts: Sequence[StatedContact], place: PartPlacement, forces: Sequence[float]
     ) -> bool:
-        """Return whether forces balance, those of the pegs that move adding up to one."""
+        """Return whether stated forces balance and those of the moving pegs add up to 1 along their way."""
         left = self.make_wrenches(contacts, place) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
 
 
 def are_equal_figures(derived: float | None, written: float | None, spare: float = ROUNDED) -> bool:
+    """Return whether two figures agree to ``spare``, or are both None."""
     if derived is None or written is None:
         return derived is written
     return abs(derived - written) <= spare

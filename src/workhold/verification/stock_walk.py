@@ -21,9 +21,9 @@ from workhold.model.query import Query
 from workhold.verification.tool_walk import (
     ToolWalk,
     do_cross,
+    make_walk,
     measure_pieces_to_point,
     measure_points_to_piece,
-    walk_of,
 )
 
 __all__ = ["find_stock_faults"]
@@ -38,8 +38,10 @@ AT_ONCE = 1 << 12
 
 
 @frozen(eq=False)
-class Edge:
-    """A piece of the border of what is grown to the stock; a bent one has a centre, a radius and a turn."""
+class BorderEdge:
+    """An edge of the border that is offset to the stock: a line (bulge 0) or an arc with centre and
+    radius.
+    """
 
     start: Array
     end: Array
@@ -48,7 +50,10 @@ class Edge:
     radius: float
 
     @classmethod
-    def from_ends(cls, start: Array, end: Array, bulge: float) -> Edge:
+    def from_ends(cls, start: Array, end: Array, bulge: float) -> BorderEdge:
+        """Return the edge from start (2,) to end (2,); ``bulge`` is the
+        tangent of a quarter of an arc's angle.
+        """
         (x, y), half = end - start, 2.0 * np.arctan(bulge)
         if bulge == 0.0:
             return cls(start, end, bulge, start, 0.0)
@@ -57,7 +62,7 @@ class Edge:
         return cls(start, end, bulge, center, float(np.hypot(*(start - center))))
 
     def measure_distance(self, points: Array) -> Array:
-        """Return the distances (N,) of points."""
+        """Return the distances (N,) in mm of points (N, 2) from the edge."""
         if self.bulge == 0.0:
             return measure_points_to_piece(points, self.start, self.end)
         way = np.angle(np.exp(1j * self.measure_angle(points)))
@@ -66,7 +71,9 @@ class Edge:
         return np.asarray(np.where(np.abs(way) <= 2.0 * np.arctan(abs(self.bulge)), on_rim, ends))
 
     def measure_angle(self, points: Array) -> Array:
-        """Return how far points (N, 2) are turned about the centre from the middle of the arc, in radians."""
+        """Return the angles (N,) in radians of points (N, 2) about the centre, from
+        the middle of the arc, not wrapped.
+        """
         chord = self.end - self.start
         # The middle of the arc is on the right of its chord where it runs counter-clockwise.
         right = np.array([chord[1], -chord[0]]) * np.sign(self.bulge)
@@ -74,7 +81,7 @@ class Edge:
         return np.asarray(np.arctan2(arm[:, 1], arm[:, 0]) - np.arctan2(right[1], right[0]))
 
     def measure_turns(self, points: Array) -> Array:
-        """Return the angle (N,) in radians that it turns around points."""
+        """Return the angle (N,) in radians by which the edge turns around each of the points (N, 2)."""
         one, other = self.start - points, self.end - points
         cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] + 0.0
         angle = np.arctan2(cross, (one * other).sum(axis=1))
@@ -86,19 +93,21 @@ class Edge:
 
 
 @frozen(eq=False)
-class Ground:
-    """What is grown to the stock: its loops, edge by edge."""
+class StockGround:
+    """The outline whose offset is the stock: its loops, edge by edge."""
 
-    loops: tuple[tuple[Edge, ...], ...]
+    loops: tuple[tuple[BorderEdge, ...], ...]
 
     @classmethod
-    def from_loops(cls, loops: Sequence[Array], is_block: bool) -> Ground:
-        """Return the ground of outer loops (N, 3), or the box around them."""
+    def from_loops(cls, loops: Sequence[Array], is_block: bool) -> StockGround:
+        """Return the outline of outer loops (N, 3) with rows x, y, bulge, or
+        with ``is_block`` their bounding box.
+        """
         found = []
         for loop in loops:
             ends = np.roll(loop[:, :2], -1, axis=0)
             rows = zip(loop[:, :2], ends, loop[:, 2].tolist(), strict=True)
-            found.append(tuple(Edge.from_ends(*row) for row in rows))
+            found.append(tuple(BorderEdge.from_ends(*row) for row in rows))
         if not is_block:
             return cls(tuple(found))
         edges = [edge for loop in found for edge in loop]
@@ -111,15 +120,15 @@ class Ground:
         return cls.from_loops([np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0.0]])], False)
 
     def contains(self, points: Array) -> Mask:
-        """Return (N,) whether points lie within a loop."""
+        """Return (N,) whether points (N, 2) lie within a loop."""
         each = [np.abs(sum(edge.measure_turns(points) for edge in loop)) > pi for loop in self.loops]
         return np.asarray(np.logical_or.reduce(each))
 
     def bound_distances(
         self, one: Array, other: Array, middle: Array, half: Array, sagitta: Array
     ) -> tuple[Array, Array]:
-        """Return the least distance of pieces of a path from the border at least, and how far one is at most
-        (N,).
+        """Return a lower and an upper bound (N,) in mm of the distance from the border,
+        for every point of N pieces of a path.
 
         Parameters
         ----------
@@ -146,15 +155,16 @@ class Ground:
 
 
 def find_stock_faults(query: Query) -> Iterator[str]:
-    """Yield what is wrong with the stretches on which a program's forces are said to act, in a sentence each.
+    """Yield one sentence for the first move whose stretches with forces do not
+    agree with where its tool meets the stock.
 
-    Nothing where the file does not say what the part is cut from.
+    Yields nothing where the file does not say what the part is cut from.
     """
     program = query.program
     if program is None or program.forces is None or program.stock is None:
         return
     forces, line = program.forces, program.moves.line
-    ground = Ground.from_loops(query.workpiece.outer_loops, program.stock.shape == "block")
+    ground = StockGround.from_loops(query.workpiece.outer_loops, program.stock.shape == "block")
     acts = np.flatnonzero((forces.force != 0.0) | (forces.torque != 0.0))
     missing = np.setdiff1d(acts, forces.stretches.move)
     if len(missing):
@@ -165,15 +175,17 @@ def find_stock_faults(query: Query) -> Iterator[str]:
         move, first, last, within = (
             np.array(one) for one in zip(*rows[begin : begin + AT_ONCE], strict=True)
         )
-        at = find_wrong_piece(walk_of(program), ground, move, first, last, within)
+        at = find_wrong_piece(make_walk(program), ground, move, first, last, within)
         if at >= 0:
             yield f"the tool in line {line[at]} of the program meets the stock elsewhere than is said"
             return
 
 
 def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, float, float, bool]]:
-    """Yield the parts of moves with forces on which their tools are said to meet the stock, and those between
-    them at whose heights the tool could.
+    """Yield (move, first share, last share, meets) for the ranges of the moves ``acts`` to be checked.
+
+    ``meets`` is True where the file says that the tool meets the stock, False for the ranges between at whose
+    heights it could.
     """
     forces, stock, moves = program.forces, program.stock, program.moves
     assert forces is not None and stock is not None
@@ -188,7 +200,7 @@ def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, 
             cuts = sorted(((top - begin) / rise, (-tool.flute_end - begin) / rise))
             low, high = max(0.0, cuts[0]), min(1.0, cuts[1])
         at, least = low, OFF / max(float(long[move]), OFF)
-        for first, last in forces.stretches.of_move(move):
+        for first, last in forces.stretches.list_shares(move):
             yield move, first, last, True
             if max(low - first, last - high) * abs(rise) > OFF or high <= low:
                 # At these heights nothing can be cut.
@@ -201,10 +213,13 @@ def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, 
 
 
 def find_wrong_piece(
-    walk: ToolWalk, ground: Ground, move: IntArray, first: Array, last: Array, within: Mask
+    walk: ToolWalk, ground: StockGround, move: IntArray, first: Array, last: Array, within: Mask
 ) -> int:
-    """Return the number of a move of which a part is within reach of the stock and said not to be, or the
-    other way round; -1 where there is none.
+    """Return the number of a move that meets the stock elsewhere than
+    ``within`` says; -1 where there is none.
+
+    The ranges (N,) run from share ``first`` to share ``last`` of each ``move``. Ranges too short to halve
+    count as right, ranges still undecided after ``MOST_HALVINGS`` halvings as wrong.
     """
     program = walk.program
     stock, moves = program.stock, program.moves

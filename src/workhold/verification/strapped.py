@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from workhold.fixels.strap_set import StrapSet
 from workhold.fixels.support_hardware import SupportPads
-from workhold.geometry.loop import loop_segments
+from workhold.geometry.loop import make_loop_segments
 from workhold.geometry.segment import Arc, Segment, measure_distance_to_segment
 from workhold.model.fixture import Fixture
 from workhold.model.friction import find_friction_coefficient
@@ -44,7 +44,7 @@ from workhold.verification.placing import enclose_written_pose, find_avoided_fac
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.support_listing import SupportPlaces
 from workhold.verification.tolerances import AGREEMENT, Finding
-from workhold.verification.tool_walk import Element, list_elements, walk_of
+from workhold.verification.tool_walk import HoldingElement, list_elements, make_walk
 from workhold.verification.touching import judge_touching
 
 __all__ = ["StrapJudge"]
@@ -96,7 +96,7 @@ class StrapJudge:
         """The faces that tips and plate may touch."""
         known, query = self.query.part_height, self.query
         return evolve(
-            SupportRequest.of(
+            SupportRequest.from_workpiece(
                 query.workpiece,
                 1.0 if known is None else query.thickness,
                 tip_radius=self.straps.tip_radius,
@@ -118,7 +118,7 @@ class StrapJudge:
             return
         for column, row in holes:
             if not (0 <= column < (plate.columns or inf) and 0 <= row < (plate.rows or inf)):
-                yield f"hole {plate.place_name(column, row)} is not on the plate"
+                yield f"hole {plate.name_place(column, row)} is not on the plate"
                 return
         known = {face.number for face in self.query.workpiece.numbered.faces}
         if not known.issuperset(peg.face for peg in fixture.pegs):
@@ -133,25 +133,25 @@ class StrapJudge:
         if angles and not any((theta - low + 1e-6) % 360 <= high - low + 2e-6 for low, high in angles):
             yield f"the part is turned by {theta:g} degrees, which is not asked for"
         with ctx.workprec(PRECISIONS[1]):
-            yield from self.seat_faults(fixture)
-        keys = self.keys_of(fixture)
+            yield from self.find_seat_faults(fixture)
+        keys = self.make_keys(fixture)
         earlier = [self.seen[key] for key in keys if key in self.seen]
         if earlier:
             yield f"it is the same as fixture {earlier[0] + 1}"
         for key in keys:
             self.seen.setdefault(key, place)
-        yield from self.zone_faults(fixture)
+        yield from self.find_zone_faults(fixture)
         yield from self.tool_faults(fixture, hold)
         if hold.is_looked_at:
             yield from self.push_faults(fixture, hold)
-            yield from self.strap_faults(fixture, hold)
+            yield from self.find_strap_faults(fixture, hold)
 
-    def keys_of(self, fixture: Fixture) -> list[tuple[object, ...]]:
-        """What distinguishes a seat, and after half a turn where that makes no other."""
+    def make_keys(self, fixture: Fixture) -> list[tuple[object, ...]]:
+        """Return the keys of a seat, and after half a turn where that makes no other seat."""
         plate, pose = self.query.toolkit.plates[0], fixture.pose
         column, row = (min(getattr(peg, name) for peg in fixture.pegs) for name in ("column", "row"))
         holes = sorted((peg.column - column, peg.row - row) for peg in fixture.pegs)
-        x, y = plate.place(column, row)
+        x, y = plate.compute_hole_center(column, row)
         at = np.array([pose.x - x, pose.y - y])
         out = [(round(pose.theta_deg, 4) % 360, tuple(holes), *(at.round(4) + 0.0).tolist())]
         if self.query.toolkit.half_turned is not None:
@@ -163,34 +163,36 @@ class StrapJudge:
             )
         return list(out)
 
-    def seat_faults(self, fixture: Fixture) -> Iterator[str]:
-        """Whether three locators touch their faces in the pose, inside them, and fix it."""
+    def find_seat_faults(self, fixture: Fixture) -> Iterator[str]:
+        """Yield the faults of three locators that should touch their faces inside and fix the pose."""
         outline, hardware = self.outline, self.hardware
         contacts = hardware.make_contacts(fixture, outline)
         touching = [
             (name, contact, peg.face, select_outline_for(outline, peg.carrier))
             for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
         ]
-        yield from definite(judge_gaps([one[:3] for one in touching], enclose_written_pose(fixture.pose, [])))
+        yield from select_definite(
+            judge_gaps([one[:3] for one in touching], enclose_written_pose(fixture.pose, []))
+        )
         proven, doubts = prove_pose(contacts, fixture.pose, {})
         yield from (doubt.reason for doubt in doubts)
         if proven is None:
             return
         for name, contact, face, met in touching:
             found = judge_touching(name, contact, face, proven, met, self.query.contact_margin)
-            yield from definite(found)
-        size = abs(determinant(contacts, proven)) / self.wrench_length
+            yield from select_definite(found)
+        size = abs(compute_determinant(contacts, proven)) / self.wrench_length
         if not size > LEAST_SEAT * (1 - 1e-6):
             yield "the three locators do not fix the pose: it is a double solution, or nearly"
 
-    def zone_faults(self, fixture: Fixture) -> Iterator[str]:
-        """Whether locators stand off the keep-out zones."""
+    def find_zone_faults(self, fixture: Fixture) -> Iterator[str]:
+        """Yield a fault for each locator in a keep-out zone."""
         back, radius = fixture.pose.inverse, self.query.toolkit.plates[0].body_radius
         for zone in self.query.restrictions.zones:
-            loop = loop_segments(zone.loop)
+            loop = make_loop_segments(zone.loop)
             for peg in fixture.pegs:
                 point = back.apply(peg.x, peg.y)
-                if is_inside(point, [loop]) or distance_to(point, loop) < radius - AGREEMENT:
+                if is_inside(point, [loop]) or measure_distance(point, loop) < radius - AGREEMENT:
                     yield f"locator {peg.hole} stands in a keep-out zone"
 
     def tool_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
@@ -198,7 +200,7 @@ class StrapJudge:
         if self.query.passed is None:
             return
         program, height = self.query.passed
-        walk = walk_of(program)
+        walk = make_walk(program)
         elements = [*list_elements(fixture, self.hardware, height), *self.list_strap_elements(fixture, hold)]
         for element in elements:
             near = walk.find_nearest(element)
@@ -208,25 +210,25 @@ class StrapJudge:
                     f"{program.clearance:g} mm are to be kept"
                 )
 
-    def list_strap_elements(self, fixture: Fixture, hold: StrappedHold) -> Iterator[Element]:
+    def list_strap_elements(self, fixture: Fixture, hold: StrappedHold) -> Iterator[HoldingElement]:
         """Yield bars from the faces they press on, bolts with heels from below, and supports below the part."""
         back, radius = fixture.pose.inverse, self.straps.tip_radius
         plate = self.query.toolkit.plates[0]
         raised = self.raised if self.straps.is_over_supports else 0.0
         for number, one in enumerate(hold.straps, 1):
-            x, y = (float(value) for value in self.straps.bolts.place(*one.hole))
+            x, y = (float(value) for value in self.straps.bolts.compute_hole_center(*one.hole))
             far = hypot(x - one.at[0], y - one.at[1])
             share = 2 * radius / far if far else 0.0
             heel = back.apply(x + share * (x - one.at[0]), y + share * (y - one.at[1]))
             tip, bolt, end = ((float(a), float(b)) for a, b in (back.apply(*one.at), back.apply(x, y), heel))
             name, low = f"strap {number}", one.height - raised
             top = low + self.straps.standout
-            yield Element(name, name, tip, end, radius, top, low=low)
-            yield Element(f"the bolt of {name}", name, bolt, end, radius, top)
+            yield HoldingElement(name, name, tip, end, radius, top, low=low)
+            yield HoldingElement(f"the bolt of {name}", name, bolt, end, radius, top)
         for column, row in hold.supports:
-            x, y = (float(value) for value in back.apply(*plate.place(column, row)))
-            name = f"the support in {plate.place_name(column, row)}"
-            yield Element(name, name, (x, y), (x, y), self.request.pad_radius, 0.0)
+            x, y = (float(value) for value in back.apply(*plate.compute_hole_center(column, row)))
+            name = f"the support in {plate.name_place(column, row)}"
+            yield HoldingElement(name, name, (x, y), (x, y), self.request.pad_radius, 0.0)
 
     def push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Whether the push by hand is on the outline, near enough to square, and presses all locators."""
@@ -239,12 +241,12 @@ class StrapJudge:
         if not near:
             yield "the push by hand is not at the outline"
             return
-        off = [aslant(one, push.at, push.direction_deg) for one in near]
+        off = [measure_slant(one, push.at, push.direction_deg) for one in near]
         # At a corner a hand pushes between both inward normals, or within reach of either.
         if min(map(abs, off)) > MOST_ASLANT and not (min(off) < 0 < max(off)):
             yield "the push by hand is more than 60 degrees from square to the outline"
         turn = radians(push.direction_deg)
-        points, inward = contacts_in(fixture, self.query)
+        points, inward = locate_contacts(fixture, self.query)
         rows = np.array(
             [[*way, p[0] * way[1] - p[1] * way[0]] for p, way in zip(points, inward, strict=True)]
         )
@@ -256,8 +258,8 @@ class StrapJudge:
         if push.shares and np.abs(shares - push.shares).max() > 1e-6:
             yield "the push by hand presses locators otherwise than is written"
 
-    def strap_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Whether straps stand where they may, press the part flat, and need the force that is written."""
+    def find_strap_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+        """Yield the faults of straps: their places, how they press the part flat, and their written force."""
         if not hold.straps:
             return
         if len(hold.straps) != self.straps.count:
@@ -273,20 +275,20 @@ class StrapJudge:
                 < 2 * self.straps.tip_radius - AGREEMENT
             ):
                 yield "the tips of two straps overlap"
-        foot = self.foot(fixture.pose)
+        foot = self.make_foot(fixture.pose)
         if self.straps.is_over_supports:
             faults = list(self.support_faults(fixture, hold))
             yield from faults
             if not faults:
-                yield from self.force_faults(fixture, hold, foot)
+                yield from self.find_force_faults(fixture, hold, foot)
             return
         if hold.supports or any(one.over is not None for one in hold.straps):
             yield "it lies on supports, which are not asked for"
             return
         middle = np.mean([one.at for one in hold.straps], axis=0)
-        if foot.pressure_at(middle).min() * foot.area < -KERN_SLACK:
+        if foot.compute_pressures(middle).min() * foot.area < -KERN_SLACK:
             yield "the straps alone do not press the part flat on the plate"
-        yield from self.force_faults(fixture, hold, foot)
+        yield from self.find_force_faults(fixture, hold, foot)
 
     def support_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Whether the part lies on three supports that may stand there, with each tip over one of them."""
@@ -296,13 +298,13 @@ class StrapJudge:
             return
         room = SupportPlaces(self.query, fixture, self.request)
         for column, row in holes:
-            name = plate.place_name(column, row)
+            name = plate.name_place(column, row)
             if not (0 <= column < (plate.columns or inf) and 0 <= row < (plate.rows or inf)):
                 yield f"the support in {name} is not on the plate"
             short = room.compute_pad_room((plate.name, column, row))
             if short < -AGREEMENT:
                 yield f"the support in {name} breaks its rules by {-short:.3g} mm"
-        places = np.array([plate.place(*one) for one in holes], float)
+        places = np.array([plate.compute_hole_center(*one) for one in holes], float)
         corners = np.column_stack([places, np.ones(SUPPORTS)])
         if abs(np.linalg.det(corners)) < AGREEMENT:
             yield "its supports are on one line"
@@ -311,7 +313,7 @@ class StrapJudge:
             if one.over not in holes:
                 yield f"strap {number} is over no support of the part"
                 continue
-            x, y = plate.place(*one.over)
+            x, y = plate.compute_hole_center(*one.over)
             if hypot(one.at[0] - x, one.at[1] - y) > self.request.pad_radius + AGREEMENT:
                 yield f"strap {number} has its tip beside its support"
         middle = np.mean([one.at for one in hold.straps], axis=0)
@@ -325,7 +327,7 @@ class StrapJudge:
         if not (0 <= column < (bolts.columns or inf) and 0 <= row < (bolts.rows or inf)):
             yield "has its bolt in a hole that is not there"
             return
-        x, y = (float(value) for value in bolts.place(column, row))
+        x, y = (float(value) for value in bolts.compute_hole_center(column, row))
         far = hypot(strap.at[0] - x, strap.at[1] - y)
         if not straps.reach[0] - AGREEMENT <= far <= straps.reach[1] + AGREEMENT:
             yield f"reaches {far:.6g} mm from its bolt, which it does not"
@@ -337,42 +339,42 @@ class StrapJudge:
         loops = workpiece.loop_segments
         if (
             is_inside(bolt, loops)
-            or min(distance_to(bolt, loop) for loop in loops) < plate.peg_radius - AGREEMENT
+            or min(measure_distance(bolt, loop) for loop in loops) < plate.peg_radius - AGREEMENT
         ):
             yield "has its bolt in the part"
         faces = [("upper face", self.request.top), ("foot", self.request.bottom)]
         for name, face in faces[: 1 if straps.is_over_supports else 2]:
-            borders = loops if face is None else [loop_segments(np.asarray(loop)) for loop in face]
-            room = min((distance_to(tip, loop) for loop in borders), default=-1.0)
+            borders = loops if face is None else [make_loop_segments(np.asarray(loop)) for loop in face]
+            room = min((measure_distance(tip, loop) for loop in borders), default=-1.0)
             if not is_inside(tip, borders) or room < straps.tip_radius - AGREEMENT:
                 yield f"has its tip not wholly over the part's {name}"
         for zone in self.query.restrictions.zones:
-            loop = loop_segments(zone.loop)
-            if is_inside(tip, [loop]) or distance_to(tip, loop) < straps.tip_radius - AGREEMENT:
+            loop = make_loop_segments(zone.loop)
+            if is_inside(tip, [loop]) or measure_distance(tip, loop) < straps.tip_radius - AGREEMENT:
                 yield "has its tip in a keep-out zone"
-        high = self.request.clamped_height((float(tip[0]), float(tip[1])))
+        high = self.request.find_clamped_height((float(tip[0]), float(tip[1])))
         if straps.is_over_supports:
             high += self.raised
         if abs(strap.height - high) > AGREEMENT:
             yield f"has its heel {strap.height:.6g} mm high, and the face under its tip is {high:.6g} mm high"
 
-    def foot(self, pose: Pose) -> Foot:
-        """The foot of the part on the plate."""
+    def make_foot(self, pose: Pose) -> Foot:
+        """Return the foot of the part on the plate."""
         loops = self.request.bottom
         if loops is None:
             some: Sequence[Sequence[Segment]] = self.query.workpiece.loop_segments
         else:
-            some = [loop_segments(np.asarray(loop)) for loop in loops]
+            some = [make_loop_segments(np.asarray(loop)) for loop in loops]
         return Foot([[pose.carry(segment) for segment in loop] for loop in some])
 
-    def force_faults(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> Iterator[str]:
-        """Whether each load asks for the force that is written."""
+    def find_force_faults(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> Iterator[str]:
+        """Yield a fault for each load that asks for another force than the written one."""
         if len(hold.clamp_needed_each) != len(self.query.loads):
             yield f"{len(hold.clamp_needed_each)} forces are written for {len(self.query.loads)} loads"
             return
         has_arcs = any(isinstance(one, Arc) for one in self.query.workpiece.segments)
-        held, centre = self.held(fixture, hold, foot)
-        weight = self.weight(foot, centre)
+        held, centre = self.make_held_part(fixture, hold, foot)
+        weight = self.compute_weight_wrench(foot, centre)
         program = self.query.program
         if program is not None and program.forces is not None:
             yield from find_program_force_faults(
@@ -392,18 +394,20 @@ class StrapJudge:
         ):
             part = (ARC_PART if has_arcs else FORCE_PART) + (RANGE_PART if is_range(load) else 0.0)
             try:
-                found = self.needed(held, load, fixture.pose, centre, weight)
+                found = self.find_needed_force(held, load, fixture.pose, centre, weight)
             except UnsettledError:
                 continue
             if (found is None) != (written is None):
-                yield f"load {number} asks for {words_of(found)}, not {words_of(written)}"
+                yield f"load {number} asks for {describe_force(found)}, not {describe_force(written)}"
             elif found is None or written is None:
                 continue
             elif abs(found - written) > FORCE_HAIR + part * max(found, written):
                 yield f"load {number} asks for {found:.6g} N of each strap, not {written:.6g} N"
 
-    def held(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> tuple[HeldBetweenJaws, Array]:
-        """The part between plate and tips, and the centre (3,) that moments are taken about."""
+    def make_held_part(
+        self, fixture: Fixture, hold: StrappedHold, foot: Foot
+    ) -> tuple[HeldBetweenJaws, Array]:
+        """Return the part between plate and tips, and the centre (3,) that moments are taken about."""
         centre = np.array([*foot.centre, 0.0])
         below = self.below(hold, foot, centre)
         raised = self.raised if self.straps.is_over_supports else 0.0
@@ -415,9 +419,11 @@ class StrapJudge:
             rubbing,
             np.full((1, len(places)), find_friction_coefficient(self.query.friction, "tip")),
         )
-        points, inward = contacts_in(fixture, self.query)
+        points, inward = locate_contacts(fixture, self.query)
         workpiece = self.query.workpiece
-        bands = self.request.for_fixture(fixture, workpiece.solid, numbered=workpiece.numbered).peg_bands(3)
+        bands = self.request.adapt_to_fixture(
+            fixture, workpiece.solid, numbered=workpiece.numbered
+        ).list_peg_bands(3)
         free = [
             compute_wrenches(np.array([[*point, z]]) - centre, (float(way[0]), float(way[1]), 0.0))[0]
             for point, way, band in zip(points, inward, bands, strict=True)
@@ -433,23 +439,23 @@ class StrapJudge:
     def below(self, hold: StrappedHold, foot: Foot, centre: Array) -> PressingJaw:
         """What presses upward below the part: the plate on its foot, or three supports, each at a point."""
         if not self.straps.is_over_supports:
-            return foot.pressing(find_friction_coefficient(self.query.friction, "plate"), centre)
+            return foot.make_pressing_jaw(find_friction_coefficient(self.query.friction, "plate"), centre)
         plate = self.query.toolkit.plates[0]
-        at = np.array([[*plate.place(*one), 0.0] for one in hold.supports], float) - centre
+        at = np.array([[*plate.compute_hole_center(*one), 0.0] for one in hold.supports], float) - centre
         turns = [2 * pi * k / WAYS for k in range(WAYS)]
         rubbing = np.stack([compute_wrenches(at, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
         coefficient = find_friction_coefficient(self.query.friction, "support")
         return PressingJaw(compute_wrenches(at, (0.0, 0.0, 1.0)), rubbing, coefficient * np.eye(SUPPORTS))
 
-    def weight(self, foot: Foot, centre: Array) -> Array:
+    def compute_weight_wrench(self, foot: Foot, centre: Array) -> Array:
         """The wrench (6,) of the part's weight, at the middle of its foot."""
         down = compute_wrenches(np.array([[*foot.centre, 0.0]]) - centre, (0.0, 0.0, -1.0))[0]
         return np.asarray((self.query.weight or 0.0) * down)
 
-    def needed(
+    def find_needed_force(
         self, held: HeldBetweenJaws, load: Load, pose: Pose, centre: Array, weight: Array
     ) -> float | None:
-        """The force of each strap in N that a load asks for; None where none is enough."""
+        """Return the force of each strap in N that a load asks for; None where none is enough."""
         height = self.query.part_height if load.height is None else load.height
         turn, factor = radians(pose.theta_deg), self.query.safety_factor
         low, high = (radians(one) for one in load.directions)
@@ -468,17 +474,17 @@ class StrapJudge:
                 most = max(most, found[0])
         return most
 
-    def order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
+    def find_order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
         """A fault for a fixture that what comes first puts before the one before it."""
-        rows = [class_of(one.hold) for one in fixtures if isinstance(one.hold, StrappedHold)]
+        rows = [classify_hold(one.hold) for one in fixtures if isinstance(one.hold, StrappedHold)]
         for place, (before, after) in enumerate(pairwise(rows), 2):
             if after < before:
                 yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"
                 return
 
 
-def class_of(hold: StrappedHold) -> int:
-    """What seats are ordered by first: held, not looked at, not held, and unfit."""
+def classify_hold(hold: StrappedHold) -> int:
+    """Return the class that orders seats first: held, not looked at, not held, unfit."""
     if hold.is_unfit:
         return 3
     if not hold.is_looked_at:
@@ -486,7 +492,7 @@ def class_of(hold: StrappedHold) -> int:
     return 2 if hold.holds_nothing else 0
 
 
-def words_of(force: float | None) -> str:
+def describe_force(force: float | None) -> str:
     return "a force that none is enough for" if force is None else f"{force:.6g} N"
 
 
@@ -494,21 +500,21 @@ def is_range(load: Load) -> bool:
     return bool(load.force) and load.directions[1] > load.directions[0]
 
 
-def definite(findings: Iterator[Finding]) -> Iterator[str]:
-    """The reasons of what certainly refutes."""
+def select_definite(findings: Iterator[Finding]) -> Iterator[str]:
+    """Yield the reasons of the findings that certainly refute."""
     return (one.reason for one in findings if one.definite)
 
 
-def determinant(contacts: Sequence[BallContact], pose: BallPose) -> arb:
-    """The determinant of the wrenches (n, q x n) of three contacts, in mm."""
+def compute_determinant(contacts: Sequence[BallContact], pose: BallPose) -> arb:
+    """Return the determinant of the wrenches (n, q x n) of three contacts, in mm."""
     rows = [
         (contact.compute_outward_normal(pose), contact.compute_center_in_part(pose)) for contact in contacts
     ]
     return arb_mat([[*normal, cross(point, normal)] for normal, point in rows]).det()
 
 
-def contacts_in(fixture: Fixture, query: Query) -> tuple[list[tuple[float, float]], list[Array]]:
-    """Where locators touch the part on the plate, and the unit directions in which they push."""
+def locate_contacts(fixture: Fixture, query: Query) -> tuple[list[tuple[float, float]], list[Array]]:
+    """Return where locators touch the part on the plate, and the unit directions in which they push."""
     faces = {face.number: face.segment for face in query.workpiece.numbered.faces}
     points, inward = list[tuple[float, float]](), list[Array]()
     for peg in fixture.pegs:
@@ -519,7 +525,7 @@ def contacts_in(fixture: Fixture, query: Query) -> tuple[list[tuple[float, float
             point = np.array(side.center) + side.radius * unit
             outward = unit if side.sign > 0 else -unit
         else:
-            outward = np.array(side.normal())
+            outward = np.array(side.compute_normal())
             start = np.array(side.start)
             point = np.array([peg.x, peg.y]) - outward * float(outward @ (np.array([peg.x, peg.y]) - start))
         points.append((float(point[0]), float(point[1])))
@@ -527,18 +533,18 @@ def contacts_in(fixture: Fixture, query: Query) -> tuple[list[tuple[float, float
     return points, inward
 
 
-def aslant(segment: Segment, point: tuple[float, float], direction_deg: float) -> float:
-    """How far in degrees a direction is from the inward normal of a segment at a point, counter-clockwise positive."""
+def measure_slant(segment: Segment, point: tuple[float, float], direction_deg: float) -> float:
+    """Return the angle in degrees from a segment's inward normal at a point to a direction, counter-clockwise."""
     if isinstance(segment, Arc):
         away = np.array([point[0] - segment.center[0], point[1] - segment.center[1]])
         nx, ny = segment.sign * away / np.hypot(*away)
     else:
-        nx, ny = segment.normal()
+        nx, ny = segment.compute_normal()
     return (direction_deg - degrees(atan2(-ny, -nx)) + 180.0) % 360.0 - 180.0
 
 
-def distance_to(point: tuple[float, float], loop: Sequence[Segment]) -> float:
-    """The distance of a point from a loop, in mm."""
+def measure_distance(point: tuple[float, float], loop: Sequence[Segment]) -> float:
+    """Return the distance of a point from a loop, in mm."""
     return min(measure_distance_to_segment((float(point[0]), float(point[1])), one) for one in loop)
 
 
@@ -551,13 +557,16 @@ def is_inside(point: tuple[float, float], loops: Sequence[Sequence[Segment]]) ->
         for one in loop:
             pieces = 1 if not isinstance(one, Arc) else 64
             for k in range(pieces):
-                ends = [one.at(way(one) * one.half_extent * (2 * j / pieces - 1.0)) for j in (k, k + 1)]
+                ends = [
+                    one.compute_point(get_running_sign(one) * one.half_extent * (2 * j / pieces - 1.0))
+                    for j in (k, k + 1)
+                ]
                 (ax, ay), (bx, by) = ((end[0] - x, end[1] - y) for end in ends)
                 total += atan2(ax * by - ay * bx, ax * bx + ay * by)
         count += abs(round(total / (2 * pi)))
     return count % 2 == 1
 
 
-def way(segment: Segment) -> float:
-    """In which way a segment's parameter runs along it."""
+def get_running_sign(segment: Segment) -> float:
+    """Return 1 or -1: the sense in which a segment's parameter runs along it."""
     return segment.sign if isinstance(segment, Arc) else 1.0

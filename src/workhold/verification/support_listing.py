@@ -25,8 +25,8 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.loop import compute_signed_area, loop_segments
-from workhold.geometry.segment import Arc, Segment, bounding_box, measure_distance_to_segment
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
+from workhold.geometry.segment import Arc, Segment, compute_bounding_box, measure_distance_to_segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SupportRequest
@@ -76,14 +76,14 @@ class SupportPlaces:
         return self.query.toolkit
 
     def find_hole_place(self, hole: Hole) -> tuple[float, float]:
-        """Return the place of a hole in the part's coordinates."""
+        """Return the centre of a hole (carrier, column, row) in the part's frame, in mm."""
         name, column, row = hole
-        place = self.toolkit.find_carrier(name).place(column, row, self.fixture.travel)
+        place = self.toolkit.find_carrier(name).compute_hole_center(column, row, self.fixture.travel)
         x, y = self.fixture.pose.inverse.apply(*place)
         return float(x), float(y)
 
     def compute_pad_room(self, hole: Hole) -> float:
-        """Return the slack in mm by which a pad keeps its rules."""
+        """Return the least slack in mm of a pad's rules in a hole, negative where it breaks one."""
         asked, point = self.request, self.find_hole_place(hole)
         loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
         room = measure_room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
@@ -96,7 +96,7 @@ class SupportPlaces:
 
     @cached_property
     def top_levels(self) -> list[TopLevel]:
-        """The faces that the tip may press on, by their heights."""
+        """The faces that the tip may press on, grouped by height."""
         asked = self.request
         loops = self.query.workpiece.loops if asked.top is None else asked.top
         heights = (None,) * len(loops) if asked.top_heights is None else asked.top_heights
@@ -115,7 +115,9 @@ class SupportPlaces:
         ]
 
     def compute_tip_room(self, point: tuple[float, float]) -> float:
-        """Return the slack in mm by which the tip keeps the rules of the top."""
+        """Return the least slack in mm of the tip's rules at a point of the part's
+        frame, negative where it breaks one.
+        """
         asked, room = self.request, -inf
         for level in self.top_levels:
             kept = measure_gap(level.rising, point) - asked.head_radius
@@ -137,9 +139,11 @@ class SupportPlaces:
         return room
 
     def classify_hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
-        """Return how the tip stands: 0 with the part under all of it, 1 under its middle, 2 with air below.
+        """Return 0 where the part is under all of the tip, 1 where it is under the
+        tip's middle only, 2 where air is.
 
-        By so much ``slack`` in mm the middle and the border of the tip may be over air and yet count as not.
+        Middle and border of the tip may be over air by ``slack`` mm and yet count as over the part. Returns 0
+        where the point is on no upper face.
         """
         for level in self.top_levels:
             if any(
@@ -151,7 +155,11 @@ class SupportPlaces:
         return 0
 
     def find_travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
-        """Return whether pegs and supports fit their plates, and the opening of what moves."""
+        """Return whether pegs and supports in these holes fit their plates,
+        and the opening in mm of what moves.
+
+        The opening is None where nothing moves, or where no opening avoids the blocked holes.
+        """
         toolkit, plates = self.toolkit, self.toolkit.plates
         taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
         for name, column, row in holes:
@@ -205,7 +213,8 @@ class TopLevel:
     Parameters
     ----------
     faces : the loops of each, see :func:`sort_faces_by_size`.
-    rising, hanging : loops around what rises above them, and around what of them has air below.
+    rising : loops around regions where the part rises above the faces.
+    hanging : loops around regions of the faces with air below.
     """
 
     faces: list[list[tuple[Loop, int]]]
@@ -214,25 +223,28 @@ class TopLevel:
 
 
 def split_borders(loop: Array) -> Loop:
-    return tuple(loop_segments(np.asarray(loop)))
+    """Return the segments of a loop (N, 3)."""
+    return tuple(make_loop_segments(np.asarray(loop)))
 
 
 def measure_gap(loops: Sequence[Loop], point: tuple[float, float]) -> float:
-    """Return how far a point is from a region that loops have on their left, in mm; negative in it."""
+    """Return the distance in mm of a point from the region to the left of the loops;
+    negative inside it, inf without loops.
+    """
     near = min((measure_distance_to_segment(point, one) for loop in loops for one in loop), default=inf)
     return -near if sum(count_turns_about(loop, point) for loop in loops) > 0 else near
 
 
 def list_holes_near(rules: SupportPlaces) -> Iterator[Hole]:
-    """Yield all holes of the plates under the box of the face that supports may touch."""
+    """Yield all holes of the plates under the bounding box of the faces that supports may touch."""
     loops = rules.query.workpiece.loops if rules.request.bottom is None else rules.request.bottom
-    boxes = np.array([bounding_box(one) for loop in loops for one in split_borders(loop)])
+    boxes = np.array([compute_bounding_box(one) for loop in loops for one in split_borders(loop)])
     if not len(boxes):
         return
     (x0, y0), (x1, y1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     corners = np.array([rules.fixture.pose.apply(x, y) for x, y in product((x0, x1), (y0, y1))])
     for plate in rules.query.toolkit.plates:
-        first = np.array(plate.place(0, 0, rules.fixture.travel))
+        first = np.array(plate.compute_hole_center(0, 0, rules.fixture.travel))
         low, high = (corners.min(axis=0) - first) / plate.pitch, (corners.max(axis=0) - first) / plate.pitch
         columns, rows = (range(floor(a) - 1, ceil(b) + 2) for a, b in zip(low, high, strict=True))
         yield from ((plate.name, column, row) for column, row in product(columns, rows))
@@ -240,7 +252,7 @@ def list_holes_near(rules: SupportPlaces) -> Iterator[Hole]:
 
 @define(eq=False)
 class ClampCells:
-    """Square cells over a box, with the slack of the tip at their middles, looked up once for all triples.
+    """Square cells over a box, with the slack of the tip at their middles, computed once for all triples.
 
     Parameters
     ----------
@@ -255,7 +267,10 @@ class ClampCells:
     slack: dict[tuple[int, int, int], float] = field(factory=dict, init=False)
 
     def has_place(self, triangle: Array) -> bool | None:
-        """Return whether the clamp may stand inside a triangle (3, 2) by more than rounding; None: undecided."""
+        """Return whether the clamp's tip can stand inside a triangle (3, 2) by more than rounding.
+
+        Returns None where ``MOST_CELLS`` cells do not decide it.
+        """
         number = count()
         queue = [(-inf, next(number), (0, 0, 0))]
         while queue:
@@ -276,13 +291,17 @@ class ClampCells:
         return False
 
     def compute_tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
+        """Return the tip's slack in mm at the middle (x, y) of a cell (level, i, j), cached by cell."""
         if cell not in self.slack:
             self.slack[cell] = self.rules.compute_tip_room((x, y))
         return self.slack[cell]
 
 
 def measure_depth_inside(triangle: Array, x: float, y: float) -> float:
-    """Return how far a point is inside a triangle, in mm."""
+    """Return the least signed distance in mm of a point from a triangle's side lines, positive inside.
+
+    The triangle (3, 2) may turn either way.
+    """
     (ax, ay), (bx, by), (cx, cy) = triangle.tolist()
     turn = 1.0 if (bx - ax) * (cy - ay) > (by - ay) * (cx - ax) else -1.0
     sides = (ax, ay, bx, by), (bx, by, cx, cy), (cx, cy, ax, ay)
@@ -291,7 +310,9 @@ def measure_depth_inside(triangle: Array, x: float, y: float) -> float:
 
 
 def are_large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
-    """Return which triangles (N, 3, 2) have a circle of a radius within them by more than rounding."""
+    """Return (N,) whether triangles (N, 3, 2) have an incircle larger than
+    ``inside`` mm by more than rounding.
+    """
     a, b, c = np.moveaxis(points, 1, 0)
     twice = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     around = sum(np.hypot(*(q - p).T) for p, q in ((a, b), (b, c), (c, a)))
@@ -301,11 +322,10 @@ def are_large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
 def find_missing_triples(
     rules: SupportPlaces, listed: Iterable[Iterable[Hole]], positions: int
 ) -> tuple[list[str], int]:
-    """Return what contradicts a list that claims to be complete, and the number of triples that stay
-    undecided.
+    """Return the faults of a list that claims to be complete, and the number of triples that stay undecided.
 
-    Triples have their holes in any order. ``positions`` is how many holes could hold a support, as the list
-    says.
+    ``listed`` holds triples of holes in any order; ``positions`` is the number of usable holes that the list
+    states. At most ``MOST_NAMED`` missing triples are named.
     """
     rooms = {hole: rules.compute_pad_room(hole) for hole in list_holes_near(rules)}
     sure = sorted(hole for hole, room in rooms.items() if room > AGREEMENT)
@@ -330,7 +350,9 @@ def find_missing_triples(
 def list_possible_triples(
     rules: SupportPlaces, holes: list[Hole]
 ) -> Iterator[tuple[list[Hole], Array, ClampCells]]:
-    """Yield the triples of holes, with corners, of which each two fit the plates and the triangle is large enough."""
+    """Yield (holes, corners (3, 2), cells) of each triple whose holes fit
+    the plates pairwise and span enough.
+    """
     if len(holes) < 3:
         return
     points = np.array([rules.find_hole_place(hole) for hole in holes])
@@ -351,16 +373,16 @@ def list_possible_triples(
 
 
 def describe_hole(hole: Hole) -> str:
-    """Return a hole by its carrier, column and row as the file counts them."""
+    """Return a hole as "carrier (column, row)", counted from 0 as in the file."""
     name, column, row = hole
     return f"{name} ({column}, {row})"
 
 
 def find_widest_clear_opening(toolkit: Toolkit, fixture: Fixture, holes: list[Hole]) -> float | None:
-    """Return the widest opening in mm at which no peg and no support stands in a blocked hole, if there is
-    one.
+    """Return the widest opening in mm at which no peg and no support is in a
+    blocked hole; None where there is none.
 
-    All ways to count the columns of both jaws and their rows otherwise are tried.
+    All shifts of both jaws by whole columns, and of all rows together, are tried.
     """
     plates = {plate.name: plate for plate in toolkit.plates}
     moving = next(plate for plate in plates.values() if plate.travel is not None)
@@ -393,7 +415,7 @@ def find_widest_clear_opening(toolkit: Toolkit, fixture: Fixture, holes: list[Ho
 
 
 def count_turns_about(segments: Loop, point: tuple[float, float]) -> int:
-    """Return how often a loop runs around a point off it."""
+    """Return the winding number of a loop about a point that is not on it."""
     turned = 0.0
     for one in segments:
         places = [one.start, one.end]
@@ -402,14 +424,16 @@ def count_turns_about(segments: Loop, point: tuple[float, float]) -> int:
             # A chord passes nearer to its arc than the point does.
             steps = min(4096, 8 + ceil(2 * one.half_sweep / sqrt(max(near / one.radius, 1e-8))))
             low = -one.sign * one.half_sweep
-            places = [one.at(low * (1 - 2 * k / steps)) for k in range(steps + 1)]
+            places = [one.compute_point(low * (1 - 2 * k / steps)) for k in range(steps + 1)]
         angles = [atan2(y - point[1], x - point[0]) for x, y in places]
         turned += sum((b - a + pi) % (2 * pi) - pi for a, b in pairwise(angles))
     return round(turned / (2 * pi))
 
 
 def measure_room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
-    """Return how large a disc about a point lies on a face and over no zone, in mm; negative off it."""
+    """Return the radius in mm of the largest disc about a point on a face and
+    outside all zones; negative off the face.
+    """
     faces = sort_faces_by_size([split_borders(loop) for loop in loops])
     room = max((min(side * measure_reach(one, point) for one, side in face) for face in faces), default=-inf)
     off = (measure_reach(split_borders(zone), point) for zone in zones)
@@ -417,22 +441,24 @@ def measure_room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple
 
 
 def measure_reach(loop: Loop, point: tuple[float, float]) -> float:
-    """Return the distance of a point from a loop in mm, negative outside it."""
+    """Return the distance of a point from a loop in mm, positive inside it and negative outside."""
     near = min(measure_distance_to_segment(point, one) for one in loop)
     return near if count_turns_about(loop, point) else -near
 
 
 def sort_faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
-    """Return the loops of each face with 1 for its border, which comes first, and -1 for its openings.
+    """Return for each face its loops as (loop, 1) for the outer border,
+    first, and (loop, -1) for each opening.
 
-    The first loop is a border. Of the others a loop is an opening where there is a face on its left. That is
-    within a loop that runs counter-clockwise; one that runs the other way is never a border.
+    Loops are taken from the largest to the smallest. The first given loop is a border. Another loop is an
+    opening where a face lies on its left side, else a border if it runs counter-clockwise; otherwise it is
+    left out.
     """
     faces: list[list[tuple[Loop, int]]] = []
     sizes = [compute_signed_area(loop) for loop in loops]
     for number in sorted(range(len(loops)), key=lambda k: (-abs(sizes[k]), sizes[k])):
         loop = loops[number]
-        (x, y), (nx, ny) = loop[0].middle, loop[0].normal()
+        (x, y), (nx, ny) = loop[0].middle, loop[0].compute_normal()
         probe = (x - PROBE * nx, y - PROBE * ny)
         under = [face for face in faces if all(side * measure_reach(one, probe) > 0 for one, side in face)]
         if number and under:

@@ -55,7 +55,9 @@ GRID = 12
 
 
 def is_supports_file(path: str | Path) -> bool:
-    """Return whether a file says at its beginning that it is one of supports."""
+    """Return whether a file names the supports format in its first 200 bytes; False where it cannot be
+    read.
+    """
     path = Path(path)
     if not path.is_file():
         return False
@@ -80,7 +82,7 @@ class SupportsJudge(SupportPlaces):
 
     @cached_property
     def pushes(self) -> Array:
-        """Unit vectors (P, 2) along which they push the part."""
+        """The unit vectors (P, 2) along which the pegs push the part, in the part's frame."""
         # Of a file without its solid, segments that continue one line are one face.
         faces = self.query.workpiece.numbered.faces
         segments = {number: face.segment for face in faces for number in face.segments}
@@ -91,19 +93,20 @@ class SupportsJudge(SupportPlaces):
                 pushes.append(self.fixture.pose.inverse.turn(0.0, 1.0))
                 continue
             face = segments[peg.face]
-            nx, ny = face.normal(face.parameter((x, y)))
+            nx, ny = face.compute_normal(face.find_parameter((x, y)))
             pushes.append((-nx, -ny))
         return np.array(pushes)
 
     def solve_balances(self, supports: Array) -> Array:
-        """Return the support forces (K, 3, 7) per unit of each right side of the balance, at the corners of
-        the bands.
+        """Return the support forces (K, 3, 7) per unit of each right side,
+        for each of K choices of band ends.
 
-        The columns of the balance are the contacts. Its rows are three forces, three moments, and the push on
-        what moves; with two clamps the push of each stands for itself.
+        Each peg presses at the lower or upper end of its band. The columns of the balance are the contacts.
+        Its rows are three forces, three moments, and the push on what moves (two rows with two clamps, so 8
+        in the last axis).
         """
         toolkit, count = self.toolkit, len(self.fixture.pegs)
-        bands = self.request.peg_bands(count)
+        bands = self.request.list_peg_bands(count)
         rows = 6 + toolkit.travels
         out = []
         for corner in product((0, 1), repeat=count):
@@ -132,7 +135,12 @@ class SupportsJudge(SupportPlaces):
     def make_right_side(
         self, point: Sequence[float], force: Sequence[float], moment: Sequence[float], jaw: float
     ) -> Array:
-        """Return what the contacts have to balance: a force at a point, a moment, and the push on what moves."""
+        """Return the right side (7,), or (8,) with two clamps, for a force at
+        a point, a moment and a jaw force.
+
+        Force and moment enter with reversed sign; the jaw force is split over two clamps at their working
+        ratio.
+        """
         pair = self.fixture.pair
         share = (
             [1.0]
@@ -143,7 +151,9 @@ class SupportsJudge(SupportPlaces):
         return np.concatenate([-np.asarray(force, float), -turning, jaw * np.array(share)])
 
     def find_extremes(self, solved: Array) -> tuple[Array, Array]:
-        """Return the least and greatest support forces without the clamp, over all loads and heights."""
+        """Return the least (3,) and the greatest (3,) support forces in N without
+        the clamp, over all loads and heights.
+        """
         least, most = np.full(3, inf), np.full(3, -inf)
         for load in self.loads:
             low, high = map(radians, load.directions)
@@ -165,11 +175,13 @@ class SupportsJudge(SupportPlaces):
         return least, most
 
     def compute_shares(self, solved: Array, point: Sequence[float]) -> Array:
-        """Return what each support takes of a unit of clamp force at a point."""
+        """Return the force (3,) that each support takes of a unit of clamp
+        force at a point of the part's frame.
+        """
         return np.asarray((solved @ self.make_right_side([*point, 0.0], [0, 0, -1.0], [0, 0, 0], 0.0))[0])
 
     def find_faults(self, part: ReadTriple) -> Iterator[str]:
-        """Yield everything that speaks against a triple, one sentence each, without a full stop."""
+        """Yield one sentence, without full stop, for each fault of a triple."""
         holes = [(str(a), b, c) for a, b, c in part.holes]
         names = {plate.name for plate in self.toolkit.plates}
         if any(name not in names for name, _, _ in holes) or len(set(holes)) != 3:
@@ -192,7 +204,11 @@ class SupportsJudge(SupportPlaces):
         yield from self.find_figure_faults(part, supports)
 
     def find_figure_faults(self, part: ReadTriple, supports: Array) -> Iterator[str]:
-        """Check whether figures are those of the balance, and no clamp place that is tried is better."""
+        """Yield one sentence for each figure of a triple that is not the derived
+        one, and for a better clamp place.
+
+        ``supports`` (3, 2) are the places of its supports in the part's frame.
+        """
         solved = self.solve_balances(supports)
         least, most = self.find_extremes(solved) if self.loads else (np.zeros(3), np.zeros(3))
         jaw = solved @ self.make_right_side([0, 0, 0], [0, 0, 0], [0, 0, 0], 1.0)
@@ -237,15 +253,15 @@ class SupportsJudge(SupportPlaces):
         yield from self.find_better_places(part, supports, solved, least)
 
     def classify_hanging(self, part: ReadTriple) -> int:
-        """Return how the tip stands at the places of a triple, see :meth:`hanging_at`; of two the worse."""
+        """Return the worse class of the tip at a triple's two clamp places, see
+        :meth:`classify_hanging_at`.
+        """
         places = (part.best.at or part.arm_at, part.arm_at)
         return max(self.classify_hanging_at((x, y), AGREEMENT) for x, y in places)
 
-    def order_of(self, part: ReadTriple) -> tuple[int, int, int]:
-        """Return what a triple is in order by before its figures: whether the part falls over, and the
-        clamp's place.
-
-        A place that is asked for comes before others, and one over the part before one over air.
+    def make_order_key(self, part: ReadTriple) -> tuple[int, int, int]:
+        """Return the sort key of a triple ahead of its figures: falls over, lacks
+        the place asked for, class of the tip.
         """
         falls = int(part.standing < -AGREEMENT)
         given = self.request.point if part.given is not None else None
@@ -259,9 +275,11 @@ class SupportsJudge(SupportPlaces):
     def find_better_places(
         self, part: ReadTriple, supports: Array, solved: Array, least: Array
     ) -> Iterator[str]:
-        """Yield a fault where a place of a grid over the triangle is better than the one written.
+        """Yield one sentence for the first point of a grid over the triangle
+        where the clamp is better placed.
 
-        One under which the part reaches down is better than one over air.
+        A place over the part is better than one over air; else a smaller clamp force or a longer arm is
+        better.
         """
         highest = self.classify_hanging(part)
         for i, j in product(range(1, GRID), repeat=2):
@@ -283,18 +301,21 @@ class SupportsJudge(SupportPlaces):
 
 
 def differs(written: float | None, own: float) -> bool:
-    """Return whether a number is missing or another one."""
+    """Return whether a number is None, or differs from the derived one by more than ``AGREEMENT``."""
     return written is None or abs(written - own) > AGREEMENT * max(1.0, abs(own))
 
 
 def compare_figures(name: str, figures: ReadFigures, known: dict[str, float]) -> Iterator[str]:
+    """Yield one sentence for each figure that is not the derived one; ``name`` is that of the clamp point."""
     for key, value in known.items():
         if differs(getattr(figures, key), value):
             yield f"{key} at the {name} point is {value:.9g}, and is written as {getattr(figures, key)}"
 
 
 def compute_area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
-    """Return the centre of area of the part, from integrals along its border (Gauss-Legendre along each segment)."""
+    """Return the part's centre of area in mm, from integrals along its border
+    (Gauss-Legendre along each segment).
+    """
     nodes, weights = np.polynomial.legendre.leggauss(24)
     area = first = second = 0.0
     for one in (segment for loop in loops for segment in loop):
@@ -315,13 +336,21 @@ def compute_area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, floa
 
 
 def find_band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
-    """Yield a fault for each peg whose band is not what it can press on of the faces of the solid that it touches."""
+    """Yield one sentence for each peg whose written band of heights is not that
+    of the solid's faces that it touches.
+
+    Yields nothing without a solid or without bands.
+    """
     bands, numbered = request.bands, query.workpiece.numbered
     if query.workpiece.solid is None or bands is None:
         return
     for peg, written in zip(fixture.pegs, bands, strict=True):
         point = fixture.pose.inverse.apply(peg.x, peg.y)
-        faces = [numbered.pressed(number, point) for number in (peg.face, peg.beside) if number is not None]
+        faces = [
+            numbered.find_pressed_band(number, point)
+            for number in (peg.face, peg.beside)
+            if number is not None
+        ]
         known = [band for band in faces if band is not None]
         own = [min(low for low, _ in known), max(high for _, high in known)] if known else []
         own = [min(height, request.thickness) for height in own]
@@ -346,7 +375,7 @@ def verify_supports_file(path: str | Path) -> Verification:
     head = check_head(part.to_head(), path)
     try:
         query, request = head.to_query(), part.to_request()
-        loads = tuple(load.load(request.thickness) for load in part.loads)
+        loads = tuple(load.to_load(request.thickness) for load in part.loads)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     fixture = ToolkitRules.from_query(query).complete_fixture(read_fixtures([part.fixture], path)[0])
@@ -361,7 +390,7 @@ def verify_supports_file(path: str | Path) -> Verification:
         key = frozenset((str(a), b, c) for a, b, c in triple.holes)
         reasons += ["it is listed twice"] if key in seen else []
         seen.add(key)
-        order = judge.order_of(triple) if not reasons else before
+        order = judge.make_order_key(triple) if not reasons else before
         if order < before:
             reasons.append(
                 "it comes after one from which the part falls over, or with a worse place of the clamp"

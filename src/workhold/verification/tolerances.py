@@ -32,7 +32,7 @@ from collections.abc import Iterator
 from attrs import frozen
 from flint import arb
 
-__all__ = ["Finding", "number", "judge_slack", "judge_written_number"]
+__all__ = ["Finding", "format_middle", "judge_slack", "judge_written_number"]
 
 # mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at
 # most this; a contact may lie so far past a tangent joint, and lies more than this inside any other end.
@@ -125,9 +125,10 @@ class Finding:
 
 
 def judge_slack(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
-    """Yield nothing when a slack is certainly positive, otherwise the finding in the words for its case.
+    """Yield nothing when a slack is certainly positive, else one finding.
 
-    Where there are none for the edge, those for a broken rule do.
+    It is definite, with the words ``broken``, where the slack is certainly negative; else undecided, with the
+    words ``edge``, or ``broken`` where ``edge`` is empty.
     """
     if not slack > 0:
         definite = bool(slack < 0)
@@ -135,7 +136,9 @@ def judge_slack(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
 
 
 def judge_written_number(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
-    """Check whether a number of the file is the derived one, to a hair and what may be spared besides."""
+    """Yield a finding where a number of the file differs from the derived one
+    by more than ``HAIR`` + ``spare``.
+    """
     slack = HAIR + spare - abs(derived - value)
     if not slack > 0:
         yield from judge_slack(
@@ -143,6 +146,6 @@ def judge_written_number(name: str, value: float, derived: arb, spare: arb) -> I
         )
 
 
-def number(value: arb) -> str:
-    """Return the middle of a ball, for messages."""
+def format_middle(value: arb) -> str:
+    """Return the middle of a ball with three significant digits, for messages."""
     return f"{float(value.mid()):.3g}"

@@ -30,7 +30,14 @@ from workhold.model.query import Query
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["Element", "ToolWalk", "make_element_name", "list_elements", "find_program_fault", "walk_of"]
+__all__ = [
+    "HoldingElement",
+    "ToolWalk",
+    "make_element_name",
+    "list_elements",
+    "find_program_fault",
+    "make_walk",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -41,7 +48,7 @@ MOST_HALVINGS = 200
 
 
 @frozen
-class Element:
+class HoldingElement:
     """Something that holds the part, in the part's coordinates and mm.
 
     Parameters
@@ -67,8 +74,8 @@ class Element:
 
 
 @frozen
-class Nearest:
-    """The least distance less radii in mm, between two bounds, and the line of the program it is on."""
+class NearestApproach:
+    """Lower and upper bound in mm of the least clearance, and the program line of that move."""
 
     low: float
     high: float
@@ -76,7 +83,7 @@ class Nearest:
 
 
 @frozen(eq=False)
-class Stretches:
+class PathStretches:
     """N stretches.
 
     Parameters
@@ -93,27 +100,28 @@ class Stretches:
     over: Array
     radius: Array
 
-    def take(self, chosen: NDArray[np.bool_] | IntArray) -> Stretches:
+    def take(self, chosen: NDArray[np.bool_] | IntArray) -> PathStretches:
+        """Return the stretches that a mask or indices choose."""
         rest = (self.first, self.last, self.under, self.over, self.radius)
-        return Stretches(self.move[chosen], *(values[chosen] for values in rest))
+        return PathStretches(self.move[chosen], *(values[chosen] for values in rest))
 
-    def halve(self) -> Stretches:
+    def halve(self) -> PathStretches:
+        """Return 2 N stretches: the first halves of all, then the second halves."""
         middle = (self.first + self.last) / 2
         both = [np.concatenate([v, v]) for v in (self.move, self.under, self.over, self.radius)]
         first, last = np.concatenate([self.first, middle]), np.concatenate([middle, self.last])
-        return Stretches(both[0], first, last, *both[1:])
+        return PathStretches(both[0], first, last, *both[1:])
 
 
 @frozen(eq=False)
 class ToolWalk:
-    """The moves of a program as they are walked.
+    """The moves of a program, with the circles of round ones.
 
     Parameters
     ----------
-    program : it.
-    center, radius, turn, sweep : (M, 2) and (M,) of round moves, the angle where they start, and what they
-        turn.
-    is_round, is_box : (M,) whether a move is an arc, and whether any way in the box of its ends counts.
+    program : the program.
+    center, radius, turn, sweep : (M, 2) and (M,) centre, radius, start angle and swept angle in radians of round moves.
+    is_round, is_box : (M,) whether a move is an arc, and whether it may take any path in the box of its ends.
     """
 
     program: Program
@@ -126,6 +134,7 @@ class ToolWalk:
 
     @classmethod
     def from_program(cls, program: Program) -> ToolWalk:
+        """Return the moves of a program with centre, radius and angles of its round moves."""
         moves = program.moves
         start, end, bulge = moves.start[:, :2], moves.end[:, :2], moves.bulge
         chord = end - start
@@ -147,21 +156,21 @@ class ToolWalk:
             np.asarray(is_box),
         )
 
-    def list_stretches(self) -> Stretches:
-        """Return every move with every cylinder of its tool, whole."""
+    def list_stretches(self) -> PathStretches:
+        """Return one stretch over the whole move for every move and every cylinder of its tool."""
         parts = []
         for number, tool in self.program.tools.items():
             moved = np.flatnonzero(self.program.moves.tool == number)
             for cylinder in tool.cylinders:
                 ones = np.ones(len(moved))
                 sizes = (size * ones for size in (cylinder.low, cylinder.high, cylinder.radius))
-                parts.append(Stretches(moved, 0.0 * ones, ones, *sizes))
+                parts.append(PathStretches(moved, 0.0 * ones, ones, *sizes))
         columns = ("move", "first", "last", "under", "over", "radius")
         joined = [np.concatenate([getattr(part, name) for part in parts] or [[]]) for name in columns]
-        return Stretches(joined[0].astype(np.int64), *joined[1:])
+        return PathStretches(joined[0].astype(np.int64), *joined[1:])
 
     def compute_places_at(self, move: IntArray, share: Array) -> Array:
-        """Return the places (N, 2) of the axis at shares of moves."""
+        """Return the tool axis's places (N, 2) in mm at shares (N,) from 0 to 1 of moves (N,)."""
         moves = self.program.moves
         start, end = moves.start[move, :2], moves.end[move, :2]
         straight = start + share[:, None] * (end - start)
@@ -169,8 +178,14 @@ class ToolWalk:
         bent = self.center[move] + self.radius[move, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         return np.asarray(np.where(self.is_round[move, None], bent, straight))
 
-    def find_nearest(self, element: Element, line: object = None, tool: object = None) -> Nearest:
-        """Return where the tools come nearest to an element; infinite where none comes down to its height.
+    def find_nearest(
+        self, element: HoldingElement, line: object = None, tool: object = None
+    ) -> NearestApproach:
+        """Return the least distance, less radii, of the tools from an element; inf
+        where none comes down to its height.
+
+        The bounds are ``FINE`` mm apart at most, unless halving ends early. Without any approach the line is
+        -1.
 
         Parameters
         ----------
@@ -222,12 +237,16 @@ class ToolWalk:
             waiting = waiting.take(kept).halve()
             if not len(waiting.move):
                 break
-        return Nearest(min(low, found), found, at)
+        return NearestApproach(min(low, found), found, at)
 
     def measure_distances(
-        self, stretches: Stretches, element: Element, boxed: NDArray[np.bool_]
+        self, stretches: PathStretches, element: HoldingElement, boxed: NDArray[np.bool_]
     ) -> tuple[Array, Array]:
-        """Return the distances (N,) of the chords of stretches from an element, and their sagittas (N,)."""
+        """Return the distances (N,) in mm of the stretches' chords from an
+        element, and their sagittas (N,) in mm.
+
+        For ``boxed`` stretches the distance is that of the box of the move.
+        """
         move = stretches.move
         one, other = (
             self.compute_places_at(move, stretches.first),
@@ -243,9 +262,11 @@ class ToolWalk:
             off[k] = self.measure_box_distance(start, end, element)
         return off, sagitta
 
-    def measure_chord_distances(self, one: Array, other: Array, element: Element) -> Array:
-        """Return the distances (N,) of straight pieces or points from an element's middle line, or from a
-        half plane.
+    def measure_chord_distances(self, one: Array, other: Array, element: HoldingElement) -> Array:
+        """Return the distances (N,) in mm of straight segments from an element's middle
+        line, or from a half plane (0 in it).
+
+        The segments run from ``one`` (N, 2) to ``other`` (N, 2), and may be points.
         """
         start, end = np.array(element.start), np.array(element.end)
         if element.is_half_plane:
@@ -255,8 +276,10 @@ class ToolWalk:
         least = np.minimum.reduce(ends)
         return np.where(do_cross(one, other, start, end), 0.0, least)
 
-    def measure_box_distance(self, one: Array, other: Array, element: Element) -> float:
-        """Return the distance from the box of two corners to an element's middle line, or to a half plane."""
+    def measure_box_distance(self, one: Array, other: Array, element: HoldingElement) -> float:
+        """Return the distance in mm of the box with two opposite corners from an
+        element's middle line or half plane.
+        """
         (x0, y0), (x1, y1) = np.minimum(one, other), np.maximum(one, other)
         corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
         sides = float(self.measure_chord_distances(corners, np.roll(corners, -1, axis=0), element).min())
@@ -265,7 +288,7 @@ class ToolWalk:
 
 
 def measure_points_to_piece(points: Array, start: Array, end: Array) -> Array:
-    """Return the distances (N,) of points from one straight piece, which may be a point."""
+    """Return the distances (N,) of points (N, 2) from one straight segment; start and end may be equal."""
     along = end - start
     long = float(along @ along)
     share = np.clip((points - start) @ along / long, 0.0, 1.0) if long > 0.0 else np.zeros(len(points))
@@ -273,7 +296,9 @@ def measure_points_to_piece(points: Array, start: Array, end: Array) -> Array:
 
 
 def measure_pieces_to_point(one: Array, other: Array, point: Array) -> Array:
-    """Return the distances (N,) of straight pieces, which may be points, from one point."""
+    """Return the distances (N,) of straight segments from ``one`` to
+    ``other``, both (N, 2), from one point (2,).
+    """
     along = other - one
     long = (along * along).sum(axis=1)
     share = ((point - one) * along).sum(axis=1) / np.where(long > 0.0, long, 1.0)
@@ -281,11 +306,14 @@ def measure_pieces_to_point(one: Array, other: Array, point: Array) -> Array:
 
 
 def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.bool_]:
-    """Return which straight pieces (N,) have the ends of one on either side of them, and their own on either
-    side of it.
+    """Return (N,) whether each segment from ``one`` to ``other`` properly
+    crosses the segment from start to end.
+
+    Segments that only touch, or are parallel, do not cross.
     """
 
     def side(a: Array, b: Array, c: Array) -> Array:
+        """Return twice the signed area of the triangle a, b, c: positive where c is to the left of a to b."""
         return np.asarray((b - a)[..., 0] * (c - a)[..., 1] - (b - a)[..., 1] * (c - a)[..., 0])
 
     apart = side(start, end, one) * side(start, end, other) < 0.0
@@ -293,19 +321,21 @@ def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.b
 
 
 @lru_cache(maxsize=8)
-def walk_of(program: Program) -> ToolWalk:
+def make_walk(program: Program) -> ToolWalk:
+    """Return the walk along a program; cached."""
     return ToolWalk.from_program(program)
 
 
 def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return what is wrong with a fixture and the program, in one sentence without a full stop; empty where
-    nothing is.
+    """Return a sentence, without full stop, where a fixture and the program do not agree; "" for none.
+
+    A tool comes too near, or the written clearance is missing, superfluous or wrong.
     """
     said = fixture.quality.get(PROGRAM_FIGURE.key)
     if query.passed is None:
         return "" if said is None else f"its {PROGRAM_FIGURE.words} is given, and there is no program"
     program, height = query.passed
-    walk, least = walk_of(program), Nearest(inf, inf, -1)
+    walk, least = make_walk(program), NearestApproach(inf, inf, -1)
     elements = list(list_elements(fixture, hardware, height))
     for element in elements:
         near = walk.find_nearest(element)
@@ -315,7 +345,7 @@ def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -
                 f"and {program.clearance:g} mm are to be kept"
             )
         high, line = (near.high, near.line) if near.high < least.high else (least.high, least.line)
-        least = Nearest(min(least.low, near.low), high, line)
+        least = NearestApproach(min(least.low, near.low), high, line)
     if (said is None) != (least.high == inf):
         return (
             f"its {PROGRAM_FIGURE.words} is {'missing' if said is None else 'given, and no tool comes down'}"
@@ -326,9 +356,13 @@ def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -
 
 
 def find_clearance_fault(
-    fixture: Fixture, walk: ToolWalk, elements: Sequence[Element], least: Nearest
+    fixture: Fixture, walk: ToolWalk, elements: Sequence[HoldingElement], least: NearestApproach
 ) -> str:
-    """Return what is wrong with what a file says of the nearest move, in a sentence; empty where nothing is."""
+    """Return a sentence where a file's statement of the nearest move is
+    wrong; "" where it is right or missing.
+
+    ``elements`` are what holds the part, and ``least`` the derived nearest approach.
+    """
     said = fixture.passing
     if said is None:
         return ""
@@ -347,12 +381,17 @@ def find_clearance_fault(
     return ""
 
 
-def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iterator[Element]:
-    """Yield everything that holds a part, as it is written."""
+def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iterator[HoldingElement]:
+    """Yield the walls, pegs and clamps that hold a part, in the part's frame and mm.
+
+    A peg whose body is wider below height 0 yields a second element. ``height`` is the top of those without
+    heights.
+    """
     angle = radians(fixture.pose.theta_deg)
     cosine, sine = np.cos(angle), np.sin(angle)
 
     def seen(x: float, y: float) -> tuple[float, float]:
+        """Return a point of the toolkit's frame in the part's frame."""
         dx, dy = x - fixture.pose.x, y - fixture.pose.y
         return float(cosine * dx + sine * dy), float(cosine * dy - sine * dx)
 
@@ -360,19 +399,21 @@ def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> It
         # Up in the toolkit is this way in the part.
         low, top = wall.heights or (0.0, height)
         up = float(sine), float(cosine)
-        yield Element(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
+        yield HoldingElement(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
     for name, peg in hardware.list_placed(fixture):
         carrier = hardware.carriers[peg.carrier]
         low, top = carrier.heights or (0.0, height)
         ends = seen(peg.x, peg.y), seen(*find_far_end(peg, carrier))
-        whole = Element(name, make_element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low)
+        whole = HoldingElement(
+            name, make_element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low
+        )
         yield whole
         if carrier.body_radius > carrier.peg_radius:
             yield evolve(whole, radius=carrier.body_radius, height=0.0, low=0.0)
 
 
 def make_element_name(peg: Peg, hardware: ToolkitRules) -> str:
-    """Return what files call a place at which something holds the part: by its hole, or by the wall."""
+    """Return the name that files give to the place of a peg: its hole, with the peg's noun, or the wall."""
     carrier = hardware.carriers[peg.carrier]
     if carrier in hardware.walls:
         return carrier.noun
@@ -380,8 +421,9 @@ def make_element_name(peg: Peg, hardware: ToolkitRules) -> str:
 
 
 def find_far_end(peg: Peg, carrier: Carrier) -> tuple[float, float]:
-    """Return the other end of a peg's middle line: of a clamp that is bolted in a hole this hole, else its
-    own place.
+    """Return the other end of a peg's middle line in the toolkit's frame, in mm.
+
+    For a clamp bolted in a hole it is that hole, else the peg's own centre.
     """
     if not carrier.has_body_behind:
         return peg.x, peg.y

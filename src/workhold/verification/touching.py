@@ -52,7 +52,7 @@ from workhold.verification.ball_geometry import (
     turn_vector,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.tolerances import HAIR, TANGENT, Finding, judge_slack, number
+from workhold.verification.tolerances import HAIR, TANGENT, Finding, format_middle, judge_slack
 
 __all__ = [
     "Barrier",
@@ -70,10 +70,11 @@ Barrier = tuple[arb, arb]
 def measure_edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """Return the distances in mm along its contact feature from a peg's centre to every barrier and to ends
-    of the side.
+    """Return the distances in mm along its path from a peg's centre to every barrier and end of the path.
 
-    The ends are those that ``smooth`` calls no tangent joints. A whole circle has none. Nothing trims it:
+    The path runs ``radius`` mm from the side; ``beside`` are its barriers, the ranges in which the peg would
+    enter another side. Ends with ``smooth`` (start, end) True are tangent joints and left out. Distances are
+    negative within a barrier or beyond an end. Returns [] for a whole circle: nothing trims its path, since
     whatever else there is lies beyond the material behind it.
     """
     if isinstance(side, ArcSide) and side.whole:
@@ -85,9 +86,12 @@ def measure_edge_distances(
 
 
 def find_barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) -> list[Barrier]:
-    """Return the barriers on the way along a side of a peg ``radius`` mm from it; none on a whole circle.
+    """Return the ranges (from, to) of places along a side in which a peg would
+    enter one of the sides ``others``.
 
-    ``body`` is the peg's own radius in mm, more than that where its flat lies on the side.
+    A place is the arc length in mm along the path of the peg's centre, ``radius`` mm from the side. ``body``
+    is the peg's own radius in mm, larger than ``radius`` where its flat lies on the side. Returns [] on a
+    whole circle.
     """
     if (isinstance(side, ArcSide) and side.whole) or not body > HAIR:
         return []
@@ -107,7 +111,7 @@ def find_barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) ->
 
 
 def measure_feature(side: Side, radius: arb) -> arb:
-    """Return the length in mm of the untrimmed contact feature of a side."""
+    """Return the length in mm of the path of a peg's centre along a whole side, ``radius`` mm from it."""
     return (
         side.length
         if isinstance(side, LineSide)
@@ -116,7 +120,9 @@ def measure_feature(side: Side, radius: arb) -> arb:
 
 
 def compute_way_point(side: Side, radius: arb, place: arb) -> Point:
-    """Return the peg's centre at a place."""
+    """Return the peg's centre at a place: arc length in mm along the path of
+    centres ``radius`` mm from a side.
+    """
     if isinstance(side, LineSide):
         (x, y), (nx, ny) = side.start, side.normal
         return x + place * side.tangent[0] + radius * nx, y + place * side.tangent[1] + radius * ny
@@ -127,13 +133,15 @@ def compute_way_point(side: Side, radius: arb, place: arb) -> Point:
 
 
 def find_entered_ranges(side: Side, radius: arb, other: Side, near: arb) -> list[Barrier]:
-    """Return the ranges of places on the way along a side that are nearer than ``near`` mm to another side,
-    in order.
+    """Return the ranges (from, to) of places at which the peg's centre is
+    nearer than ``near`` mm to another side.
+
+    They are in order and do not overlap.
     """
     extent = measure_feature(side, radius)
     crossings = []
     for point in find_crossing_points(side, radius, other, near):
-        if isinstance(side, ArcSide) and side.measure_within(side.from_center(point)) < 0:
+        if isinstance(side, ArcSide) and side.measure_within(side.measure_from_center(point)) < 0:
             continue
         place = side.compute_slacks(point, radius)[0]
         if not (place < 0 or place > extent):
@@ -148,7 +156,9 @@ def find_entered_ranges(side: Side, radius: arb, other: Side, near: arb) -> list
 
 
 def find_crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Iterator[Point]:
-    """Yield where a peg's way meets the lines and circles at ``near`` mm from another side."""
+    """Yield where the path of the peg's centre may cross the curves at a
+    distance of ``near`` mm from another side.
+    """
     circles = [(other.start, near), (other.end, near)]
     if isinstance(other, ArcSide):
         circles += [(other.center, other.radius + near), (other.center, other.radius - near)]
@@ -161,7 +171,10 @@ def find_crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Ite
 
 
 def find_points_on_line(side: Side, radius: arb, normal: Point, level: arb) -> Iterator[Point]:
-    """Yield the points of the way with normal . x = level; none where that may be parallel to a straight way."""
+    """Yield the points x of the peg centre's path with normal · x = level.
+
+    The path is not cut off at the side's ends. Yields nothing where line and path may be parallel.
+    """
     if isinstance(side, ArcSide):
         yield from find_points_on_ring(
             side,
@@ -176,7 +189,10 @@ def find_points_on_line(side: Side, radius: arb, normal: Point, level: arb) -> I
 
 
 def find_points_on_circle(side: Side, radius: arb, center: Point, size: arb) -> Iterator[Point]:
-    """Yield the points of the way on a circle; none when it may be concentric to a round way."""
+    """Yield the points of the peg centre's path on a circle of radius ``size`` mm.
+
+    The path is not cut off at the side's ends. Yields nothing where circle and path may be concentric.
+    """
     if isinstance(side, ArcSide):
         reach = side.compute_offset_radius(radius)
         apart = center[0] - side.center[0], center[1] - side.center[1]
@@ -198,7 +214,12 @@ def find_points_on_circle(side: Side, radius: arb, center: Point, size: arb) -> 
 
 
 def find_points_on_ring(side: ArcSide, radius: arb, axis: Point, cosine: arb) -> Iterator[Point]:
-    """Yield the points of a round way whose direction from the centre has a cosine with an axis, a unit vector."""
+    """Yield the two points of an arc's path of centres whose direction from its
+    centre has this cosine with ``axis``.
+
+    ``axis`` is a unit vector. The path is taken as a full circle; yields nothing where the cosine is
+    certainly above 1 in size.
+    """
     square = 1 - cosine * cosine
     if not square < 0:
         sine, reach = compute_square_root(square), side.compute_offset_radius(radius)
@@ -215,7 +236,11 @@ SHORTEST = HAIR / 1024
 def judge_touching(
     name: str, contact: BallContact, face: int, pose: BallPose, outline: BallOutline, margin: float
 ) -> Iterator[Finding]:
-    """Check whether a peg touches a face, ``margin`` mm inside the ends of its feature, and nothing else."""
+    """Yield a finding where a peg lies less than ``margin`` mm inside the ends of its
+    path along a face, or enters the part.
+
+    ``face`` is the number of the face touched; ``outline`` is what the peg must keep clear of.
+    """
     center = contact.compute_center_in_part(pose)
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
     edge = f"{name} is exactly {margin:g} mm from the end of its feature on face {face}"
@@ -226,7 +251,7 @@ def judge_touching(
         inside = slack - margin + HAIR if smooth else slack - reach
         if inside > 0:
             continue
-        past = f"{name} lies {number(-slack)} mm past the end of face {face}"
+        past = f"{name} lies {format_middle(-slack)} mm past the end of face {face}"
         at = f"{name} touches face {face} exactly at its end"
         broken = past if slack < -HAIR else at if slack < HAIR else close
         yield from judge_slack(inside, broken, edge if margin else at)
@@ -237,41 +262,45 @@ def judge_touching(
             continue
         near.append(side)
         if clearance < -HAIR:
-            yield Finding(True, f"{name} enters the workpiece at segment {index} by {number(-clearance)} mm")
+            yield Finding(
+                True, f"{name} enters the workpiece at segment {index} by {format_middle(-clearance)} mm"
+            )
         elif margin == 0.0:
             words = f"{name} touches face {face} and segment {index} at the same time"
-            clear = clear_within(contact, center, [side], reach)
+            clear = is_clear_within(contact, center, [side], reach)
             if clear is not True:
                 yield Finding(clear is False, words)
     if near and margin > 0.0:
-        clear = clear_within(contact, center, near, reach)
+        clear = is_clear_within(contact, center, near, reach)
         if clear is not True:
             yield Finding(clear is False, close if clear is False else edge)
 
 
 def move_along_feature(contact: BallContact, center: Point, step: arb) -> Point:
-    """Return the point a length in mm along the contact feature from a peg's centre."""
+    """Return the peg's centre moved by ``step`` mm along its path beside the touched side."""
     side = contact.side
     if isinstance(side, LineSide):
         return center[0] + step * side.tangent[0], center[1] + step * side.tangent[1]
     angle = step / side.compute_offset_radius(contact.radius)
-    x, y = turn_vector(side.from_center(center), angle.cos(), angle.sin())
+    x, y = turn_vector(side.measure_from_center(center), angle.cos(), angle.sin())
     return side.center[0] + x, side.center[1] + y
 
 
 def runs_alongside(contact: BallContact, center: Point, side: Side) -> bool:
-    """Return whether a side runs alongside a peg's face where the peg is."""
+    """Return whether the peg's clearance from a side barely changes as the peg
+    slides (see "alongside" in the glossary).
+    """
     one, two = (
         side.compute_distance(move_along_feature(contact, center, arb(step))) for step in (-HAIR, HAIR)
     )
     return bool(abs(one - two) < 2 * HAIR * TANGENT)
 
 
-def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
-    """Return whether a peg stays clear of some sides within a reach in mm along its feature; None if
-    undecided.
+def is_clear_within(contact: BallContact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
+    """Return whether a peg stays clear of all ``sides`` when it slides up to
+    ``reach`` mm either way along its face.
 
-    Pieces of the feature that are not seen to be clear are halved.
+    Returns None where that stays undecided. Pieces of the path that are not shown to be clear are halved.
     """
     pieces = [(arb(0), arb(reach))]
     looked_at = 0
@@ -300,9 +329,11 @@ def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], rea
 
 
 def bound_steepness(contact: BallContact, side: Side, around: Point) -> arb:
-    """Return a bound of 1 or less on the change of a side's clearance per mm that the peg slides in a box.
+    """Return an upper bound, at most 1, of the change of a side's clearance per
+    mm that the peg slides along its face.
 
-    It is the cosine between the peg's way and the way from the side's nearest point to the peg's centre.
+    The bound holds while the peg's centre is in the box ``around``. It is the cosine between the direction of
+    sliding and the vector from the side's nearest point to the centre.
     """
     away = side.find_vector_away(around)
     if away is None:
@@ -310,7 +341,7 @@ def bound_steepness(contact: BallContact, side: Side, around: Point) -> arb:
     if isinstance(contact.side, LineSide):
         along = contact.side.tangent
     else:
-        ray = contact.side.from_center(around)
+        ray = contact.side.measure_from_center(around)
         along = -ray[1], ray[0]
     size = compute_norm(away) * compute_norm(along)
     return (abs(compute_dot_product(along, away)) / size).min(arb(1)) if size > 0 else arb(1)

@@ -22,7 +22,7 @@ from flint import arb, ctx
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Arrangement, Carrier
 from workhold.model.query import Query
-from workhold.model.search_report import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
+from workhold.model.search_report import AT_AN_EDGE, GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, UndecidedCandidate
 from workhold.verification.ball_geometry import (
     PRECISIONS,
     ArcSide,
@@ -60,10 +60,10 @@ class TouchingPeg:
     Parameters
     ----------
     side : what it touches.
-    radius : how far in mm its centre is from the side.
-    step : from the first peg to it in the workpiece's frame, in mm.
+    radius : the distance of its centre from the side in mm.
+    step : vector from the first peg to it in the workpiece's frame, in mm.
     column : of its hole.
-    loose : how far in mm it may be off.
+    loose : tolerance in mm of its place.
     """
 
     side: Side
@@ -73,8 +73,8 @@ class TouchingPeg:
     loose: float
 
 
-def find_undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str]:
-    """Yield a fault for every undecided entry that is no real place."""
+def find_undecided_faults(entries: Sequence[UndecidedCandidate], query: Query) -> Iterator[str]:
+    """Yield one sentence for each undecided entry, numbered from 1, that certainly is no possible place."""
     if not entries:
         return
     with ctx.workprec(PRECISIONS[0]):
@@ -88,17 +88,25 @@ def find_undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterato
                 yield f"undecided candidate {number} of the proof {fault}"
 
 
-def find_entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """Return what is wrong with an entry of four contacts or two chords; empty when nothing is."""
+def find_entry_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
+    """Return a verb phrase that says what is wrong with an entry of four contacts or two chords; "" for
+    none.
+    """
     fault = find_written_fault(entry, query, outline)
     if WALL_END not in query.toolkit.contacts:
         fault = fault or find_count_fault(entry, query)
-        fault = fault or find_holes_fault(entry, query) or place_fault(entry, query, outline)
+        fault = fault or find_holes_fault(entry, query) or find_place_fault(entry, query, outline)
     return fault
 
 
-def split_into_single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
-    """Yield the entries of one clamp that an entry of two clamps consists of, each with a query of that clamp."""
+def split_into_single_entries(
+    entry: UndecidedCandidate, query: Query
+) -> Iterator[tuple[UndecidedCandidate, Query]]:
+    """Yield (entry, query) for each clamp of an entry with two clamps, as an
+    entry of a toolkit with that clamp alone.
+
+    An entry of a kind that is not asked for is yielded once, with a type that no query has.
+    """
     _, *directions = entry.type.split()
     alone = {one.direction: (one.name, way) for way in query.toolkit.ways for one in way.arrangements}
     asked = (
@@ -121,21 +129,26 @@ def split_into_single_entries(entry: Undecided, query: Query) -> Iterator[tuple[
         name, way = alone[direction]
         single = evolve(query, toolkit=way, types=None, rank_by=None, best=None, listing=None)
         holes = tuple(faces), tuple(columns), tuple(rows)
-        yield Undecided(f"{name} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg), single
+        yield (
+            UndecidedCandidate(f"{name} {direction}", *holes, entry.theta_deg, entry.reason, entry.reach_deg),
+            single,
+        )
 
 
-def is_of_chords(entry: Undecided) -> bool:
+def is_of_chords(entry: UndecidedCandidate) -> bool:
     """Return whether an entry is a pair of chords, each from the first peg to the second."""
     return entry.reason == GIVEN_UP
 
 
-def find_arrangement(entry: Undecided, query: Query) -> Arrangement:
-    """Return the arrangement that an entry names, with the direction where there are several."""
+def find_arrangement(entry: UndecidedCandidate, query: Query) -> Arrangement:
+    """Return the arrangement whose title (type, and direction where there are several) is the entry's."""
     return next(one for one in query.toolkit.arrangements if one.title == entry.type)
 
 
-def turn_entry_along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[Carrier]]:
-    """Return an entry turned so that its clamp moves in -x, with the carriers of its four pegs."""
+def turn_entry_along_x(entry: UndecidedCandidate, query: Query) -> tuple[UndecidedCandidate, list[Carrier]]:
+    """Return an entry turned so that its clamp moves in -x, and the carriers
+    of its four pegs turned likewise.
+    """
     arrangement, carriers = find_arrangement(entry, query), query.toolkit.carriers
     if is_of_chords(entry) and arrangement.pegs != (2, 2):
         pegs = [carriers[0]] * 4
@@ -151,14 +164,16 @@ def turn_entry_along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[
     return evolve(entry, columns=columns, rows=rows, theta_deg=entry.theta_deg - 90.0 * turns), pegs
 
 
-def group_pegs(entry: Undecided, query: Query) -> list[list[int]]:
-    """Return the numbers of pegs whose steps from the first of them are given."""
+def group_pegs(entry: UndecidedCandidate, query: Query) -> list[list[int]]:
+    """Return the lists of peg numbers, from 0, whose holes count from the first
+    peg of the list; empty lists left out.
+    """
     first, count = 2 if is_of_chords(entry) else find_arrangement(entry, query).pegs[0], len(entry.faces)
     return [group for group in (list(range(first)), list(range(first, count))) if group]
 
 
-def find_written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """Return what is wrong with the whole numbers and the words of an entry; empty when nothing is."""
+def find_written_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
+    """Return a verb phrase on an entry's type, reason, reach or face numbers that are wrong; "" for none."""
     if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.types]:
         return f"is of type {entry.type}, which is not asked for"
     if entry.reason not in REASONS:
@@ -170,15 +185,17 @@ def find_written_fault(entry: Undecided, query: Query, outline: BallOutline) -> 
     return ""
 
 
-def find_count_fault(entry: Undecided, query: Query) -> str:
-    """Return that an entry has not as many faces and holes as pegs; empty when it has."""
+def find_count_fault(entry: UndecidedCandidate, query: Query) -> str:
+    """Return a verb phrase where an entry has not as many faces and holes as pegs; else ""."""
     count = 4 if is_of_chords(entry) else sum(find_arrangement(entry, query).pegs)
     numbers = (entry.faces, entry.columns, entry.rows)
     return "" if all(len(one) == count for one in numbers) else f"has not {count} faces and holes"
 
 
-def find_holes_fault(entry: Undecided, query: Query) -> str:
-    """Return what is wrong with the holes of an entry; empty when nothing is."""
+def find_holes_fault(entry: UndecidedCandidate, query: Query) -> str:
+    """Return a verb phrase on holes that are counted wrongly, used twice, or span
+    more than the carrier has; "" for none.
+    """
     entry, carriers = turn_entry_along_x(entry, query)
     for group in group_pegs(entry, query):
         carrier, first = carriers[group[0]], group[0]
@@ -197,8 +214,10 @@ def find_holes_fault(entry: Undecided, query: Query) -> str:
     return ""
 
 
-def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """Return what is certainly wrong with the place of an entry; empty if nothing is."""
+def find_place_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
+    """Return a verb phrase where the pegs certainly cannot touch their faces
+    anywhere in the entry's range; else "".
+    """
     if entry.reach_deg is None and not is_of_chords(entry):
         return ""
     entry, carriers = turn_entry_along_x(entry, query)
@@ -247,13 +266,18 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
 
 
 def bound_outline_size(query: Query) -> float:
-    """Return an upper bound in mm of the distance of two points of the workpiece, or of pegs that touch it."""
+    """Return an upper bound in mm of the distance between two points of the part, or of pegs that touch
+    it.
+    """
     x0, y0, x1, y1 = query.workpiece.bounds
     return hypot(x1 - x0, y1 - y0) + 2.0 * max(carrier.peg_radius for carrier in query.toolkit.carriers)
 
 
 def find_first_peg_places(group: Sequence[TouchingPeg]) -> list[Point] | None:
-    """Return where the first peg of a jaw may be when all its pegs touch; None for anywhere along a way."""
+    """Return the possible centres of a jaw's first peg, in the part's frame, when all its pegs touch.
+
+    Returns None where the centre may be anywhere along a path, [] where it cannot be anywhere.
+    """
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
     if other is None:
@@ -275,7 +299,9 @@ def find_first_peg_places(group: Sequence[TouchingPeg]) -> list[Point] | None:
 
 
 def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Return whether two pegs of one jaw certainly have ways that are not nearly parallel or concentric."""
+    """Return whether the paths of two pegs' centres certainly are neither nearly
+    parallel lines nor concentric circles.
+    """
     a, b = one.side, other.side
     if isinstance(a, LineSide) and isinstance(b, LineSide):
         return bool(abs(cross(a.tangent, b.tangent)) > PARALLEL)
@@ -286,7 +312,7 @@ def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
 
 
 def may_slide_with(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Return whether two pegs whose ways run parallel may touch both at once."""
+    """Return whether two pegs with parallel or concentric paths may touch their sides at once."""
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
         return (
@@ -302,7 +328,9 @@ def may_slide_with(one: TouchingPeg, other: TouchingPeg) -> bool:
 
 
 def may_touch(peg: TouchingPeg, first: Point) -> bool:
-    """Return whether a peg may touch its side inside its ends, with the first peg of its jaw at a place."""
+    """Return whether a peg may touch its side between the side's ends, with
+    the first peg of its jaw at ``first``.
+    """
     side, point = peg.side, (first[0] + peg.step[0], first[1] + peg.step[1])
     if isinstance(side, ArcSide) and not side.compute_offset_radius(peg.radius) > 0:
         return False
@@ -312,7 +340,11 @@ def may_touch(peg: TouchingPeg, first: Point) -> bool:
 
 
 def find_places_on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) -> list[Point] | None:
-    """Return where a peg may be that stands ``up`` mm above another; None where its side runs along the row."""
+    """Return the possible centres of a peg whose row is ``up`` mm above the
+    peg at ``tail``, in the part's frame.
+
+    ``turn`` is (cosine, sine) of the orientation. Returns None where the peg's side runs along the row.
+    """
     side, across = moved.side, turn_vector((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):
         slope = compute_dot_product(across, side.tangent)

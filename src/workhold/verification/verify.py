@@ -18,14 +18,14 @@ from workhold.model.quality import PIN_KEYS
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.verification.account import find_account_faults, seat_faults
+from workhold.verification.account import find_account_faults, find_seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, compute_norm
 from workhold.verification.contacts import Balance, BallContact, BallPose, judge_closure, select_outline_for
-from workhold.verification.figures import Measure, find_missing_figure, judge_written_numbers
+from workhold.verification.figures import FigureMeasure, find_missing_figure, judge_written_numbers
 from workhold.verification.flat_jaws import JawJudge
 from workhold.verification.force_walk import judge_program_forces
-from workhold.verification.judging import order_faults
-from workhold.verification.listing import Listing, collect_claims, read_listing
+from workhold.verification.judging import find_order_faults
+from workhold.verification.listing import WrittenListing, collect_claims, read_listing
 from workhold.verification.pins import make_beams
 from workhold.verification.placing import (
     enclose_written_pose,
@@ -40,7 +40,7 @@ from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
 from workhold.verification.stock_walk import find_stock_faults
 from workhold.verification.strapped import StrapJudge
-from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
+from workhold.verification.tolerances import AGREEMENT, Finding, format_middle, judge_slack
 from workhold.verification.tool_walk import find_program_fault
 from workhold.verification.touching import judge_touching
 
@@ -80,7 +80,7 @@ class Ruling:
 def verify_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, contact_margin: float = 0.0
 ) -> Ruling:
-    """Prove or refutes one fixture from workpiece, toolkit, pegs and faces alone.
+    """Prove or refute one fixture from workpiece, toolkit, pegs and faces alone.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Judge:
     """
 
     query: Query
-    measures: dict[int, Measure] = field(factory=dict, init=False)
+    measures: dict[int, FigureMeasure] = field(factory=dict, init=False)
 
     @cached_property
     def hardware(self) -> ToolkitRules:
@@ -114,7 +114,7 @@ class Judge:
 
     @cached_property
     def wrench_length(self) -> float:
-        """L of the wrenches in mm, half the diameter of the peg-centre locus."""
+        """L of the wrenches in mm: half the part's diameter plus the largest peg radius."""
         return self.diameter / 2 + self.hardware.largest_radius
 
     def rule_on(self, fixture: Fixture) -> Ruling:
@@ -128,8 +128,9 @@ class Judge:
         return ruling
 
     def rule_at_precision(self, bits: int, fixture: Fixture) -> Ruling:
+        """Return the ruling on one fixture at this precision in bits, which must be in force."""
         if bits not in self.measures:
-            self.measures[bits] = Measure.from_query(self.wrench_length, self.diameter, self.query)
+            self.measures[bits] = FigureMeasure.from_query(self.wrench_length, self.diameter, self.query)
         doubt = ""
         for finding in self.judge_fixture(fixture, self.measures[bits]):
             if finding.definite:
@@ -137,8 +138,11 @@ class Judge:
             doubt = doubt or finding.reason
         return Ruling("undecided", doubt, bits) if doubt else Ruling("proven", "", bits)
 
-    def judge_fixture(self, fixture: Fixture, measure: Measure) -> Iterator[Finding]:
-        """Yield everything that speaks against a fixture, cheap rules first, which a definite finding ends."""
+    def judge_fixture(self, fixture: Fixture, measure: FigureMeasure) -> Iterator[Finding]:
+        """Yield a finding for each rule that a fixture breaks or may break, cheap rules first.
+
+        The caller must stop at the first definite finding, because later rules need the earlier ones.
+        """
         outline, hardware = measure.outline, self.hardware
         yield from hardware.judge_holes(fixture)
         for name, peg in zip(hardware.names, fixture.pegs, strict=True):
@@ -174,10 +178,14 @@ class Judge:
         fixture: Fixture,
         contacts: Sequence[BallContact],
         pose: BallPose,
-        measure: Measure,
+        measure: FigureMeasure,
         is_proven: bool,
     ) -> Iterator[Finding]:
-        """Check whether the contacts of a fixture close at a pose, with the forces and figures that are written."""
+        """Yield a finding where a fixture's contacts do not close at a pose, or
+        written forces and figures are wrong.
+
+        ``is_proven`` says whether the pose is proven; some rules are skipped if not.
+        """
         hardware, pair = self.hardware, fixture.pair
         if pair is None:
             balance = Balance.from_contacts(contacts, pose, self.query.toolkit.clamping)
@@ -198,7 +206,7 @@ class Judge:
         yield from loose
         if loose:
             return
-        yield from seat.number_findings(pair, hardware.names)
+        yield from seat.judge_numbers(pair, hardware.names)
         yield from self.judge_figures(fixture, contacts, pose, measure, seat)
         if is_proven:
             standing = SeatOnPlate.from_fixture(
@@ -211,10 +219,12 @@ class Judge:
         fixture: Fixture,
         contacts: Sequence[BallContact],
         pose: BallPose,
-        measure: Measure,
+        measure: FigureMeasure,
         balance: Balance | SeatBalance,
     ) -> Iterator[Finding]:
-        """Check whether forces and figures of quality in the file are those derived from a balance."""
+        """Yield a finding for each force or figure of quality in the file that
+        differs from the one of a balance.
+        """
         names, faces = self.hardware.names, self.hardware.number_shared_faces(fixture, contacts)
         stated = any(key in fixture.quality for key in PIN_KEYS)
         beams = make_beams(fixture, self.query)
@@ -224,7 +234,9 @@ class Judge:
 
 
 def judge_flats(fixture: Fixture, names: Sequence[str], contacts: Sequence[BallContact]) -> Iterator[Finding]:
-    """Check whether flats look at the faces that they lie on, where the file says which way, and no others do."""
+    """Yield a finding where a flat does not face its side, or the file states a
+    flat where there is none, or omits one.
+    """
     for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
         lies = contact.body is not None and isinstance(contact.side, LineSide)
         if peg.flat_deg is None or not lies:
@@ -235,7 +247,7 @@ def judge_flats(fixture: Fixture, names: Sequence[str], contacts: Sequence[BallC
         elif not isnan(peg.flat_deg) and isinstance(contact.side, LineSide):
             sine, cosine = ((arb(peg.flat_deg) - arb(fixture.pose.theta_deg)) / 180).sin_cos_pi()
             off = compute_norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
-            past = number(off * 180 / arb.pi())
+            past = format_middle(off * 180 / arb.pi())
             yield from judge_slack(AGREEMENT - off, f"the flat of {name} looks {past} degrees past its face")
 
 
@@ -290,6 +302,7 @@ class Verification:
 
     @property
     def fixtures(self) -> int:
+        """The number of fixtures verified."""
         return self.proven + self.refuted + self.undecided
 
     @property
@@ -299,7 +312,10 @@ class Verification:
 
 
 def list_not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
-    """Yield what a result in a toolkit, perhaps with seating, alone cannot show; answering its query again does."""
+    """Yield sentences on what a result alone cannot show, and answering its query again would.
+
+    ``is_seated`` says that the result states seating.
+    """
     left_out = "seats" if toolkit.travels > 1 else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
     yield (
@@ -314,7 +330,7 @@ def list_not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
 
 
 def ignore_progress(fraction: float, unproven: int) -> None:
-    """Report nothing."""
+    """Do nothing: the default ``progress``."""
 
 
 def verify(result: Result, progress: Progress = ignore_progress) -> Verification:
@@ -343,8 +359,8 @@ def verify_file(path: str | Path, progress: Progress = ignore_progress) -> Verif
     return verify_listing(read_listing(path), progress)
 
 
-def verify_holds(listing: Listing, progress: Progress) -> Verification:
-    """What is shown of a result of flat jaws, or of straps."""
+def verify_holds(listing: WrittenListing, progress: Progress) -> Verification:
+    """Return the verification of a result of flat jaws or of straps."""
     is_strapped = listing.query.toolkit.strap_set is not None
     judge = StrapJudge(listing.query) if is_strapped else JawJudge(listing.query)
     unproven = list[Unproven]()
@@ -356,7 +372,7 @@ def verify_holds(listing: Listing, progress: Progress) -> Verification:
     listed = dict.fromkeys(listing.query.toolkit.types, 0)
     for fixture in listing.fixtures:
         listed[fixture.type] = listed.get(fixture.type, 0) + 1
-    faults = [*listing.faults, *judge.order_faults(listing.fixtures)]
+    faults = [*listing.faults, *judge.find_order_faults(listing.fixtures)]
     if dict(listing.counts) != listed:
         faults.append(f"the counts are {dict(listing.counts)}, and {listed} are listed")
     if any(listing.found[name] < count for name, count in listed.items()):
@@ -365,7 +381,11 @@ def verify_holds(listing: Listing, progress: Progress) -> Verification:
     return Verification(proven, len(unproven), 0, tuple(unproven), tuple(faults), 53)
 
 
-def verify_listing(listing: Listing, progress: Progress = ignore_progress) -> Verification:
+def verify_listing(listing: WrittenListing, progress: Progress = ignore_progress) -> Verification:
+    """Return the verification of a listing: the ruling on each fixture and the faults of the whole.
+
+    ``progress`` is called after each fixture.
+    """
     query, everything = listing.query, listing.fixtures
     if query.toolkit.holds_by_friction:
         return verify_holds(listing, progress)
@@ -394,7 +414,7 @@ def verify_listing(listing: Listing, progress: Progress = ignore_progress) -> Ve
     faults = [
         *listing.faults,
         *find_account_faults(listing, turning.order),
-        *order_faults(
+        *find_order_faults(
             everything,
             query,
             judge.hardware,
@@ -403,7 +423,7 @@ def verify_listing(listing: Listing, progress: Progress = ignore_progress) -> Ve
             listing.is_chosen,
         ),
         *find_pattern_faults(everything, query),
-        *seat_faults(listing, refuted),
+        *find_seat_faults(listing, refuted),
         *find_stock_faults(query),
     ]
     if not refuted and turning.is_certain:
@@ -412,10 +432,10 @@ def verify_listing(listing: Listing, progress: Progress = ignore_progress) -> Ve
     return Verification(*tally, tuple(unproven), tuple(faults), bits)
 
 
-def find_distinct_faults(listing: Listing, seen: KnownFixtures) -> Iterator[str]:
-    """Yield the numbers of distinct fixtures that the fixtures listed contradict.
+def find_distinct_faults(listing: WrittenListing, seen: KnownFixtures) -> Iterator[str]:
+    """Yield one sentence for each stated number of distinct fixtures that contradicts the listed fixtures.
 
-    Where more are found than listed, each of the others makes a set of its own, or belongs to one.
+    Fixtures found and not listed may each form a set of their own, or belong to one.
     """
     for kind, counts in listing.counts.items():
         sets, distinct, others = seen.sets.get(kind, 0), listing.distinct[kind], listing.found[kind] - counts

@@ -11,26 +11,26 @@ from attrs import asdict, evolve
 
 from workhold.drawing.bench import make_bench
 from workhold.drawing.panel import describe_arrangement
-from workhold.files.result.hold_text import hold_entry
-from workhold.files.result.strapped_text import strapped_entry
+from workhold.files.result.hold_text import make_hold_entry
+from workhold.files.result.strapped_text import make_strapped_entry
 from workhold.files.result.writer import make_own_outlines_entry, make_proof_entry
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
-from workhold.model.clamps import order_words
+from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.jaw_hold import JawHold
-from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes, overhangs
+from workhold.model.moved_setup import find_move_to_middle, find_overhangs, move_fixture_by_holes
 from workhold.model.quality import FIGURES
-from workhold.model.search_report import Explanation, Proof
+from workhold.model.search_report import Explanation, ProofReport
 from workhold.model.setup import list_length_settings
-from workhold.model.shown import Shown
+from workhold.model.shown import ShownSetUp
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import convert_finite, describe_helps, describe_solid
 from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
 from workhold.presenting.zoomed_picture import draw_zoomed
-from workhold.supports.straps import question_of
+from workhold.supports.straps import make_question
 from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings
 from workhold.units import MILLIMETRE
 
@@ -40,7 +40,7 @@ __all__ = [
     "describe_figures",
     "describe_fixture",
     "describe_part",
-    "place_in",
+    "find_first_place",
     "describe_proof",
     "describe_rows",
 ]
@@ -52,8 +52,8 @@ USUAL_SIZE = (640.0, 480.0)
 PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 
 
-def place_in(sentence: str) -> dict[str, float] | None:
-    """Find the first place (x, y) that a sentence names, if any.
+def find_first_place(sentence: str) -> dict[str, float] | None:
+    """Return the first "(x, y)" that a sentence names as {"x": x, "y": y}; None where it names none.
 
     >>> place_in("loop 0 crosses itself at (1.5, -2): mend it.")
     {'x': 1.5, 'y': -2.0}
@@ -66,6 +66,7 @@ def place_in(sentence: str) -> dict[str, float] | None:
 
 
 def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
+    """Return a part as plain data for the page: loops, segments, faces, bounds, solid and own outlines."""
     face_of = map_segments_to_faces(workpiece)
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
@@ -90,17 +91,23 @@ def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str
 
 
 def map_segments_to_faces(workpiece: Workpiece) -> dict[int, int]:
+    """Return for each number of a segment the number of its face."""
     return {number: face.number for face in workpiece.faces for number in face.segments}
 
 
 def list_own_face_numbers(workpiece: Workpiece, role: str) -> list[int]:
-    """Return the faces of the segments of what carriers of a role meet, numbered on."""
-    outline, first = workpiece.outline_of(role)
+    """Return for each segment of a role's outline, in order, the number of its face.
+
+    Numbers of own outlines follow those of the part.
+    """
+    outline, first = workpiece.find_outline(role)
     return [first + face for _, face in sorted(map_segments_to_faces(outline).items())]
 
 
 def describe_own_outlines(workpiece: Workpiece) -> dict[str, Any]:
-    """Describe what carriers with heights of their own meet of a part, by role, as a request takes it."""
+    """Return the outlines of carriers with heights of their own,
+    by role, as plain data in the form that requests take.
+    """
     entries = make_own_outlines_entry(workpiece).get("outlines", {})
     return {
         role: {"heights": [one.solid.low, one.solid.peg_height], **entries[role]}
@@ -110,6 +117,7 @@ def describe_own_outlines(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def describe_segment(segment: Segment, bulge: float) -> dict[str, Any]:
+    """Return a segment as plain data; "center" and "radius" are None for a line."""
     arc = segment if isinstance(segment, Arc) else None
     return {
         "start": list(segment.start),
@@ -121,13 +129,16 @@ def describe_segment(segment: Segment, bulge: float) -> dict[str, Any]:
 
 
 def describe_face(number: int, segment: Segment) -> dict[str, Any]:
-    """Describe a face: its size is the length of a line or the radius of an arc; a hollow arc is concave."""
+    """Return a face as plain data; "size" is the length of a line
+    or the radius of an arc in mm, "concave" says it is hollow.
+    """
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
 
 
 def describe_figures() -> list[dict[str, Any]]:
+    """Return all figures of quality as plain data."""
     names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
     return [{name: getattr(figure, name) for name in names} for figure in FIGURES]
 
@@ -139,7 +150,10 @@ def describe_rows(
     ranks: Iterable[int],
     holds: Sequence[JawHold | StrappedHold] = (),
 ) -> list[dict[str, Any]]:
-    """Describe fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
+    """Return the fixtures of a table as rows of plain data, with the given ranks, one for each fixture.
+
+    ``holds`` says how flat jaws or straps hold the first of them.
+    """
     longest = find_edgeless_distance(workpiece, toolkit)
     fixtures = [make_fixture_of_row(table, toolkit, number, workpiece) for number in range(len(table))]
     for number, hold in enumerate(holds):
@@ -151,14 +165,15 @@ def describe_rows(
 
 
 def describe_arrangements(toolkit: Toolkit) -> list[dict[str, str]]:
-    """List the arrangements of a toolkit's fixtures: the title of each on the page, and its description."""
+    """Return the title and the description of each arrangement of a toolkit's fixtures."""
     return [{"title": one.title, "words": describe_arrangement(one, toolkit)} for one in toolkit.arrangements]
 
 
 def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float) -> dict[str, Any]:
-    """Describe a fixture as a row of a list, without its rank, as it stands in the middle of its plate.
+    """Return a fixture as a row of a list, without its rank,
+    with holes and settings as in the middle of its plate.
 
-    Where ``edgeless``, its edge distance stands for none, which it does when it is ``longest``.
+    "edgeless" is True where its edge distance is ``longest`` (mm), which stands for a part without an edge.
     """
     stands = move_fixture_by_holes(fixture, toolkit, find_move_to_middle(fixture, toolkit, workpiece))
     return {
@@ -171,18 +186,20 @@ def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longe
         "holes": [peg.hole for peg in stands.pegs],
         "faces": [peg.face for peg in fixture.pegs],
         "theta_deg": fixture.pose.theta_deg,
-        "hold": None if fixture.hold is None else hold_answer(fixture),
+        "hold": None if fixture.hold is None else describe_hold(fixture),
         "edgeless": is_edgeless(fixture.quality, longest),
         "quality": {key: convert_finite(value) for key, value in fixture.quality.items()},
     }
 
 
-def hold_answer(fixture: Fixture) -> dict[str, Any]:
-    """Describe how friction holds a part, as a result file does, with what to do and to beware of in words."""
+def describe_hold(fixture: Fixture) -> dict[str, Any]:
+    """Return how flat jaws or straps hold a part,
+    as plain data of a result file's form, with warnings in words.
+    """
     hold = fixture.hold
     if not isinstance(hold, JawHold):
-        return strapped_answer(fixture)
-    entry = hold_entry(fixture)
+        return describe_straps(fixture)
+    entry = make_hold_entry(fixture)
     names = ("parallels", "stop", "fixed", "moving", "warnings")
     return {
         **{name: entry[name] for name in names},
@@ -192,13 +209,15 @@ def hold_answer(fixture: Fixture) -> dict[str, Any]:
     }
 
 
-def strapped_answer(fixture: Fixture) -> dict[str, Any]:
-    """Describe how straps hold a part, as a result file does, with how to set them up and what to beware of in words."""
+def describe_straps(fixture: Fixture) -> dict[str, Any]:
+    """Return how straps hold a part, as plain data;
+    for a listed fixture with the steps to set it up and warnings.
+    """
     hold = fixture.hold
     assert isinstance(hold, StrappedHold)
-    entry, words = strapped_entry(fixture), dict[str, list[str]]()
+    entry, words = make_strapped_entry(fixture), dict[str, list[str]]()
     if fixture.listed is not None:
-        asked = question_of(fixture.listed.result.query)
+        asked = make_question(fixture.listed.result.query)
         words = {
             "steps": [
                 *(f"{step}." for step in list_steps(hold, fixture, asked, MILLIMETRE)),
@@ -216,7 +235,9 @@ def strapped_answer(fixture: Fixture) -> dict[str, Any]:
 
 
 def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
-    """The heading of a fixture in a list: its type, or which parallels it lies on and where the stop is."""
+    """Return the heading of a fixture in a list:
+    its arrangement or, between flat jaws, parallels and stop.
+    """
     hold = fixture.hold
     if not isinstance(hold, JawHold):
         return toolkit.find_arrangement(fixture.type, fixture.direction).heading
@@ -227,10 +248,12 @@ def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
 def describe_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, size: tuple[float, float] = USUAL_SIZE
 ) -> dict[str, Any]:
-    """Describe a fixture, without its rank: its row, its geometry, and a picture of a size in page units.
+    """Return a fixture without its rank as plain data:
+    its row, its geometry, and a picture of ``size`` in page units.
 
-    All places are in the frame of the fixture as it is listed; it stands on by ``placed``. A carrier, which may
-    be a wall or a clamp, has the numbers of its pegs, their radius, and the direction in which it clamps.
+    All places are in the frame of the fixture as it is listed; adding ``placed`` (mm) moves it to the middle
+    of its plate. Each entry of "carriers" has the indices of its pegs, their radius in mm, and its clamping
+    direction.
     """
     move = find_move_to_middle(fixture, toolkit, workpiece)
     stands = move_fixture_by_holes(fixture, toolkit, move)
@@ -240,13 +263,13 @@ def describe_fixture(
     dx, dy = placed
     return {
         **describe_row(fixture, workpiece, toolkit, find_edgeless_distance(workpiece, toolkit)),
-        "order": order_words(stands),
+        "order": describe_tightening_order(stands),
         "pairs": fixture.pair and fixture.pair.count,
         "mover": toolkit.moving.noun,
         "origin": toolkit.datum.name,
         "placed": placed,
-        "hangs_over": {one.side: one.length for one in overhangs(stands, toolkit, workpiece)},
-        "stands_out_of": toolkit.reaching and toolkit.reaching.noun,
+        "hangs_over": {one.side: one.length for one in find_overhangs(stands, toolkit, workpiece)},
+        "stands_out_of": toolkit.wall_with_ends and toolkit.wall_with_ends.noun,
         "touched": [peg.touched for peg in fixture.pegs],
         "corners": [number for number, peg in enumerate(fixture.pegs) if peg.beside is not None],
         "flush": [number for number, peg in enumerate(fixture.pegs) if peg not in fixture.placed],
@@ -262,8 +285,10 @@ def describe_fixture(
     }
 
 
-def describe_carriers(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
-    """List plates, then walls, then clamps."""
+def describe_carriers(fixture: Fixture, seen: ShownSetUp) -> list[dict[str, Any]]:
+    """Return plates, then walls, then clamps as plain data:
+    indices of pegs, radius in mm, clamping direction or None.
+    """
     numbers = defaultdict[str, list[int]](list)
     for number, peg in enumerate(fixture.pegs):
         numbers[peg.carrier].append(number)
@@ -278,8 +303,10 @@ def describe_carriers(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
     ]
 
 
-def describe_proof(proof: Proof) -> dict[str, Any]:
-    """Describe the proof of a search, with how many candidates are undecided and the first of them."""
+def describe_proof(proof: ProofReport) -> dict[str, Any]:
+    """Return the proof of a search as plain data:
+    the first :data:`MOST_UNDECIDED` undecided candidates, and their number.
+    """
     entry = make_proof_entry(proof)
     return {
         **entry,
@@ -289,6 +316,7 @@ def describe_proof(proof: Proof) -> dict[str, Any]:
 
 
 def describe_explanation(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
+    """Return an explanation of why there is no fixture as plain data."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,

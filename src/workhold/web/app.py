@@ -15,14 +15,14 @@ from starlette.responses import JSONResponse, Response
 from workhold.errors import InputError
 from workhold.version import __version__
 from workhold.web import fixture_routes, job_routes, part_routes
-from workhold.web.answers import place_in
+from workhold.web.answers import find_first_place
 from workhold.web.description import describe_app
-from workhold.web.guard import BASES, Guard, Hosts, ServerLimits
+from workhold.web.guard import BASES, AllowedHosts, Guard, ServerLimits
 from workhold.web.jobs import TooManyError
-from workhold.web.origins import Origins
+from workhold.web.origins import AllowedOrigins
 from workhold.web.pool import BusyError, FailedError, StoppedError
 from workhold.web.request_forms import explain_request_error
-from workhold.web.state import ServerState, state_of
+from workhold.web.state import ServerState, get_state
 
 __all__ = ["create_app"]
 
@@ -42,15 +42,15 @@ SENTENCES = {
 
 def create_app(
     limits: ServerLimits | None = None,
-    hosts: Hosts | None = None,
+    hosts: AllowedHosts | None = None,
     token: str | None = None,
-    origins: Origins | None = None,
+    origins: AllowedOrigins | None = None,
 ) -> FastAPI:
-    """Make the application.
+    """Return the application.
 
     Parameters
     ----------
-    limits : how much it gives.
+    limits : sizes, counts, times and memory that the server allows.
     hosts : names it may be called by; only those of this machine by default.
     token : a secret that every request must bring, or None.
     origins : of other sites' pages that may use it; none by default.
@@ -59,6 +59,7 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        """Run the workers while the application runs."""
         app.state.server = ServerState(limits)
         async with app.state.server.open():
             yield
@@ -79,37 +80,39 @@ def create_app(
     for base in BASES:
         for room in (part_routes, job_routes, fixture_routes):
             app.include_router(room.router, prefix=base, include_in_schema=base == VERSIONED)
-        app.add_api_route(f"{base}/openapi.json", openapi, include_in_schema=False)
-    app.add_api_route("/", page, methods=["GET", "HEAD"], include_in_schema=False)
-    app.add_api_route("/method", method_page, methods=["GET", "HEAD"], include_in_schema=False)
-    app.add_api_route("/static/{path:path}", static_file, methods=["GET", "HEAD"], include_in_schema=False)
+        app.add_api_route(f"{base}/openapi.json", send_description, include_in_schema=False)
+    app.add_api_route("/", send_page, methods=["GET", "HEAD"], include_in_schema=False)
+    app.add_api_route("/method", redirect_to_method_page, methods=["GET", "HEAD"], include_in_schema=False)
+    app.add_api_route(
+        "/static/{path:path}", send_static_file, methods=["GET", "HEAD"], include_in_schema=False
+    )
     add_error_handlers(app)
     app.add_middleware(
-        Guard, hosts=hosts or Hosts(), limits=limits, token=token, origins=origins or Origins()
+        Guard, hosts=hosts or AllowedHosts(), limits=limits, token=token, origins=origins or AllowedOrigins()
     )
     app.openapi = lambda: describe_app(app)  # type: ignore[method-assign]
     return app
 
 
-async def openapi(request: Request) -> dict[str, Any]:
-    """Send the description of the interface."""
+async def send_description(request: Request) -> dict[str, Any]:
+    """Return the description of the interface."""
     server: FastAPI = request.app
     return server.openapi()
 
 
-async def page(request: Request) -> Response:
-    """Send the page."""
-    return await static_file(request, "index.html")
+async def send_page(request: Request) -> Response:
+    """Return the page."""
+    return await send_static_file(request, "index.html")
 
 
-async def method_page(request: Request) -> Response:
-    """Lead to the page that explains the method."""
+async def redirect_to_method_page(request: Request) -> Response:
+    """Return a redirect to the page that explains the method."""
     return Response(status_code=307, headers={"Location": "static/method/index.html"})
 
 
-async def static_file(request: Request, path: str) -> Response:
-    """Send a file of the page."""
-    file = state_of(request).files.get(path)
+async def send_static_file(request: Request, path: str) -> Response:
+    """Return a file of the page, 304 where the client has it, 404 where there is none."""
+    file = get_state(request).files.get(path)
     if file is None:
         raise HTTPException(404, "There is no such page.")
     headers = {"ETag": file.tag, "Cache-Control": "no-cache", "Content-Type": file.type}
@@ -119,17 +122,20 @@ async def static_file(request: Request, path: str) -> Response:
 
 
 def make_error_response(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
+    """Return an error as JSON: the sentence, and for status 400 the place in the drawing that it names."""
     more = {"Retry-After": "1"} if status in (429, 503) else {}
     if status in (408, 413):
         more["Connection"] = "close"
-    place = place_in(sentence) if status == 400 else None
+    place = find_first_place(sentence) if status == 400 else None
     return JSONResponse({"error": sentence, "place": place}, status, {**more, **(headers or {})})
 
 
 def add_error_handlers(app: FastAPI) -> None:
-    """Answer every error with a status and one sentence."""
+    """Make the application answer every error with a status and one sentence."""
 
     def on(error_class: type[Exception], status: int) -> None:
+        """Answer errors of a class with a status and their own sentence."""
+
         async def handler(request: Request, error: Exception) -> Response:
             return make_error_response(status, str(error) or "The search was stopped.")
 
@@ -142,18 +148,22 @@ def add_error_handlers(app: FastAPI) -> None:
     on(StoppedError, 409)
 
     async def refused(request: Request, error: Exception) -> Response:
+        """Return 400 with what pydantic finds wrong first."""
         assert isinstance(error, RequestValidationError)
         return make_error_response(400, explain_request_error(dict(error.errors()[0])))
 
     async def plain(request: Request, error: Exception) -> Response:
+        """Return the status of an HTTPException with its sentence."""
         assert isinstance(error, HTTPException)
         sentence = SENTENCES.get(str(error.detail), str(error.detail))
         return make_error_response(error.status_code, sentence, dict(error.headers or {}))
 
     async def left(request: Request, error: Exception) -> Response:
+        """Return 400 for a request that ended early."""
         return make_error_response(400, "The request ended before it was complete.")
 
     async def fault(request: Request, error: Exception) -> Response:
+        """Return 500 for an error that nothing else handles."""
         return make_error_response(500, "The program has a mistake, which is not yours; please report it.")
 
     app.add_exception_handler(RequestValidationError, refused)

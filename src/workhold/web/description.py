@@ -42,7 +42,7 @@ FAMILY_NAME = "c3Rk8tWq5bXo1nZ7yVh0Pw"
 
 
 def describe_app(app: FastAPI) -> dict[str, Any]:
-    """Make the description, once."""
+    """Return the OpenAPI description of the application, made at the first call and kept there."""
     if app.openapi_schema is None:
         schema = get_openapi(
             title=app.title,
@@ -69,6 +69,7 @@ def describe_app(app: FastAPI) -> dict[str, Any]:
 
 
 def add_example(operation: dict[str, Any], example: ApiExample) -> None:
+    """Add an example's parameters, body and answer to an operation of a description, in place."""
     for parameter in operation.get("parameters", ()):
         given = example.headers if parameter["in"] == "header" else {**example.path, **example.query}
         if parameter["name"] in given:

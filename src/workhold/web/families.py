@@ -19,13 +19,13 @@ from workhold.presenting.data import convert_finite
 from workhold.web.forms import HeldIn, ToleranceForm
 from workhold.web.request_forms import LARGEST, Form, Name, WorkpieceForm
 from workhold.web.searching import AskedQueries
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
 if TYPE_CHECKING:
     from workhold.family.family import Family
-    from workhold.family.plan import Plan
+    from workhold.family.plan import FamilyPlan
 
-__all__ = ["PAPERS", "FamilyForm", "FamilyFound", "FamilyPaper", "find_family", "make_family_paper"]
+__all__ = ["PAPERS", "FamilyForm", "FoundFamily", "FamilyPaper", "find_family", "make_family_paper"]
 
 MOST_PARTS = 50
 OF_FAMILY = list_declarations(SearchQuestion, [RULING_OUT])
@@ -52,7 +52,7 @@ class FamilyForm(Form):
     tolerance: ToleranceForm | None = None
 
     def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """Return the query of each part, and what the part is called; refuse where the solver is not installed."""
+        """Return (name, query) of each part in order; raise InputError where the solver is not installed."""
         from workhold.family.members import RANKINGS
         from workhold.family.solver import load_solver
 
@@ -67,7 +67,7 @@ class FamilyForm(Form):
 
 
 @frozen(eq=False)
-class FamilyFound:
+class FoundFamily:
     """A family with its plans, and no more of its members' fixtures than those need.
 
     Parameters
@@ -78,10 +78,11 @@ class FamilyFound:
     """
 
     family: Family
-    plans: tuple[Plan, ...]
+    plans: tuple[FamilyPlan, ...]
     text: str
 
     def answer(self) -> dict[str, Any]:
+        """Return the curve as plain data: its points, the parts, and those left out with reasons."""
         family = self.family
         points = []
         for plan in self.plans:
@@ -104,24 +105,26 @@ class FamilyFound:
             "points": points,
         }
 
-    def choose_plan(self, setups: int | None) -> Plan:
-        """Return the plan with at most ``setups`` set-ups; None asks for the fewest."""
+    def choose_plan(self, setups: int | None) -> FamilyPlan:
+        """Return the plan with the most set-ups up to ``setups``,
+        the one with the fewest for None; InputError if there is none.
+        """
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
             raise InputError("there is no plan with so few set-ups: ask for more.")
         return fitting[0 if setups is None else -1]
 
 
-def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
-    """Find a family; reports are ("progress", fraction, found)."""
-    from workhold.family.family import Asked, make_family, write_family_json
+def find_family(payload: AskedQueries, order: TaskContext) -> FoundFamily:
+    """Return the family of the queries' parts; it reports ("progress", fraction, found)."""
+    from workhold.family.family import MemberRequest, make_family, write_family_json
 
     def progress(fraction: float, found: int) -> None:
         order.report(("progress", fraction, found))
 
     queries = payload.queries
     names = number_repeated_names([name for name, _ in queries])
-    asked = [Asked(name, query) for name, (_, query) in zip(names, queries, strict=True)]
+    asked = [MemberRequest(name, query) for name, (_, query) in zip(names, queries, strict=True)]
     family = make_family(asked, seconds=PROOF * order.seconds, progress=progress)
     text, plans = write_family_json(family), family.plans
     small = {
@@ -147,11 +150,11 @@ def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
         )
         for plan in plans
     )
-    return FamilyFound(evolve(family, members=tuple(small.values()), table=None), slim, text)
+    return FoundFamily(evolve(family, members=tuple(small.values()), table=None), slim, text)
 
 
 def number_repeated_names(names: list[str]) -> list[str]:
-    """Number the names that are repeated, so that no two are the same.
+    """Return the names in order, with " (2)", " (3)" … behind those that occurred before.
 
     >>> number_repeated_names(["a", "b", "a"])
     ['a', 'b', 'a (2)']
@@ -167,13 +170,14 @@ class FamilyPaper:
     """An order of one of :data:`PAPERS`: the plan of at most so many set-ups, in a unit, of a day."""
 
     kind: str
-    found: FamilyFound
+    found: FoundFamily
     setups: int | None
     unit: str
     day: date
 
 
-def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
+def make_family_paper(payload: FamilyPaper, order: TaskContext) -> bytes:
+    """Return the bytes of one of :data:`PAPERS`."""
     from workhold.family.pages import draw_curve, draw_setups
     from workhold.presenting.papers import make_pages_file
     from workhold.units import find_unit

@@ -20,7 +20,7 @@ from workhold.limits import MOST_LENGTH
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.presenting.zoomed_picture import draw_small
-from workhold.seating.clamping import ByHand
+from workhold.seating.clamping import HandLoading
 from workhold.units import Unit, find_unit
 from workhold.web.answers import USUAL_SIZE, describe_fixture
 from workhold.web.fixture_tasks import (
@@ -44,7 +44,7 @@ from workhold.web.request_forms import (
     SupportsForm,
     read_form_in_address,
 )
-from workhold.web.state import CheckedRoute, run_at_desk, run_at_desk_while_connected, state_of
+from workhold.web.state import CheckedRoute, get_state, run_at_desk, run_at_desk_while_connected
 from workhold.web.support_tasks import SupportsOrder
 
 __all__ = ["router"]
@@ -99,13 +99,16 @@ class PaperForm(AddressForm):
 
 
 def convert_field_to_mm(row: Declaration, value: Any, unit: Unit) -> Any:
+    """Return the value of a sheet's field in mm,
+    where it is a length or a place; any other value unchanged.
+    """
     if row.form == "length" and value is not None:
         return unit.to_mm(value)
     return tuple(map(unit.to_mm, value)) if row.form == "place" and value is not None else value
 
 
 def find_ranked_fixture(result: Result, rank: int) -> int:
-    """Return the index of a fixture; answers 404 when there is none of that rank."""
+    """Return the index, rank - 1, of a fixture; answer 404 where the result lists fewer."""
     if rank > len(result):
         raise HTTPException(404, f"There is no fixture {rank}: {len(result)} are listed.")
     return rank - 1
@@ -114,15 +117,18 @@ def find_ranked_fixture(result: Result, rank: int) -> int:
 # Before what takes any last word for a paper.
 async def find_seating(
     request: Request, name: str, rank: int, revision: int | None
-) -> tuple[Held, Seating | ByHand]:
-    """Find the seating of a fixture, or how it is put into two clamps, once, and keep it with the job."""
+) -> tuple[Held, Seating | HandLoading]:
+    """Return the fixture with part and toolkit, and its seating, or for two clamps how it is put in by hand.
+
+    It is found once and kept with the job.
+    """
     job = find_job(request, name)
     result = get_job_result(job, revision)
     held = result[find_ranked_fixture(result, rank)], result.workpiece, result.toolkit
     key = (job.revision, rank)
     if key not in job.seatings:
         # On a first run kernels are compiled for it, which takes as long as a search may.
-        found = await run_at_desk(request, "seating", held, state_of(request).limits.seconds)
+        found = await run_at_desk(request, "seating", held, get_state(request).limits.seconds)
         job.keep_seating(key, found)
         return held, found
     return held, job.seatings[key]
@@ -132,7 +138,9 @@ async def find_seating(
 async def seating(
     request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
 ) -> dict[str, Any]:
-    """How wide open the part is still caught, every other seat of the same pegs, and both in sentences."""
+    """Return how wide open the part still settles in its place,
+    and all seats of the same pegs, also in sentences.
+    """
     held, found = await find_seating(request, name, rank, revision)
     return {"rank": rank, **describe_seating(held, found, unit)}
 
@@ -141,14 +149,15 @@ async def seating(
 async def closing(
     request: Request, name: str, rank: Rank, form: ClosingForm, revision: Revision = None
 ) -> dict[str, Any] | None:
-    """The frictionless way of part and jaws: turn in degrees, x and y of the pose and the opening in mm.
+    """Return the path of part and jaws as they close without friction:
+    degrees, x and y of the pose, opening; in mm.
 
     The opening is counted from where the jaws hold the part. The ending is one of ``right``, ``same place``,
     ``wrong``, ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs
     up.
     """
     held, found = await find_seating(request, name, rank, revision)
-    if isinstance(found, ByHand):
+    if isinstance(found, HandLoading):
         raise InputError(
             "with two clamps no closing can be shown: you push the part against its locators by hand."
         )
@@ -166,11 +175,12 @@ async def fixture(
     height: Across = USUAL_SIZE[1],
     revision: Revision = None,
 ) -> dict[str, Any]:
-    """The row of a fixture, with its geometry in mm in the vise frame and a picture of the size asked for.
+    """Return the row of a fixture, its geometry in mm in the vise's frame,
+    and a picture of the size asked for.
 
-    With a program ``passing`` is the move that comes nearest to what holds the part, with line, tool, and
-    distance in mm. Its path is that of the tool's axis there, in the part's coordinates. With cutting forces
-    ``program_forces`` says which force they ask for, and what of which line does.
+    With a program, ``passing`` is the move that comes nearest to what holds the part, with line, tool and
+    distance in mm; its path is that of the tool's axis, in the part's coordinates. With cutting forces,
+    ``program_forces`` has the force that they ask for and the line that asks for most.
     """
     result = get_job_result(find_job(request, name), revision)
     index = find_ranked_fixture(result, rank)
@@ -188,9 +198,9 @@ CHANGED: dict[int | str, dict[str, Any]] = {204: {"description": "The list has c
     "/small.svg", summary="A small picture to choose a fixture by", response_class=Response, responses=CHANGED
 )
 async def small(request: Request, name: str, rank: Rank, revision: Revision = None) -> Response:
-    """The part as it lies, with the faces that are touched, and the pegs.
+    """Return an SVG picture of the part as it lies, with the faces that are touched, and the pegs.
 
-    There is no picture (204) when the list is of another revision by now.
+    There is no picture (204) when the list has another revision by now.
     """
     job = find_job(request, name)
     if revision is not None and revision != job.revision:
@@ -205,7 +215,9 @@ async def small(request: Request, name: str, rank: Rank, revision: Revision = No
 async def loads(
     request: Request, name: str, rank: Rank, form: LoadsForm, revision: Revision = None
 ) -> dict[str, Any]:
-    """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
+    """Return peg forces in N at the worst point and direction of each load,
+    and the jaw force that is needed.
+    """
     result = get_job_result(find_job(request, name), revision)
     chosen = result[find_ranked_fixture(result, rank)]
     cases = await run_at_desk(request, "loads", (chosen, result.workpiece, result.toolkit, form))
@@ -216,7 +228,8 @@ async def loads(
 async def supports(
     request: Request, name: str, rank: Rank, form: SupportsForm, revision: Revision = None
 ) -> dict[str, Any]:
-    """The best sets of three supports, with the clamp's best point, its force in N and the tipping arm in mm.
+    """Return the best sets of three supports, with the clamp's best point,
+    its force in N and the tipping arm in mm.
 
     The search for them stops when the client hangs up.
     """
@@ -236,11 +249,13 @@ async def warnings(
     loads: Loads = None,
     revision: Revision = None,
 ) -> dict[str, Any]:
-    """The sentences of the setup sheet of a fixture, under its search's loads or those given as JSON."""
+    """Return the warnings of the fixture's setup sheet,
+    under the loads of its search or those given as JSON.
+    """
     result = get_job_result(find_job(request, name), revision)
     index = find_ranked_fixture(result, rank)
     others = result.table.count_in_same_holes(index)
-    small = result.part(slice(index, index + 1))
+    small = result.slice_rows(slice(index, index + 1))
     asked = {
         "unit": find_unit(unit),
         "jaw_force": jaw_force,
@@ -252,7 +267,9 @@ async def warnings(
 
 
 def make_set_up_before(request: Request, form: FirstSideForm | None) -> Before | None:
-    """Return the set-up of the other side before a paper's, and what it cuts; None where there is none."""
+    """Return query and fixture of the set-up of the other side,
+    with the faces it cuts as faces to avoid; None for None.
+    """
     if form is None:
         return None
     result = get_job_result(find_job(request, form.job))
@@ -271,9 +288,9 @@ async def paper(
     ],
     asked: Annotated[PaperForm, Query()],
 ) -> Response:
-    """A paper of a fixture; all but pictures and bodies wait for the search to be over.
+    """Return a paper of a fixture; all but pictures and bodies are ready only when the search is over.
 
-    Lengths are in the unit asked for, loads JSON as in a search, and the date is today's if not given.
+    Lengths are in the unit asked for, loads are JSON as in a search, and the date is today's if not given.
     """
     job = find_job(request, name)
     result = get_job_result(job, asked.revision, when_over=kind not in AT_ONCE)
@@ -283,7 +300,7 @@ async def paper(
     order = PaperOrder(
         kind,
         # Only a sheet names the other fixtures.
-        result if kind.startswith("sheet") else result.part(slice(rank - 1, rank)),
+        result if kind.startswith("sheet") else result.slice_rows(slice(rank - 1, rank)),
         rank,
         len(result),
         asked.to_sheet_question(),

@@ -30,12 +30,12 @@ from workhold.model.seating import Seating
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import convert_finite
-from workhold.seating.clamping import ByHand, by_hand
+from workhold.seating.clamping import HandLoading, plan_hand_loading
 from workhold.seating.pattern import Pattern
 from workhold.units import Unit, find_unit
 from workhold.web.request_forms import LARGEST, ChosenSupportsForm, Form, Number
 from workhold.web.support_tasks import SupportsOrder, choose_supports
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
@@ -66,7 +66,7 @@ OF_BODIES = ("setup.step", "assembly.glb")
 
 @frozen(eq=False)
 class PaperOrder:
-    """What to make of which fixture.
+    """An order of a paper of a fixture.
 
     Parameters
     ----------
@@ -96,16 +96,17 @@ class PaperOrder:
 
     @property
     def index(self) -> int:
-        """The place of the fixture in the result that is sent."""
+        """Index of the fixture in ``result``."""
         return self.rank - 1 if len(self.result) == self.count else 0
 
     @property
     def fixture(self) -> Fixture:
+        """The fixture."""
         return self.result[self.index]
 
     def find_chosen_supports(self) -> ChosenSupports | None:
-        """Find the supports asked for and choose a set of them; None where none are asked for, or none hold
-        the part.
+        """Return the chosen set of the supports asked for;
+        None where none are asked for, or none hold the part.
         """
         if self.supports is None:
             return None
@@ -114,21 +115,22 @@ class PaperOrder:
 
 
 def has_step() -> bool:
-    """Return whether STEP files can be read and written."""
+    """Return whether STEP files can be read and written: whether OCP is installed."""
     return find_spec("OCP") is not None
 
 
-def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
-    """Make the bytes of what was ordered, and the hash of the result's file if it was needed."""
+def make_paper(payload: PaperOrder, order: TaskContext) -> tuple[bytes, str | None]:
+    """Return the bytes of what was ordered, and the hash of the result's file if it was needed, else None."""
     return KINDS[payload.kind][1](payload)
 
 
 def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
+    """Return a setup sheet and the hash of the result's file."""
     from workhold.drawing.sheet import draw_setup_sheet
-    from workhold.model.first_side import first_side
+    from workhold.model.first_side import compare_with_first_side
     from workhold.presenting.papers import make_pages_file
 
-    digest = order.result_hash or hash_of(order.result)
+    digest = order.result_hash or compute_hash(order.result)
     asked: dict[str, Any] = collect_declared_values(order.question) | {
         "loads": order.loads,
         "unit": order.unit,
@@ -137,7 +139,7 @@ def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
     if chosen is not None:
         asked |= {"supports": chosen, "thickness": chosen.supports.request.thickness}
     if order.before is not None:
-        asked["first_side"] = first_side(order.fixture, order.result.query, *order.before)
+        asked["first_side"] = compare_with_first_side(order.fixture, order.result.query, *order.before)
     if order.question.material is not None:
         from workhold.presenting.bent import bend_sheet
 
@@ -147,7 +149,8 @@ def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
     return make_pages_file(pages, Path(order.kind).suffix, order.question.day), digest
 
 
-def hash_of(result: Result) -> str:
+def compute_hash(result: Result) -> str:
+    """Return the SHA-256, in hexadecimal, of the file that the result would be saved in."""
     from workhold.files.result.writer import write_result_text
 
     digest = sha256()
@@ -157,6 +160,7 @@ def hash_of(result: Result) -> str:
 
 
 def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
+    """Return a set-up for CAM or a list of pins, and None."""
     from workhold.presenting.papers import make_model_file
 
     ending = Path(order.kind).suffix
@@ -177,6 +181,7 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def make_picture_file(order: PaperOrder) -> tuple[bytes, str | None]:
+    """Return a picture of the fixture as SVG, and None."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import make_planned_path
     from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes
@@ -194,6 +199,7 @@ def make_picture_file(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
+    """Return the fixture as a GLB file, and None."""
     from workhold.presenting.assembly import Assembly
 
     chosen = order.find_chosen_supports()
@@ -201,11 +207,11 @@ def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
     lengths = {name: getattr(order.question, name) for name in names}
     assembly = Assembly.from_fixture(order.fixture, order.result, lengths, chosen, order.shape)
     if order.question.material is not None and chosen is None:
-        from workhold.presenting.bent import bend_sheet, bent_glb
+        from workhold.presenting.bent import bend_sheet, make_bent_glb
 
         bending = bend_sheet(order.fixture, collect_declared_values(order.question), order.shape)
         assert bending is not None
-        return bent_glb(order.fixture, bending), None
+        return make_bent_glb(order.fixture, bending), None
     return assembly.make_file_content(".glb"), None
 
 
@@ -242,7 +248,7 @@ class ClosingForm(Form):
 
 @frozen(eq=False)
 class ClosingOrder:
-    """What to close from where.
+    """An order to simulate a closing.
 
     Parameters
     ----------
@@ -257,66 +263,74 @@ class ClosingOrder:
 
 
 def make_seating_sentences(held: Held, seating: Seating, unit: str) -> SeatingSentences:
+    """Return what writes sentences about a seating, with lengths in a unit."""
     return SeatingSentences(seating, held[0], held[2], make_length_unit(held, unit))
 
 
 def make_length_unit(held: Held, unit: str) -> LengthUnit:
+    """Return the unit of lengths by name, with decimals that suit the toolkit's pitch."""
     return LengthUnit.from_typical_length(
         find_unit(unit), min(min(carrier.pitch) for carrier in held[2].carriers)
     )
 
 
-def find_seating(held: Held, order: Order) -> Seating | ByHand:
-    """Find the seating of a fixture where the result has none; with two clamps how the part is put in."""
-    from workhold.seating.solver import Solver
+def find_seating(held: Held, order: TaskContext) -> Seating | HandLoading:
+    """Return the seating of a fixture, that of the result or worked out now;
+    for two clamps how the part is put in by hand.
+    """
+    from workhold.seating.solver import SeatingSolver
 
     fixture, workpiece, toolkit = held
     if not toolkit.closes_at_once:
-        return by_hand(fixture, workpiece, toolkit)
-    seating: Seating = fixture.seating or Solver(workpiece, toolkit).of(fixture)
+        return plan_hand_loading(fixture, workpiece, toolkit)
+    seating: Seating = fixture.seating or SeatingSolver(workpiece, toolkit).solve(fixture)
     return seating
 
 
-def describe_seating(held: Held, seating: Seating | ByHand, unit: str) -> dict[str, Any]:
-    """Describe a seating by the fields of a result file and their meaning; with two clamps by ``by_hand``
-    alone.
+def describe_seating(held: Held, seating: Seating | HandLoading, unit: str) -> dict[str, Any]:
+    """Return a seating as plain data: a result file's fields and what they mean;
+    for two clamps ``by_hand`` only.
 
-    ``own`` is the place of the fixture's own seat in ``seats``. ``nearest`` are the places of the wrong ones
-    that the jaws open to, by how close they read to it. ``clamping`` is 1 where ``jaw_separation`` falls
-    while the part is clamped, -1 where it rises. ``widest`` is how far in mm the jaws open beyond where they
-    hold the part, and ``done`` is a word for opened. ``captions`` are lines for each seat.
+    ``own`` is the index in ``seats`` of the fixture's own seat. ``nearest`` are the indices of the wrong
+    seats that can be reached, by how close their readings are to its own. ``clamping`` is 1 where
+    ``jaw_separation`` falls while the part is clamped, -1 where it rises. ``widest`` is how far in mm the
+    jaws open beyond where they hold the part, and ``done`` a word for opened. ``captions`` are lines of text
+    for each seat.
     """
-    if isinstance(seating, ByHand):
-        return {"by_hand": seating.as_fields(make_length_unit(held, unit).format_length)}
+    if isinstance(seating, HandLoading):
+        return {"by_hand": seating.to_fields(make_length_unit(held, unit).format_length)}
     words, seats = make_seating_sentences(held, seating, unit), list(seating.seats)
     travel = words.gauge.carrier.travel
     assert travel is not None
     # Of what clamps by opening, pegs that meet are the end.
     end = travel.most if seating.clamping > 0 and travel.most is not None else inf
-    widest = min(Pattern.of(held[0], held[2]).widest, end) - seating.clamping * held[0].travel
+    widest = min(Pattern.from_fixture(held[0], held[2]).widest, end) - seating.clamping * held[0].travel
     return {
-        **seating.as_fields(),
+        **seating.to_fields(),
         "own": seats.index(words.own),
         "nearest": [seats.index(seat) for seat in words.wrong],
         "clamping": seating.clamping,
         "widest": convert_finite(widest),
-        "done": words.gauge.ways.done,
+        "done": words.gauge.opening_words.done,
         "captions": [write_caption(words, seat) for seat in seats],
         "steps": words.list_steps(held[1]),
         "words": words.describe_wrong_seats(),
     }
 
 
-def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
-    """Simulate a closing: its way, its ending and what is read then; None once it was cancelled."""
+def close(payload: ClosingOrder, order: TaskContext) -> dict[str, Any] | None:
+    """Return the path, the ending and the words of a simulated closing; None once it was cancelled.
+
+    "way" has rows [degrees, x, y, opening] in mm; "seat" is an index in the seating's seats, or None.
+    """
     from workhold.seating.closing_simulation import simulate_closing
-    from workhold.seating.solver import Solver
+    from workhold.seating.solver import SeatingSolver
 
     form, seating = payload.form, payload.seating
     fixture, workpiece, toolkit = payload.held
     pose = Pose(form.theta_deg, form.x, form.y)
     closed = simulate_closing(
-        Solver(workpiece, toolkit),
+        SeatingSolver(workpiece, toolkit),
         fixture,
         seating.seats,
         pose,

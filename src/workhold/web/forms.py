@@ -66,6 +66,7 @@ class ToolkitRequest(Form):
         kind: str
 
     def to_toolkit(self) -> Toolkit:
+        """Return the toolkit; raise InputError for fields that do not make one."""
         return make_toolkit(self.kind, self.model_dump(exclude={"kind", "title"}))
 
     def __reduce__(self) -> Any:
@@ -74,7 +75,9 @@ class ToolkitRequest(Form):
 
 
 def restore_form(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
-    """Return the form of a toolkit as another process had it."""
+    """Return the form of a toolkit with these fields, as pickle needs it;
+    ``is_named`` says that it has a title.
+    """
     forms = NAMED_FORMS if is_named else FORMS
     form: ToolkitRequest = forms[find_table(said["kind"]).noun](**said)
     return form
@@ -101,14 +104,16 @@ TYPES: Mapping[str, Any] = {
 
 
 def make_field_entry(row: ToolkitField) -> tuple[Any, Any]:
-    """Return the type and default of a field in a request."""
+    """Return the type and the default of a toolkit's field in a request."""
     return make_optional_entry(
         Annotated[int, Field(ge=1, le=row.most)] if row.form == "count" else TYPES[row.form], row
     )
 
 
 def make_kind_entry(kinds: tuple[str, ...]) -> tuple[Any, Any]:
-    """Return the type and default of the kind; where it is the usual one it may be left out or be an alias."""
+    """Return the type and the default of the field "kind";
+    where the usual kind is among ``kinds`` it may be left out.
+    """
     return (Name, USUAL) if USUAL in kinds else (Literal[kinds], ...)
 
 
@@ -178,10 +183,10 @@ SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS
 
 
 def read_loads_in_address(text: str | None) -> tuple[Load, ...] | None:
-    """Return the loads of an address, JSON as in a search; None where none are given."""
+    """Return the loads that an address gives as JSON; None for None."""
     if text is None:
         return None
-    return tuple(form.load() for form in parse_from_address(SeveralLoads, "loads", text))
+    return tuple(form.to_load() for form in parse_from_address(SeveralLoads, "loads", text))
 
 
 @add_declared_fields(OF_SEARCHES, LARGEST)
@@ -202,7 +207,10 @@ class SearchForm(Form):
     )
 
     def to_query(self, toolkit: Toolkit, most_segments: int) -> Query:
-        loads = tuple(form.load() for form in self.loads)
+        """Return the query for a toolkit;
+        raise InputError for a part of more segments, and for what cannot be asked.
+        """
+        loads = tuple(form.to_load() for form in self.loads)
         workpiece = self.workpiece.to_workpiece(most_segments)
         program, height = (None, None) if self.program is None else self.program.to_program(workpiece.solid)
         is_loaded = bool(loads) or (program is not None and program.forces is not None)
@@ -232,7 +240,7 @@ class JobForm(SearchForm):
     every: bool = Field(default=False, description="find all fixtures, even where there are over 200,000")
 
     def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """Return the query, which has no name."""
+        """Return one pair of "" and the query."""
         query = self.to_query(self.toolkit.to_toolkit(), most_segments)
         return (("", evolve(query, **collect_given_values(self, OF_ONE))),)
 
@@ -243,7 +251,7 @@ class ExploreForm(SearchForm):
     toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 
     def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """Return the queries, one for each toolkit, and what the toolkits are called."""
+        """Return (name of the toolkit, query) for each toolkit, all presets where none are given."""
         from workhold.files.toolkit_file import list_preset_names, load_preset
 
         if self.toolkits is not None:

@@ -19,9 +19,9 @@ from urllib.parse import parse_qs
 from attrs import define, field, frozen
 from starlette.exceptions import HTTPException
 
-from workhold.web.origins import Origins
+from workhold.web.origins import AllowedOrigins
 
-__all__ = ["BASES", "Guard", "Hosts", "ServerLimits", "compute_usual_memory"]
+__all__ = ["BASES", "Guard", "AllowedHosts", "ServerLimits", "compute_usual_memory"]
 
 # Memory of a search in bytes; the least with which one can work; and the share of the machine's that all
 # searches may take.
@@ -81,7 +81,7 @@ class ServerLimits:
 def compute_usual_memory(searches: int) -> int:
     """Return the bytes of address space for each of ``searches`` searches that run at the same time.
 
-    It is 4 GiB, or less where the machine has less.
+    It is 4 GiB or, where the machine has less for each, its share, but at least 1 GiB.
     """
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
@@ -116,7 +116,7 @@ COOKIE = "workhold-token"
 
 
 @define
-class Hosts:
+class AllowedHosts:
     """The names by which the server may be called; another name suggests that a foreign page leads here.
 
     Parameters
@@ -129,9 +129,10 @@ class Hosts:
     any_address: bool = False
 
     def knows(self, host: str) -> bool:
-        """Return whether a Host header is one of them.
+        """Return whether a Host header, port ignored, names this server:
+        a known name or, if allowed, any numeric address.
 
-        >>> Hosts().knows("localhost:8000"), Hosts().knows("evil.example"), Hosts().knows("[::1]:80")
+        >>> AllowedHosts().knows("localhost:8000"), AllowedHosts().knows("evil.example"), AllowedHosts().knows("[::1]:80")
         (True, False, True)
         """
         name = strip_port(host)
@@ -145,7 +146,7 @@ class Hosts:
 
 
 def strip_port(host: str) -> str:
-    """Return a host without its port, in small letters."""
+    """Return a host without its port and brackets, in small letters."""
     if host.startswith("["):
         return host[1:].partition("]")[0].lower()
     return host.partition(":")[0].lower()
@@ -165,14 +166,16 @@ class Guard:
     """
 
     app: App
-    hosts: Hosts
+    hosts: AllowedHosts
     limits: ServerLimits
     token: str | None = None
-    origins: Origins = field(factory=Origins)
+    origins: AllowedOrigins = field(factory=AllowedOrigins)
     arriving: Counter[str] = field(factory=Counter, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or passes it on to the application."""
+        """Answer a request that is refused,
+        and pass any other on to the application with limits on its body.
+        """
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -180,6 +183,7 @@ class Guard:
         is_api = scope["path"].startswith("/api/")
 
         async def send_guarded(message: Message) -> None:
+            """Send a message, adding the guard's headers to the start of a response."""
             if message["type"] == "http.response.start":
                 present = {name.lower() for name, _ in message["headers"]}
                 more = [(name, value) for name, value in HEADERS.items() if name not in present]
@@ -217,13 +221,15 @@ class Guard:
         self.arriving[client] += uploads
         try:
             most = self.limits.upload_bytes if uploads else self.limits.request_bytes
-            await self.app(scope, Body(receive, most, self.limits.body_seconds), send_guarded)
+            await self.app(scope, LimitedBody(receive, most, self.limits.body_seconds), send_guarded)
         finally:
             self.arriving[client] -= uploads
             self.arriving += Counter()
 
     def find_refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
-        """Return status and sentence for a request that is not let through."""
+        """Return status and sentence for a request that is refused by its headers;
+        None for one that is let through.
+        """
         host = headers.get("host", "")
         if not self.hosts.knows(host):
             return 400, "This server is not known by that name: use the address that it printed."
@@ -248,7 +254,7 @@ class Guard:
 
 
 def holds_token(token: str, headers: dict[str, str]) -> bool:
-    """Return whether the headers of a request hold the secret, as a cookie or as a bearer's token."""
+    """Return whether the headers of a request hold the token, in the cookie or as a bearer's."""
     cookies = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
     offered = [value for name, _, value in cookies if name == COOKIE]
     kind, _, value = headers.get("authorization", "").partition(" ")
@@ -258,7 +264,9 @@ def holds_token(token: str, headers: dict[str, str]) -> bool:
 
 
 async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
-    """Answer a request without the secret; if its address holds it, with a cookie and a redirect."""
+    """Answer a request without the token:
+    401, or a redirect that sets the cookie where the address holds the token.
+    """
     query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
     offered = query.get("token", [""])[0]
     if scope["method"] not in ("GET", "HEAD") or not compare_digest(offered.encode(), token.encode()):
@@ -275,7 +283,7 @@ async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
 
 
 @define
-class Body:
+class LimitedBody:
     """The body of a request, of which no more is taken than allowed.
 
     Parameters
@@ -293,9 +301,9 @@ class Body:
     end: float | None = None
 
     async def __call__(self) -> Message:
-        """Return the next piece; once all is there, what comes after it.
+        """Return the next message of the body or, once it is complete, the server's next message.
 
-        Raises HTTPException 413 for too much, 408 when it takes too long.
+        Raises HTTPException 413 for a body that is too large, and 408 for one that takes too long.
         """
         if self.is_whole:
             return await self.receive()
@@ -314,12 +322,13 @@ class Body:
 
 
 def explain_too_large(most: int) -> str:
+    """Return a sentence that says how many bytes a request may have."""
     size = f"{most / 1e6:g} MB" if most >= 100_000 else f"{most} bytes"
     return f"The request is larger than {size}: send a drawing of the part's outline only."
 
 
 async def answer(send: Send, status: int, sentence: str) -> None:
-    """Send an error in the form of the server's other errors."""
+    """Send an error as JSON, in the form that the application's errors have."""
     body = json.dumps({"error": sentence, "place": None}).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     if status in (408, 413):

@@ -15,16 +15,16 @@ from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.result import Result
-from workhold.model.seating import length
-from workhold.statics.judging import unfit as unfit_of
+from workhold.model.seating import round_length
+from workhold.statics.judging import are_unfit as unfit_of
 from workhold.web.answers import describe_explanation, describe_rows
 from workhold.web.description import JobAddress, JobAnswer
-from workhold.web.families import PAPERS, FamilyForm, FamilyFound, FamilyPaper
+from workhold.web.families import PAPERS, FamilyForm, FamilyPaper, FoundFamily
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.guard import BASES
 from workhold.web.jobs import ServerJob
-from workhold.web.selection import Selection, read_angle_range
-from workhold.web.state import CheckedRoute, ServerState, get_client_address, run_at_desk, state_of
+from workhold.web.selection import ListSelection, read_angle_range
+from workhold.web.state import CheckedRoute, ServerState, get_client_address, get_state, run_at_desk
 
 __all__ = ["make_attachment_header", "find_job", "get_job_result", "router"]
 
@@ -33,22 +33,22 @@ router = APIRouter(route_class=CheckedRoute)
 # Seconds between two events of a stream at least, and at most.
 PAUSE, SILENCE = 0.1, 15.0
 MOST_ROWS = 1_000
-EMPTY = FixtureTable.empty()
+EMPTY = FixtureTable.make_empty()
 
 
 def find_job(request: Request, name: str) -> ServerJob:
-    """Find the job of a name; answers 404 when there is none."""
-    job = state_of(request).jobs.get(name)
+    """Return the job of a name, and note that it was used; answer 404 where there is none."""
+    job = get_state(request).jobs.get(name)
     if job is None:
         raise HTTPException(404, "There is no such search (any more): search again.")
     return job
 
 
 def get_job_result(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
-    """Return the result of a job.
+    """Return the result of a search.
 
-    ``revision`` is the one that the caller has seen, None for any; ``when_over`` says whether only the whole
-    result will do. Answers 409 when there is nothing (yet), or the fixtures have changed.
+    ``revision`` is the one that the caller has seen, None for any; ``when_over`` refuses the result of a
+    search that still runs. Answers 409 where there is no result (yet) or the revision has changed.
     """
     if job.compares:
         raise HTTPException(409, "A comparison of toolkits has no fixtures: search in one of the toolkits.")
@@ -72,7 +72,8 @@ WhenLeft = Annotated[
 
 
 async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str) -> JSONResponse:
-    state = state_of(request)
+    """Begin the job that a form asks for; return its name and address with status 202."""
+    state = get_state(request)
     address = get_client_address(request)
     state.jobs.refuse_more(address)
     queries = await run_at_desk(request, "check_job", (form, state.limits.segments))
@@ -86,7 +87,7 @@ async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when
 
 
 def get_base_address(request: Request) -> str:
-    """Return the beginning of the addresses of the version that was asked."""
+    """Return "/api/v1" or "/api", whichever the request was sent to."""
     return next(base for base in BASES if request.scope["path"].startswith(f"{base}/"))
 
 
@@ -97,27 +98,27 @@ STATE_SO_FAR: dict[int | str, dict[str, Any]] = {202: {"model": JobAnswer}}
 
 @router.post("/jobs", status_code=202, summary="Search for every fixture", responses=BEGUN)
 async def submit(request: Request, form: JobForm, when_left: WhenLeft = "keep") -> Response:
-    """Begins the search; its state and fixtures are at the address in the answer."""
+    """Begin a search; its state and fixtures are at the address in the answer."""
     return await begin(request, form, when_left)
 
 
 @router.post("/explore", status_code=202, summary="Compare toolkits", responses=BEGUN)
 async def explore(request: Request, form: ExploreForm, when_left: WhenLeft = "keep") -> Response:
-    """Begins a comparison; the rows appear in the job's ``table``."""
+    """Begin a comparison of toolkits; its rows appear in the job's ``table``."""
     return await begin(request, form, when_left)
 
 
 @router.get("/jobs/{name}", summary="State of a job", responses=STATE)
 async def state(request: Request, name: str) -> dict[str, Any]:
-    """How far the job is, what it found, and what was asked for, without the text of a program."""
+    """Return the state of a job, what it has found, and what was asked for, without the text of a program."""
     job = find_job(request, name)
     return {**job.answer(), "request": job.request}
 
 
 @router.delete("/jobs/{name}", status_code=204, summary="Stop and forget a job")
 async def delete(request: Request, name: str) -> Response:
-    """Stops and forgets a job; one that does not exist is no error."""
-    state_of(request).jobs.delete(name)
+    """Stop a job and forget it; a name without a job is no error."""
+    get_state(request).jobs.delete(name)
     return Response(status_code=204)
 
 
@@ -128,9 +129,9 @@ async def delete(request: Request, name: str) -> Response:
     responses=STATE_SO_FAR,
 )
 async def cancel(request: Request, name: str) -> dict[str, Any]:
-    """Stops the job, whose state becomes ``cancelled`` within two seconds or so."""
+    """Stop a job, whose state becomes ``cancelled`` within about two seconds."""
     job = find_job(request, name)
-    state_of(request).jobs.cancel(job)
+    get_state(request).jobs.cancel(job)
     return job.answer()
 
 
@@ -152,13 +153,14 @@ async def events(
         str | None, Header(max_length=40, description="the ``id`` of the last event that the caller has seen")
     ] = None,
 ) -> Response:
-    """Server-sent events named ``state``, whose data is the state without the request, until the job ends.
+    """Return server-sent events named ``state``,
+    whose data is the state without the request, until the job ends.
 
-    Each has an ``id``. A caller who connects again with the last one in the header Last-Event-ID, as
-    browsers do by themselves, receives the state only if it has changed meanwhile. Every 15 seconds without
-    an event a comment is sent.
+    Each has an ``id``. A caller who connects again with the last one in the header Last-Event-ID, as browsers
+    do by themselves, receives the state only if it has changed meanwhile. A comment is sent after every 15
+    seconds without an event.
     """
-    server, job = state_of(request), find_job(request, name)
+    server, job = get_state(request), find_job(request, name)
     seen = read_seen_version(last_event_id)
     if job.is_over and seen == job.version:
         return Response(status_code=204)
@@ -166,11 +168,11 @@ async def events(
         raise HTTPException(
             503, "Too many streams of events are open: ask for the state now and then instead."
         )
-    return StreamingResponse(stream(server, job, seen), media_type="text/event-stream")
+    return StreamingResponse(yield_events(server, job, seen), media_type="text/event-stream")
 
 
 def read_seen_version(text: str | None) -> int | None:
-    """Read the version of a job in the id of an event; None for what was never one.
+    """Return the version of a job from the id of an event; None for anything that is no such id.
 
     >>> read_seen_version("12"), read_seen_version("-1"), read_seen_version(None)
     (12, None, None)
@@ -178,8 +180,10 @@ def read_seen_version(text: str | None) -> int | None:
     return int(text) if text is not None and text.isascii() and text.isdigit() else None
 
 
-async def stream(server: ServerState, job: ServerJob, sent: int | None) -> AsyncIterator[str]:
-    """Yield the events of a job, except the one that was sent before."""
+async def yield_events(server: ServerState, job: ServerJob, sent: int | None) -> AsyncIterator[str]:
+    """Yield the events of a job until it is over or the server closes,
+    skipping the version ``sent``, which the client has.
+    """
     watcher = asyncio.Event()
     job.watchers.add(watcher)
     server.streams += 1
@@ -218,9 +222,9 @@ async def fixtures(
     together: Annotated[bool, Query(description="list only the first of fixtures that are alike")] = False,
     unfit: Annotated[bool, Query(description="also fixtures that no workshop can use")] = True,
 ) -> dict[str, Any]:
-    """A page of the fixtures, even while the search runs; ranks count all, best first, from 1."""
+    """Return a page of the fixtures, even while the search runs; ranks count all fixtures, the best is 1."""
     job = find_job(request, name)
-    selection = Selection(
+    selection = ListSelection(
         sort, descending, type, face, None if angle is None else read_angle_range(angle), together, unfit
     )
     revision, result = job.revision, job.result
@@ -245,30 +249,32 @@ async def fixtures(
 
 
 def get_capture_range(result: Result, rank: int) -> dict[str, float | None] | None:
-    """Return from how far open in mm a fixture catches the part; None where that is not known.
+    """Return {"opening": capture opening in mm} of a fixture; None where its seating is not known.
 
-    The opening is null where the part never gets away.
+    The opening is None where the part is never lost, however far the jaws open.
     """
     if rank > len(result.seating):
         return None
-    return {"opening": length(result.seating[rank - 1].capture_opening)}
+    return {"opening": round_length(result.seating[rank - 1].capture_opening)}
 
 
 @router.get("/jobs/{name}/explanation", summary="Why there is no fixture")
 async def explanation(request: Request, name: str) -> dict[str, Any]:
-    """Why a search that is over found no fixture; this takes about as long as the search, and only once."""
+    """Return why a finished search found no fixture;
+    worked out once, which takes about as long as the search.
+    """
     job = find_job(request, name)
     result = get_job_result(job, when_over=True)
     if len(result) or not result.complete:
         raise HTTPException(
             409, "There is nothing to explain: fixtures were found, or the search was not complete."
         )
-    return describe_explanation(await state_of(request).jobs.explain(job), result.workpiece, result.toolkit)
+    return describe_explanation(await get_state(request).jobs.explain(job), result.workpiece, result.toolkit)
 
 
 @router.post("/jobs/{name}/resist", summary="The fixtures that resist loads best")
 async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]:
-    """The ten fixtures with the least load reaction, in N."""
+    """Return the ten fixtures with the least load reaction, in N."""
     job = find_job(request, name)
     result, revision = get_job_result(job), job.revision
     best = await run_at_desk(request, "resist", (result, form))
@@ -278,7 +284,7 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
 
 @router.get("/jobs/{name}/result.json", summary="The result file", response_class=Response)
 async def result_json(request: Request, name: str) -> Response:
-    """The file that ``workhold design --out`` would write."""
+    """Return the result file that ``workhold design --out`` would write."""
     from workhold.files.result.writer import write_result_text
 
     return download(find_job(request, name), write_result_text, "json", "application/json")
@@ -286,7 +292,7 @@ async def result_json(request: Request, name: str) -> Response:
 
 @router.get("/jobs/{name}/result.csv", summary="The fixtures as a table", response_class=Response)
 async def result_csv(request: Request, name: str) -> Response:
-    """Comma-separated values, one line for each fixture."""
+    """Return the fixtures as comma-separated values, one line each."""
     from workhold.files.result.fixture_text import write_result_csv
 
     return download(find_job(request, name), write_result_csv, "csv", "text/csv; charset=utf-8")
@@ -295,13 +301,14 @@ async def result_csv(request: Request, name: str) -> Response:
 def download(
     job: ServerJob, text: Callable[[Result], Iterator[str]], ending: str, content_type: str
 ) -> Response:
+    """Return a file of a finished search's result as a stream to be saved; ``text`` yields its parts."""
     result = get_job_result(job, when_over=True)
     headers = {"Content-Disposition": make_attachment_header(result.workpiece.name, ending)}
     return StreamingResponse(text(result), media_type=content_type, headers=headers)
 
 
 def make_attachment_header(name: str, ending: str) -> str:
-    """Make the header that names a file to save."""
+    """Return the Content-Disposition value with which a browser saves a file, its name reduced to ASCII."""
     plain = (
         "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".")
         or "part"
@@ -314,10 +321,9 @@ Setups = Annotated[
 ]
 
 
-def get_job_family(request: Request, name: str) -> FamilyFound:
-    """Return the family that a job has found.
-
-    Raises HTTPException 409 when it is of something else, or there is nothing (yet).
+def get_job_family(request: Request, name: str) -> FoundFamily:
+    """Return the family that a job has found;
+    answer 409 for another kind of job, and where there is none (yet).
     """
     job = find_job(request, name)
     if job.kind != "family":
@@ -332,13 +338,15 @@ def get_job_family(request: Request, name: str) -> FamilyFound:
     "/families", status_code=202, summary="Search for the set-ups that hold many parts", responses=BEGUN
 )
 async def submit_family(request: Request, form: FamilyForm, when_left: WhenLeft = "keep") -> Response:
-    """Begins the search; its state is at the address in the answer, and the curve below it at ``family``."""
+    """Begin a search for the set-ups of a family;
+    its state is at the address in the answer, its curve at ``family`` below.
+    """
     return await begin(request, form, when_left)
 
 
 @router.get("/jobs/{name}/family", summary="The curve of a family")
 async def family(request: Request, name: str) -> dict[str, Any]:
-    """The least worst loss for each number of set-ups, and the parts that nothing holds."""
+    """Return the least worst loss for each number of set-ups, and the parts that nothing holds."""
     return get_job_family(request, name).answer()
 
 
@@ -351,7 +359,7 @@ async def paper(
     unit: Literal["mm", "inch"] = "mm",
     day: Annotated[date | None, Query(alias="date")] = None,
 ) -> Response:
-    """The curve with a point marked, the sheets of its plan, or the family's file."""
+    """Return the curve with a point marked, the sheets of its plan, or the family's file."""
     found = get_job_family(request, name)
     if not found.plans and kind != "plans.json":
         raise HTTPException(409, "No pattern of pegs holds any of the parts.")

@@ -17,25 +17,25 @@ from typing import TYPE_CHECKING, Any
 from attrs import define, evolve, field
 
 from workhold.errors import InputError
-from workhold.listing.identity import Entries
+from workhold.listing.identity import ShownEntries
 from workhold.model.notes import BestOnly, Cut, KeptBest, Note, Stopped, ToolkitsLeft
 from workhold.model.result import Result
 from workhold.model.search_report import Explanation
 from workhold.model.seating import Seating
-from workhold.seating.clamping import ByHand
+from workhold.seating.clamping import HandLoading
 from workhold.web.answers import describe_proof
-from workhold.web.families import FamilyFound
+from workhold.web.families import FoundFamily
 from workhold.web.guard import ServerLimits
 from workhold.web.part_tasks import estimate_shape_size
-from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
-from workhold.web.searching import AskedQueries, Found
-from workhold.web.selection import Selection
+from workhold.web.pool import BusyError, FailedError, PoolTask, StoppedError, WorkerPool
+from workhold.web.searching import AskedQueries, SearchOutcome
+from workhold.web.selection import ListSelection
 from workhold.web.worker import return_memory
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
 
-__all__ = ["Jobs", "ServerJob", "TooManyError"]
+__all__ = ["JobRegistry", "ServerJob", "TooManyError"]
 
 # Bytes of a random name; nobody can guess 128 bits.
 NAME_BYTES = 16
@@ -94,24 +94,25 @@ class ServerJob:
     used: float = field(factory=monotonic)
     version: int = 0
     watchers: set[asyncio.Event] = field(factory=set)
-    orders: dict[tuple[int, Selection], Entries] = field(factory=dict)
+    orders: dict[tuple[int, ListSelection], ShownEntries] = field(factory=dict)
     result_hash: str | None = None
-    family: FamilyFound | None = None
-    seatings: dict[tuple[int, int], Seating | ByHand] = field(factory=dict)
+    family: FoundFamily | None = None
+    seatings: dict[tuple[int, int], Seating | HandLoading] = field(factory=dict)
     shape: PartShape | None = None
 
     @property
     def compares(self) -> bool:
+        """Whether the job compares toolkits."""
         return self.kind == "explore"
 
     @property
     def is_over(self) -> bool:
-        """Whether the job has ended, well or badly."""
+        """Whether the job has ended: done, failed or cancelled."""
         return self.state in OVER
 
     @property
     def size(self) -> int:
-        """About how many bytes the job keeps: request, shape, fixtures, and orders of the list."""
+        """Estimate of the bytes that the job keeps: request, shape, fixtures, and orders of the list."""
         kept = self.weight + estimate_shape_size(self.shape)
         kept += sum(found.index.nbytes + found.like.nbytes for found in self.orders.values())
         if self.result is None:
@@ -120,13 +121,13 @@ class ServerJob:
         return kept + sum(int(getattr(table, a.name).nbytes) for a in table.__attrs_attrs__)
 
     def wake_watchers(self) -> None:
-        """Wake those who watch the job."""
+        """Increase the version and wake all streams that follow the job."""
         self.version += 1
         for watcher in self.watchers:
             watcher.set()
 
     def answer(self) -> dict[str, Any]:
-        """Describe the job, without its request."""
+        """Return the state of the job as plain data, without its request."""
         result, over = self.result, self.is_over
         end = self.ended if self.ended is not None else monotonic()
         complete = self.state == "done" and (
@@ -154,14 +155,18 @@ class ServerJob:
             "table": list(self.table) if self.compares else None,
         }
 
-    def keep_seating(self, key: tuple[int, int], seating: Seating | ByHand) -> None:
-        """Keep the seating of a fixture, by revision and rank, and forget the oldest of too many."""
+    def keep_seating(self, key: tuple[int, int], seating: Seating | HandLoading) -> None:
+        """Keep the seating of a fixture under (revision, rank),
+        and forget the oldest where too many are kept.
+        """
         while len(self.seatings) >= SEATINGS_KEPT:
             self.seatings.pop(next(iter(self.seatings)))
         self.seatings[key] = seating
 
-    def choose_entries(self, selection: Selection, result: Result) -> Entries:
-        """Return the entries of the result that a selection chooses; the last few selections are kept."""
+    def choose_entries(self, selection: ListSelection, result: Result) -> ShownEntries:
+        """Return the entries of the result that a selection chooses;
+        those of the last few selections are cached.
+        """
         key = (self.revision, selection)
         if key not in self.orders:
             found = selection.choose_entries(result)
@@ -172,7 +177,7 @@ class ServerJob:
 
 
 @define(eq=False)
-class Jobs:
+class JobRegistry:
     """All jobs of a server.
 
     Parameters
@@ -181,22 +186,21 @@ class Jobs:
     limits : how much of everything.
     """
 
-    pool: Pool
+    pool: WorkerPool
     limits: ServerLimits
     by_name: dict[str, ServerJob] = field(factory=dict, init=False)
     freeing: asyncio.Task[None] | None = field(default=None, init=False)
 
     def get(self, name: str) -> ServerJob | None:
-        """Find a job by its name and note that it was used; None if it does not exist (any more)."""
+        """Return a job by its name, and note that it was used; None where there is none (any more)."""
         job = self.by_name.get(name)
         if job is not None:
             job.used = monotonic()
         return job
 
     def refuse_more(self, address: str) -> None:
-        """Refuse a further job.
-
-        Raises TooManyError when this address has too many that are not over, BusyError when too many wait.
+        """Raise TooManyError where an address has too many unfinished jobs,
+        BusyError where too many tasks wait.
         """
         running = sum(not job.is_over and job.address == address for job in self.by_name.values())
         if running >= self.limits.jobs:
@@ -214,7 +218,10 @@ class Jobs:
         sent_bytes: int = 0,
         stops_when_left: bool = False,
     ) -> ServerJob:
-        """Begin a job; ``sent_bytes`` is the length of its request."""
+        """Return a new job, begun in the background; ``sent_bytes`` is the length of its request.
+
+        Raises TooManyError or BusyError as :meth:`refuse_more`.
+        """
         self.refuse_more(address)
         weight = sent_bytes * BYTES_KEPT
         job = ServerJob(token_urlsafe(NAME_BYTES), request, asked, address, kind, weight, stops_when_left)
@@ -224,7 +231,7 @@ class Jobs:
         return job
 
     async def stop_when_left(self, job: ServerJob) -> None:
-        """Cancel a job once no client has asked for it or followed it for as long as the limits say."""
+        """Cancel a job once no client has asked for it or followed it for ``limits.left_seconds``."""
         while not job.is_over:
             away = 0.0 if job.watchers else monotonic() - job.used
             if away >= self.limits.left_seconds:
@@ -233,12 +240,13 @@ class Jobs:
             await asyncio.sleep(self.limits.left_seconds - away)
 
     def begin(self, job: ServerJob) -> None:
-        """Note that a worker has begun with a job."""
+        """Note that a worker has begun with a job, and wake its watchers."""
         job.began = monotonic()
         job.state = "running"
         job.wake_watchers()
 
     async def run(self, job: ServerJob) -> None:
+        """Run a job in the pool and keep its outcome or error; its watchers are woken at the end."""
         payload: Any = job.asked
         if job.kind == "design":
             payload = job.asked, self.limits.fixtures, bool(job.request.get("every", False))
@@ -255,9 +263,9 @@ class Jobs:
         leaving = asyncio.create_task(self.stop_when_left(job)) if job.stops_when_left else None
         try:
             outcome = await self.pool.run(job.task)
-            if isinstance(outcome, Found):
+            if isinstance(outcome, SearchOutcome):
                 self.keep(job, outcome)
-            elif isinstance(outcome, FamilyFound):
+            elif isinstance(outcome, FoundFamily):
                 job.family, job.fraction = outcome, 1.0
             elif len(job.table) < job.asked.count and not job.task.stop.is_set():
                 job.notes = (ToolkitsLeft(self.limits.seconds),)
@@ -278,7 +286,8 @@ class Jobs:
         job.wake_watchers()
         self.make_room()
 
-    def keep(self, job: ServerJob, found: Found) -> None:
+    def keep(self, job: ServerJob, found: SearchOutcome) -> None:
+        """Keep the outcome of a search in its job, with the notes that the server adds."""
         result, notes = found.result, [*found.result.notes]
         if found.left_out:
             kept = KeptBest(sum(result.found.values()), len(result))
@@ -295,7 +304,10 @@ class Jobs:
         job.orders.clear()
 
     def apply_report(self, job: ServerJob, value: tuple[Any, ...]) -> None:
-        """Apply a report of a worker."""
+        """Apply a worker's report to a job, and wake its watchers.
+
+        Reports are ("progress", fraction, found), ("preview" or "first", result) and ("row", row).
+        """
         match value:
             case ("progress", fraction, found):
                 job.fraction, job.found = max(float(fraction), job.fraction), max(int(found), job.best)
@@ -313,12 +325,12 @@ class Jobs:
         job.wake_watchers()
 
     async def explain(self, job: ServerJob) -> Explanation:
-        """Explain why a job found no fixture; this is worked out once.
+        """Return why a job found no fixture; worked out once, and shared by all who ask.
 
         Raises
         ------
         BusyError, FailedError, StoppedError
-            When it could not be; it may be asked again.
+            When it could not be explained; it may be asked for again.
         """
         if job.explaining is None or (job.explaining.done() and not ended_without_error(job.explaining)):
             task = PoolTask("explanation", job.asked, self.limits.seconds, job.address)
@@ -326,11 +338,12 @@ class Jobs:
         return await asyncio.shield(job.explaining)
 
     def cancel(self, job: ServerJob) -> None:
-        """Ask a job to stop; what it has found is kept."""
+        """Ask a job that is not over to stop; what it has found is kept."""
         if job.task is not None and not job.is_over:
             self.pool.cancel(job.task)
 
     def delete(self, name: str) -> None:
+        """Stop and forget the job of a name, if there is one."""
         job = self.by_name.pop(name, None)
         if job is None:
             return
@@ -343,7 +356,7 @@ class Jobs:
         self.free_memory()
 
     def make_room(self) -> None:
-        """Forget jobs whose life is over, and the longest unused ones when too much is kept."""
+        """Forget jobs whose life is over and, where too much is kept, those unused for longest."""
         now = monotonic()
         for job in [job for job in self.by_name.values() if now - job.used > self.limits.life_seconds]:
             self.delete(job.name)
@@ -357,28 +370,28 @@ class Jobs:
             self.delete(job.name)
 
     def wake_watchers(self) -> None:
-        """Wake those who watch any job, though nothing has changed."""
+        """Wake all streams that follow any job, without a new version."""
         for job in self.by_name.values():
             for watcher in job.watchers:
                 watcher.set()
 
     def free_memory(self) -> None:
-        """Give back what jobs took that are no more, soon and once for many of them."""
+        """Arrange that memory of deleted jobs is given back soon, once for many of them."""
         if self.freeing is None or self.freeing.done():
             self.freeing = asyncio.create_task(self.give_back())
 
     async def give_back(self) -> None:
-        """Give freed memory back after a moment, in which other jobs may be deleted too."""
+        """Give freed memory back to the system after :data:`FREE_AFTER` seconds."""
         await asyncio.sleep(FREE_AFTER)
         await asyncio.to_thread(return_memory)
 
     async def forget_jobs_regularly(self) -> None:
-        """Forget jobs at intervals, for ever."""
+        """Call :meth:`make_room` at intervals until cancelled."""
         while True:
             await asyncio.sleep(min(max(self.limits.life_seconds / 10, 0.1), 30.0))
             self.make_room()
 
 
 def ended_without_error(task: asyncio.Task[Explanation]) -> bool:
-    """Return whether an explanation has ended without an error."""
+    """Return whether a finished task was neither cancelled nor failed."""
     return not task.cancelled() and task.exception() is None

@@ -14,7 +14,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 
-__all__ = ["Origins", "check_origin"]
+__all__ = ["AllowedOrigins", "check_origin"]
 
 METHODS = "GET, HEAD, POST, DELETE"
 ASKED = "Authorization, Content-Type, Last-Event-ID, X-Filename"
@@ -27,7 +27,7 @@ Headers = list[tuple[bytes, bytes]]
 
 
 @frozen
-class Origins:
+class AllowedOrigins:
     """The origins whose pages may ask for anything, as their own page may.
 
     Parameters
@@ -38,19 +38,19 @@ class Origins:
     names: Collection[str] = ()
 
     def allows(self, headers: Mapping[str, str]) -> bool:
-        """Return whether a request comes from a page of one of them.
+        """Return whether the header "origin" of a request is one of the names.
 
-        >>> Origins(("https://shop.example",)).allows({"origin": "https://shop.example"})
+        >>> AllowedOrigins(("https://shop.example",)).allows({"origin": "https://shop.example"})
         True
         """
         return headers.get("origin", "").lower() in self.names
 
     def is_preflight(self, method: str, headers: Mapping[str, str]) -> bool:
-        """Return whether a browser asks for a page of theirs what it may send."""
+        """Return whether a request is a CORS preflight for a page of an allowed origin."""
         return method == "OPTIONS" and "access-control-request-method" in headers and self.allows(headers)
 
     def answer_preflight(self, headers: Mapping[str, str]) -> Headers:
-        """Answer what a page of theirs may send."""
+        """Return the headers that answer a preflight: methods and headers that such a page may send."""
         may = [
             (b"access-control-allow-methods", METHODS.encode()),
             (b"access-control-allow-headers", ASKED.encode()),
@@ -62,7 +62,11 @@ class Origins:
         return may
 
     def make_sharing_headers(self, headers: Mapping[str, str]) -> Headers:
-        """Make the headers with which a browser hands an answer to a page of theirs."""
+        """Return the headers with which a browser hands the answer to the page;
+        only "vary" for an origin not allowed.
+
+        The list is empty where no origin is allowed at all.
+        """
         if not self.names:
             return []
         varies = (b"vary", b"Origin")
@@ -76,12 +80,12 @@ class Origins:
 
 
 def check_origin(text: str) -> str:
-    """Write an origin as browsers send it.
+    """Return an origin in the form in which browsers send it.
 
     Raises
     ------
     InputError
-        For what is no origin of pages, and for ``*`` and ``null``, behind which every page may stand.
+        For text that is no origin of pages, and for ``*`` and ``null``, which may stand for any page.
 
     >>> check_origin("HTTPS://Shop.example:443/")
     'https://shop.example'

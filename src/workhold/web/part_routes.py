@@ -17,10 +17,10 @@ from workhold.version import __version__
 from workhold.web.answers import describe_figures
 from workhold.web.fixture_tasks import has_step
 from workhold.web.job_routes import find_job
-from workhold.web.part_tasks import ShapeOrder, Upload
+from workhold.web.part_tasks import ShapeOrder, UploadedPart
 from workhold.web.program_forms import ReadProgramForm
 from workhold.web.request_forms import AddressForm, WorkpieceForm, read_heights_in_address
-from workhold.web.state import CheckedRoute, run_at_desk, run_at_desk_while_connected, state_of
+from workhold.web.state import CheckedRoute, get_state, run_at_desk, run_at_desk_while_connected
 
 __all__ = ["router"]
 
@@ -41,8 +41,8 @@ LIMITS = (
 
 @router.get("/about", summary="Version and limits")
 async def about(request: Request) -> dict[str, Any]:
-    """The version of this server and its limits."""
-    limits = state_of(request).limits
+    """Return the version of this server and its limits."""
+    limits = get_state(request).limits
     return {
         "version": __version__,
         "limits": {name: getattr(limits, name) for name in LIMITS},
@@ -52,7 +52,7 @@ async def about(request: Request) -> dict[str, Any]:
 
 @router.get("/parts", summary="The parts that come with the program")
 async def parts() -> list[dict[str, str]]:
-    """Names and descriptions of the built-in parts."""
+    """Return names and descriptions of the built-in parts."""
     from workhold.files.part.finding import list_builtin_parts
 
     return [{"name": part.name, "title": part.description} for part in list_builtin_parts()]
@@ -60,10 +60,10 @@ async def parts() -> list[dict[str, str]]:
 
 @router.get("/parts/{name}", summary="A part that comes with the program")
 async def part(request: Request, name: str) -> dict[str, Any]:
-    """Loops, segments and faces of a built-in part."""
+    """Return loops, segments and faces of a built-in part."""
     from workhold.files.part.finding import list_builtin_parts
 
-    state = state_of(request)
+    state = get_state(request)
     known = {part.name.lower(): part.name for part in list_builtin_parts()}.get(name.lower())
     if known is None:
         raise HTTPException(404, "No part of that name comes with the program.")
@@ -113,8 +113,10 @@ class UploadForm(AddressForm):
 OF_ALL_FILES = ("unit", "part_number", "layers", "join_tolerance")
 
 
-async def collect_upload(request: Request, asked: Annotated[UploadForm, Query()]) -> Upload:
-    """Collect a file that is sent, and the options of how to read it."""
+async def collect_upload(request: Request, asked: Annotated[UploadForm, Query()]) -> UploadedPart:
+    """Return the file that is sent, with its name and the
+    options of how to read it that count for its kind.
+    """
     content = await request.body()
     name = clean_file_name(request.headers.get("x-filename", ""))
     given = asked.model_dump(exclude_none=True, exclude={"heights"})
@@ -124,15 +126,15 @@ async def collect_upload(request: Request, asked: Annotated[UploadForm, Query()]
         given["heights"] = read_heights_in_address(asked.heights)
     if name.lower().endswith(".json"):
         given.pop("fit", None)
-    return Upload(content, name, state_of(request).limits.segments, given)
+    return UploadedPart(content, name, get_state(request).limits.segments, given)
 
 
-Sent = Annotated[Upload, Depends(collect_upload)]
+Sent = Annotated[UploadedPart, Depends(collect_upload)]
 
 
 @router.post("/parts", summary="Read a part from a file", openapi_extra=FILE)
 async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
-    """Reads the body, a file as it is: DXF, SVG, JSON, or STEP where installed.
+    """Return the part that is read from the body, a file as it is: DXF, SVG, JSON, or STEP where installed.
 
     Its name is in the header X-Filename.
     """
@@ -142,7 +144,7 @@ async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
 
 @router.post("/parts/survey", summary="See what a file holds and leaves open", openapi_extra=FILE)
 async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
-    """The part if it can be read, else why not and what is asked; and all that is drawn.
+    """Return the part if it can be read, else why not and what is asked; and all that is drawn.
 
     The file is sent as to read a part.
     """
@@ -154,9 +156,9 @@ async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
 async def shape_part(
     request: Request, job: Annotated[str, Query(max_length=100, description="its name")]
 ) -> dict[str, int]:
-    """Makes bodies of a job show the part's own shape instead of a prism, from the STEP file that is sent.
+    """Make bodies of a job show the part's own shape instead of a prism, from the STEP file that is sent.
 
-    The answer is how many triangles it is shown by. The job keeps the shape, not the file.
+    The answer is the number of triangles of the shape. The job keeps the shape, not the file.
     """
     content, name = await request.body(), clean_file_name(request.headers.get("x-filename", ""))
     held = find_job(request, job)
@@ -164,38 +166,41 @@ async def shape_part(
         raise HTTPException(409, "Only a search for fixtures shows the shape of its part: begin one.")
     part = held.asked.query.workpiece
     held.shape = await run_at_desk(request, "shape", ShapeOrder(content, name, part))
-    state_of(request).jobs.make_room()
+    get_state(request).jobs.make_room()
     return {"triangles": len(held.shape.triangles)}
 
 
 def clean_file_name(header: str) -> str:
-    """Clean a file's name for display: without folders and what cannot be printed."""
+    """Return a file's name from a header, for display:
+    unquoted, without folders and what cannot be printed, shortened.
+    """
     name = unquote(header, errors="replace").replace("\\", "/").rpartition("/")[2]
     return "".join(letter for letter in name if letter.isprintable())[-LONGEST_NAME:].strip()
 
 
 @router.post("/parts/check", summary="Check a part that was drawn by hand")
 async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
-    """The part, or what is wrong with it and where."""
-    state = state_of(request)
+    """Return the part, or what is wrong with it and where."""
+    state = get_state(request)
     answer: dict[str, Any] = await run_at_desk(request, "check_part", (form, state.limits.segments))
     return answer
 
 
 @router.post("/lesson", summary="What the page that explains the method shows of a part")
 async def lesson(request: Request, form: WorkpieceForm) -> dict[str, Any]:
-    """The part's contact features, and its Type I fixtures in a vise chosen for it, with their chords.
+    """Return the part's contact features, and its Type I fixtures in a vise chosen for it, with their chords.
 
     Lengths are in mm, angles in radians.
     """
-    payload = form, state_of(request).limits.segments
+    payload = form, get_state(request).limits.segments
     answer: dict[str, Any] = await run_at_desk_while_connected(request, "make_lesson", payload)
     return answer
 
 
 @router.post("/programs", summary="See what a program of the machine does")
 async def program(request: Request, form: ReadProgramForm) -> dict[str, Any]:
-    """The tools with their lines, the box of their tips, notes on how it was read, and its paths to draw.
+    """Return the tools with their lines, the box of their tips,
+    notes on how it was read, and its paths to draw.
 
     Paths are SVG path data in tenths of mm, y downward, by tool, kind and level of height. ``height`` and
     ``peg_height`` beside the program are those of the part's solid.
@@ -206,7 +211,7 @@ async def program(request: Request, form: ReadProgramForm) -> dict[str, Any]:
 
 @router.get("/toolkits", summary="The kinds of toolkits")
 async def toolkits() -> list[dict[str, Any]]:
-    """The name of each kind, its fields, and usual values to begin with; lengths in mm."""
+    """Return the name of each kind of toolkit, its fields, and usual values to begin with; lengths in mm."""
     from workhold.web.toolkits import describe_kinds
 
     return describe_kinds()
@@ -214,7 +219,7 @@ async def toolkits() -> list[dict[str, Any]]:
 
 @router.get("/questions", summary="What is asked of a search and of a sheet")
 async def questions() -> dict[str, list[dict[str, Any]]]:
-    """The fields of each that the page shows, in mm and N, with what each means."""
+    """Return the fields of a search and of a sheet that the page shows, in mm and N, with what each means."""
     from workhold.web.toolkits import describe_questions
 
     return describe_questions()
@@ -222,7 +227,7 @@ async def questions() -> dict[str, list[dict[str, Any]]]:
 
 @router.get("/presets", summary="The toolkits that come with the program")
 async def presets() -> list[dict[str, Any]]:
-    """Toolkits that people own, by name; lengths in mm."""
+    """Return the toolkits that people own, by name; lengths in mm."""
     from workhold.files.toolkit_file import list_preset_names, load_preset
     from workhold.web.toolkits import describe_toolkit
 
@@ -231,5 +236,5 @@ async def presets() -> list[dict[str, Any]]:
 
 @router.get("/figures", summary="The figures of quality")
 async def figures() -> list[dict[str, Any]]:
-    """The name of each figure, its unit, and which way is better."""
+    """Return the name of each figure, its unit, and whether more is better."""
     return describe_figures()

@@ -16,18 +16,18 @@ from attrs import asdict, evolve, frozen
 
 from workhold.errors import InputError
 from workhold.model.workpiece import Workpiece
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
 if TYPE_CHECKING:
     from workhold.files.outline.chain import Chain
-    from workhold.files.part.loaded import Loaded
-    from workhold.files.part.survey import Survey
+    from workhold.files.part.loaded import LoadedPart
+    from workhold.files.part.survey import DrawingSurvey
     from workhold.files.step.part_shape import PartShape
     from workhold.web.request_forms import WorkpieceForm
 
 __all__ = [
     "ShapeOrder",
-    "Upload",
+    "UploadedPart",
     "describe_builtin_part",
     "check_part",
     "find_shape",
@@ -61,7 +61,7 @@ ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
 
 
 @frozen
-class Upload:
+class UploadedPart:
     """A file with a part as it came.
 
     Parameters
@@ -78,16 +78,19 @@ class Upload:
     options: Mapping[str, Any]
 
 
-def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """Check a part drawn by hand, and describe it for the page."""
+def check_part(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[str, Any]:
+    """Return a part drawn by hand as plain data; raise InputError where it cannot be used.
+
+    The payload is the part's form and the most segments allowed.
+    """
     from workhold.web.answers import describe_part
 
     form, most_segments = payload
     return describe_part(form.to_workpiece(most_segments))
 
 
-def describe_builtin_part(name: str, order: Order) -> dict[str, Any]:
-    """Describe a built-in part; the name is known to exist."""
+def describe_builtin_part(name: str, order: TaskContext) -> dict[str, Any]:
+    """Return a built-in part as plain data; there must be one with this name."""
     from workhold.files.part.finding import find_builtin_path
     from workhold.files.part.load import read_workpiece
     from workhold.web.answers import describe_part
@@ -97,7 +100,8 @@ def describe_builtin_part(name: str, order: Order) -> dict[str, Any]:
     return describe_part(read_workpiece(path).workpiece)
 
 
-def read_part(upload: Upload, order: Order) -> dict[str, Any]:
+def read_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
+    """Return the part in a file that was sent, as plain data."""
     from workhold.files.part.load import read_workpiece
 
     with write_sent_file(upload) as path:
@@ -105,8 +109,10 @@ def read_part(upload: Upload, order: Order) -> dict[str, Any]:
         return describe_uploaded_part(upload, path, loaded)
 
 
-def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
-    """Describe what a file that was sent holds and leaves open, with the part if it can be read."""
+def survey_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
+    """Return as plain data what a file that was sent holds and
+    what has to be asked, with the part if it can be read.
+    """
     from workhold.files.part.survey import survey_part_file
 
     with write_sent_file(upload) as path:
@@ -116,8 +122,12 @@ def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
 
 
 @contextmanager
-def write_sent_file(upload: Upload) -> Iterator[Path]:
-    """Write a file that was sent for the duration of the block; errors are raised without its path."""
+def write_sent_file(upload: UploadedPart) -> Iterator[Path]:
+    """Yield the path of a temporary file with the content that was sent;
+    InputErrors are raised again without that path.
+
+    Arithmetic and value errors within the block become an InputError that says the file is damaged.
+    """
     ending = f".{upload.name.rpartition('.')[2].lower()}"
     with TemporaryDirectory(prefix="workhold-") as folder:
         path = Path(folder) / f"part{ending if ending in ENDINGS else ''}"
@@ -133,14 +143,15 @@ def write_sent_file(upload: Upload) -> Iterator[Path]:
 
 
 def remove_path(sentence: str, path: Path) -> str:
-    """Remove the path of a file from a sentence, for its user knows it by another name."""
+    """Return a sentence without the name of a temporary file at its beginning."""
     return sentence.replace(f"{path.name}: ", "", 1)
 
 
-def describe_uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
-    """Describe a part for the page; where it has no name it gets that of the file that was sent.
+def describe_uploaded_part(upload: UploadedPart, path: Path, loaded: LoadedPart) -> dict[str, Any]:
+    """Return a part that was read from a sent file as plain data,
+    named after the file where it has no name of its own.
 
-    Refuses more segments than this server takes.
+    Raises InputError for more segments than this server takes.
     """
     from workhold.web.answers import describe_part
     from workhold.web.request_forms import make_checked_part
@@ -162,7 +173,7 @@ def describe_uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[s
 
 @frozen(eq=False)
 class ShapeOrder:
-    """Which part to find in which file.
+    """An order to find the solid of a part in a file.
 
     Parameters
     ----------
@@ -176,10 +187,10 @@ class ShapeOrder:
     workpiece: Workpiece
 
 
-def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
-    """Find the solid that gives the outline of a part, and make a mesh of it.
+def find_shape(payload: ShapeOrder, order: TaskContext) -> PartShape:
+    """Return the mesh of the solid in a STEP file that gives the outline of a part.
 
-    Refuses a file of another part, and a shape too large to keep.
+    Raises InputError for a file of another part, and for a shape that is too large to keep.
     """
     from workhold.files.step.part_shape import make_part_shape
 
@@ -196,14 +207,14 @@ def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
 
 
 def estimate_shape_size(shape: PartShape | None) -> int:
-    """Return about how many bytes a shape takes."""
+    """Return about how many bytes a shape takes; 0 for None."""
     if shape is None:
         return 0
     return shape.positions.nbytes + shape.normals.nbytes + shape.triangles.nbytes + len(shape.kept)
 
 
 def describe_strokes(chains: Iterable[Chain]) -> list[list[list[float]]]:
-    """Describe chains as lists of x, y in mm and bulge, as many as are shown."""
+    """Return chains as lists of [x, y, bulge] in mm, up to :data:`MOST_STROKES` segments in all."""
     strokes, room = [], MOST_STROKES
     for chain in chains:
         room -= len(chain.bulges)
@@ -215,18 +226,18 @@ def describe_strokes(chains: Iterable[Chain]) -> list[list[list[float]]]:
     return strokes
 
 
-def describe_survey(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """Describe what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge.
+def describe_survey(seen: DrawingSurvey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
+    """Return as plain data what a file holds, and what has to be asked before its part can be read.
 
-    ``heights`` is what other heights of the pegs offer of a solid, and ``solids`` are those of the file with
-    their names.
+    Strokes and loops have rows of x, y in mm and bulge. ``heights`` is what other heights of the pegs offer
+    of a solid, and ``solids`` are those in the file with their names.
     """
-    from workhold.web.answers import place_in
+    from workhold.web.answers import find_first_place
 
     return {
         "part": part,
         "error": refusal or None,
-        "place": place_in(refusal) if refusal else None,
+        "place": find_first_place(refusal) if refusal else None,
         "asked": list(seen.asked),
         "size": None if seen.size is None else list(seen.size),
         "pixels": None if seen.pixels is None else list(seen.pixels),

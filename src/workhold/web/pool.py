@@ -26,7 +26,7 @@ from workhold.errors import InputError, WorkholdError
 from workhold.web.tasks import run_worker
 from workhold.web.worker import CANCEL, discard_folders
 
-__all__ = ["BusyError", "FailedError", "Pool", "PoolTask", "StoppedError"]
+__all__ = ["BusyError", "FailedError", "WorkerPool", "PoolTask", "StoppedError"]
 
 # Seconds before the worker of a task is ended: after its user asked it to stop, and after it ran out of time.
 STOP_GRACE = 2.0
@@ -82,7 +82,7 @@ class PoolTask:
         self.outcome = asyncio.get_running_loop().create_future()
 
     def settle(self, value: Any = None, error: Exception | None = None) -> None:
-        """Set the outcome, unless the task has one or was cancelled."""
+        """Set the outcome to a value or an error, unless the task has one already or was cancelled."""
         if self.outcome.done():
             return
         if error is None:
@@ -102,7 +102,7 @@ class PoolWorker:
 
     @classmethod
     def start(cls, kind: str, memory_bytes: int) -> PoolWorker:
-        """Start a process, and a thread of the server that receives its messages."""
+        """Return a worker with its process started, and a thread of the server that receives its messages."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=run_worker, args=(theirs, kind, memory_bytes), daemon=True)
@@ -115,7 +115,9 @@ class PoolWorker:
         return worker
 
     def receive_messages(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Receive messages until the pipe ends; runs in a thread of its own."""
+        """Put messages of the worker into its inbox until the pipe ends,
+        then set ``gone``; runs in a thread of its own.
+        """
         try:
             while True:
                 message = self.connection.recv()
@@ -128,12 +130,12 @@ class PoolWorker:
                 loop.call_soon_threadsafe(self.gone.set)
 
     async def send(self, message: Any) -> None:
-        """Send a message; one to a worker that has ended is lost."""
+        """Send a message to the worker; it is lost where the worker has ended."""
         with suppress(OSError, ValueError):
             await asyncio.to_thread(self.connection.send, message)
 
     async def end(self) -> None:
-        """End the process at once and close its pipe."""
+        """End the process at once, close its pipe and remove its temporary folder."""
         self.process.kill()
         await asyncio.to_thread(self.process.join, 5.0)
         with suppress(OSError):
@@ -157,7 +159,7 @@ def ignore_interrupts() -> Iterator[None]:
 
 
 @define(eq=False)
-class Pool:
+class WorkerPool:
     """Workers of one kind.
 
     Parameters
@@ -183,10 +185,11 @@ class Pool:
     busy: int = field(default=0, init=False)
 
     def open(self) -> None:
+        """Start the workers."""
         self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:
-        """End the workers and give up the tasks that wait."""
+        """End the workers, and fail the tasks that wait."""
         for slot in self.slots:
             slot.cancel()
         await asyncio.gather(*self.slots, return_exceptions=True)
@@ -195,18 +198,19 @@ class Pool:
         self.give_up("The server was stopped.")
 
     def refuse_more(self, client: str) -> None:
-        """Refuse a further task of a client (BusyError) when too many wait, of this client or of all."""
+        """Raise BusyError where too many tasks wait, in all or of this client."""
         of_client = sum(task.client == client for task in self.waiting)
         if len(self.waiting) >= self.most_waiting or of_client >= self.most_waiting - self.most_waiting // 4:
             raise BusyError("The server is busy: try again in a moment.")
 
     def give_up(self, sentence: str) -> None:
-        """Fail all tasks that wait."""
+        """Fail all waiting tasks with a sentence."""
         while self.waiting:
             self.waiting.pop().settle(error=FailedError(sentence))
 
     async def run(self, task: PoolTask) -> Any:
-        """Run a task when its client has its turn; a caller that is cancelled cancels the task.
+        """Return the outcome of a task, which is run when its client has its turn;
+        cancelling the caller cancels the task.
 
         Raises
         ------
@@ -215,9 +219,9 @@ class Pool:
         InputError
             When the worker refuses what it was given.
         StoppedError
-            When it was asked to stop and had nothing to show.
+            When the task was asked to stop and has no outcome.
         FailedError
-            When it came to a bad end.
+            When the task failed, or its worker ended.
         """
         self.refuse_more(task.client)
         self.waiting.append(task)
@@ -229,18 +233,17 @@ class Pool:
             raise
 
     def cancel(self, task: PoolTask) -> None:
-        """Ask a task to stop; one that waits is over at once."""
+        """Ask a task to stop; one that still waits is over at once, with StoppedError."""
         task.stop.set()
         if task in self.waiting:
             self.waiting.remove(task)
             task.settle(error=StoppedError())
 
     def turn(self) -> PoolTask | None:
-        """Choose the next task: of the client with the fewest workers, then of the one whose last turn is
-        oldest.
+        """Return the next task to run, still among those waiting; None where none may run.
 
-        One worker of several is kept from any single client, so that the next one need not wait for its
-        searches.
+        It is one of the client with the fewest workers and, of those, with the oldest last turn. One worker
+        of several is kept from any single client, so that the next client need not wait for its searches.
         """
         most = max(self.size - 1, 1)
         may = [task for task in self.waiting if self.running[task.client] < most]
@@ -249,7 +252,9 @@ class Pool:
         )
 
     async def wait_for_task(self) -> PoolTask:
-        """Wait for the next task, and count a worker as its client's from then on."""
+        """Return the next task once there is one, taken from those waiting;
+        a worker counts as its client's from then on.
+        """
         while (task := self.turn()) is None:
             self.bell.clear()
             await self.bell.wait()
@@ -262,13 +267,15 @@ class Pool:
         return task
 
     def release_worker(self, task: PoolTask) -> None:
-        """Note that a worker is no longer its client's."""
+        """Note that the worker of a task is no longer its client's."""
         self.running[task.client] -= 1
         self.running += Counter()
         self.bell.set()
 
     async def keep(self, slot: int) -> None:
-        """Keep a worker in a slot and give it tasks."""
+        """Keep a worker running in a slot and give it tasks,
+        until cancelled; a worker that ends is replaced.
+        """
         failed = 0
         while True:
             worker = self.workers[slot] = PoolWorker.start(self.kind, self.memory_bytes)
@@ -287,7 +294,7 @@ class Pool:
                 await asyncio.shield(worker.end())
 
     async def serve(self, worker: PoolWorker) -> None:
-        """Give tasks to a worker until it has ended."""
+        """Give tasks to a worker, one after the other, until the worker has ended."""
         while not worker.gone.is_set():
             task = await wait_for_first(self.wait_for_task(), worker.gone.wait())
             if task is None:
@@ -309,7 +316,9 @@ class Pool:
                 del task
 
     async def run_task(self, worker: PoolWorker, task: PoolTask) -> None:
-        """Have a worker do a task; a worker that had to be ended is marked as gone."""
+        """Have a worker do a task and set the task's outcome;
+        a worker that does not stop in time is marked as gone.
+        """
         clock, number, is_asked = asyncio.get_running_loop().time, next(self.numbers), False
         if task.begun is not None:
             task.begun()
@@ -349,7 +358,11 @@ class Pool:
 
 
 async def wait_for_first(*waits: Any, timeout: float | None = None) -> Any:
-    """Wait until one of some coroutines is done or the time is up; return the first's value, else None."""
+    """Wait until any of some coroutines is done or the time is up;
+    return the value of the one named first, if it is done.
+
+    Return None where it is not done. Coroutines that are not done are cancelled.
+    """
     tasks = [asyncio.ensure_future(wait) for wait in waits]
     try:
         await asyncio.wait(tasks, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)

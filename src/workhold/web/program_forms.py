@@ -23,7 +23,7 @@ from workhold.model.solid import SolidOutline
 from workhold.model.straps import StrappedHold
 from workhold.units import MILLIMETRE
 from workhold.web.request_forms import LARGEST, Form, Name, Point
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
 if TYPE_CHECKING:
     from workhold.files.program.reader import ReadProgram
@@ -93,8 +93,8 @@ class ProgramForm(Form):
     peg_height: Thick | None = None
 
     def to_program(self, solid: SolidOutline | None) -> tuple[Program, float | None]:
-        """Return the program that fixtures are to let pass, and up to which height in mm anything holds the
-        part.
+        """Return the program whose tools the fixtures must clear,
+        and the height in mm up to which pegs, clamps and walls reach.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class ProgramForm(Form):
         Raises
         ------
         InputError
-            For a program or a table that cannot be read, and heights that nobody knows.
+            For a program or a table that cannot be read, and heights that are needed and not given.
         """
         thick, high = self.thickness, self.peg_height
         if solid is not None:
@@ -126,7 +126,9 @@ class ReadProgramForm(Form):
 
 
 def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram:
-    """Read a program that was sent; its errors name the files as their user does."""
+    """Return a program that was sent, as it is read;
+    errors name the files as their user does. ``thickness`` is in mm.
+    """
     from workhold.files.program.reader import read_program_with_calls
 
     with write_program_files(form) as (path, tools):
@@ -143,7 +145,11 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
 
 @contextmanager
 def write_program_files(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
-    """Write a program and its table for the duration of the block."""
+    """Yield the paths of temporary files with a program and its tool table, None without a table.
+
+    InputErrors are raised again with the user's names of the files; other errors of reading become an
+    InputError.
+    """
     with TemporaryDirectory(prefix="workhold-") as folder:
         path, tools = Path(folder) / "program.nc", None
         path.write_text(form.text, encoding="utf-8", newline="")
@@ -162,17 +168,17 @@ def write_program_files(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]
 
 
 def rename_files_in_sentence(sentence: str, names: Mapping[str, str]) -> str:
-    """Return a sentence with the names of files as their user knows them."""
+    """Return a sentence with each path replaced by the name that its user knows."""
     for path, name in names.items():
         sentence = sentence.replace(path, name)
     return sentence
 
 
-def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
-    """Describe what was understood of a program: its tools, box, notes, and the paths to draw.
+def look_at_program(question: ReadProgramForm, order: TaskContext) -> dict[str, Any]:
+    """Return what was understood of a program as plain data: its tools, box, notes, and the paths to draw.
 
-    Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has
-    the place of its tool in their order, its kind, and for cutting moves its level of height from 0.
+    Heights are in mm above the part's lower side. The paths are SVG path data in tenths of mm, y downward.
+    Each has the index of its tool, its kind, and for cutting moves its level of height from 0.
     """
     from workhold.drawing.path_drawn import SHADES, find_heights_cut
     from workhold.model.program_figures import bound_tip, measure_tools
@@ -221,6 +227,7 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
 
 
 def describe_paths(program: Program) -> Iterator[dict[str, Any]]:
+    """Yield the paths of a program to draw, one for each tool, kind and level."""
     from workhold.drawing.path_drawn import PagePaths, group_moves_by_look
     from workhold.drawing.scene import View
 
@@ -232,7 +239,9 @@ def describe_paths(program: Program) -> Iterator[dict[str, Any]]:
 
 
 def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
-    """Return where the tools of a result's program come nearest to a fixture; None where none does."""
+    """Return where the tools of a result's program come nearest to the fixture of an index;
+    None where they never come near.
+    """
     from workhold.statics.program_clearance import find_nearest_passing
 
     near = find_nearest_passing(result, index)
@@ -240,15 +249,17 @@ def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
 
 
 def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
-    """Return what the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
-    from workhold.statics.jaw_program import asked_words
+    """Return what the tools of a result's program ask of a fixture,
+    in N and in sentences; None without forces.
+    """
+    from workhold.statics.jaw_program import describe_asked_force
     from workhold.statics.program_forces import find_cutting_need
     from workhold.supports.words_of_straps import describe_program_need
 
     hold, program = (result[index].hold, result.query.program) if result.holds else (None, None)
     if isinstance(hold, JawHold) and hold.program_need is not None and program is not None:
         asked = hold.program_need
-        return {**make_need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
+        return {**make_need_entry(asked), "words": [describe_asked_force(asked, program, MILLIMETRE)]}
     if isinstance(hold, StrappedHold):
         if hold.program_need is None or program is None:
             return None
@@ -258,5 +269,5 @@ def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
     if need is None:
         return None
     return need.to_dict() | {
-        "words": need.words(result.toolkit.moving.noun, MILLIMETRE, result.toolkit.travels)
+        "words": need.list_sentences(result.toolkit.moving.noun, MILLIMETRE, result.toolkit.travels)
     }

@@ -22,7 +22,7 @@ from workhold.model.support_request import SpatialLoad
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
-    from workhold.web.worker import Order
+    from workhold.web.worker import TaskContext
 
 __all__ = [
     "LARGEST",
@@ -106,6 +106,9 @@ class AddressForm(BaseModel):
 
 
 def parse_from_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
+    """Return a value of an address that is JSON, checked;
+    raise InputError, which calls it ``name``, where it is wrong.
+    """
     try:
         return adapter.validate_json(text)
     except ValidationError as error:
@@ -116,7 +119,7 @@ def parse_from_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Ask
 
 
 def explain_request_error(error: dict[str, Any]) -> str:
-    """Return one thing that pydantic finds wrong with a request, as a sentence."""
+    """Return a sentence on one error that pydantic reports of a request."""
     loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
     if error.get("type") == "json_invalid":
         return "The request is not valid JSON: send one object."
@@ -129,8 +132,11 @@ def explain_request_error(error: dict[str, Any]) -> str:
     return f"The {where} value {place} of the address is not as it should be: {message}."
 
 
-def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
-    """Refuse a request of too many values or segments, or that its form does not take."""
+def check_body(payload: tuple[type[Form], bytes, int], order: TaskContext) -> None:
+    """Raise InputError for a request with too many values or segments, or that its form does not take.
+
+    The payload is the form, the body, and the most segments allowed.
+    """
     form, body, most_segments = payload
     try:
         data = json.loads(body)
@@ -150,7 +156,7 @@ def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
 
 
 def count_values(data: Any) -> int:
-    """Return how many values there are in a request, those that hold others too."""
+    """Return the number of values in a request, containers included."""
     count, waiting = 0, [data]
     while waiting:
         one = waiting.pop()
@@ -163,7 +169,9 @@ def count_values(data: Any) -> int:
 
 
 def count_most_vertices(data: Any) -> int:
-    """Return how many vertices the largest part of a request has, as far as it has the shape of one."""
+    """Return the number of vertices of the largest part in a request;
+    0 where it has nothing shaped like a part.
+    """
     if not isinstance(data, dict):
         return 0
     several = data.get("workpieces")
@@ -216,7 +224,9 @@ class WorkpieceForm(Form):
     outlines: Annotated[dict[Name, OwnOutlineForm], Field(max_length=MOST_RANGES)] = Field(default={})
 
     def to_workpiece(self, most_segments: int) -> Workpiece:
-        """Return the part; refuse loops that cannot be used, and too many segments."""
+        """Return the part; raise InputError for loops that cannot be used,
+        and for more segments than ``most_segments``.
+        """
         solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
         workpiece = make_checked_part(self.name, self.loops, most_segments, self.departure, solid)
         if not self.outlines:
@@ -235,9 +245,9 @@ def make_checked_part(
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """Return a part of loops in mm, with how far they may be from what was drawn.
+    """Return a part made of loops in mm; ``departure`` in mm is how far they may be from what was drawn.
 
-    Refuses more segments than this server takes.
+    Raises InputError for more segments than ``most_segments``.
     """
     refuse_many(sum(map(len, loops)), most_segments)
     with explain_number_errors():
@@ -245,6 +255,7 @@ def make_checked_part(
 
 
 def refuse_many(count: int, most: int) -> None:
+    """Raise InputError for more segments than this server takes."""
     if count > most:
         raise InputError(
             f"The part has {count} segments, more than the {most} this server takes: draw its outline with "
@@ -254,7 +265,9 @@ def refuse_many(count: int, most: int) -> None:
 
 @contextmanager
 def explain_number_errors() -> Iterator[None]:
-    """Say of numbers with which arithmetic fails that they are too large or too small."""
+    """Raise InputError in place of arithmetic and value errors within the block:
+    numbers are too large or too small.
+    """
     try:
         yield
     except (ArithmeticError, ValueError) as error:
@@ -269,9 +282,9 @@ SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_
 
 
 def read_heights_in_address(text: str | None) -> dict[str, tuple[float, float]] | None:
-    """Return the heights of carriers in an address, JSON by role in mm; None where none are given.
+    """Return the heights (low, high) in mm of carriers by role, from JSON in an address; None for None.
 
-    Refuses heights of which the lower does not come first.
+    Raises InputError where the lower does not come first.
     """
     if text is None:
         return None
@@ -302,7 +315,8 @@ class SpatialLoadForm(Form):
     moment: Number = 0.0
     tilt: Point = Field(default=[0.0, 0.0])
 
-    def load(self) -> SpatialLoad:
+    def to_load(self) -> SpatialLoad:
+        """Return the load in space."""
         return SpatialLoad(**self.model_dump())
 
 
@@ -344,5 +358,5 @@ class FirstSideForm(Form):
 
 
 def read_form_in_address(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
-    """Return a value of an address that is JSON of a form; None where none is given."""
+    """Return a form from JSON in an address; None for None."""
     return None if text is None else parse_from_address(TypeAdapter(form), name, text)

@@ -22,9 +22,9 @@ from workhold.model.notes import Many, Note
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.web.answers import describe_arrangements
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
-__all__ = ["FIRST", "AskedQueries", "Found", "NamedQuery", "search"]
+__all__ = ["FIRST", "AskedQueries", "SearchOutcome", "NamedQuery", "search"]
 
 # What a toolkit is called, and the query for it.
 NamedQuery = tuple[str, Query]
@@ -43,7 +43,7 @@ TICK = 0.05
 
 @frozen(eq=False)
 class AskedQueries:
-    """What a job searches for: pickled where it is made, and opened by the worker that searches.
+    """Queries of a job: pickled where they are made, and opened by the worker that searches.
 
     Parameters
     ----------
@@ -60,12 +60,16 @@ class AskedQueries:
 
     @classmethod
     def from_queries(cls, queries: tuple[NamedQuery, ...]) -> AskedQueries:
+        """Return the queries sealed, with number, toolkit and arrangements,
+        which the server needs without opening them.
+        """
         toolkit = queries[0][1].toolkit
         sealed = pickle.dumps(queries, pickle.HIGHEST_PROTOCOL)
         return cls(sealed, len(queries), toolkit, describe_arrangements(toolkit))
 
     @property
     def queries(self) -> tuple[NamedQuery, ...]:
+        """Names and queries, unpickled at each access."""
         opened: tuple[NamedQuery, ...] = pickle.loads(self.sealed)
         return opened
 
@@ -76,7 +80,7 @@ class AskedQueries:
 
 
 @frozen(eq=False)
-class Found:
+class SearchOutcome:
     """The outcome of a search; ``left_out`` fixtures were found but not kept."""
 
     result: Result
@@ -84,14 +88,13 @@ class Found:
     notes: tuple[Note, ...] = ()
 
 
-def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
-    """Search; the reports are ("progress", fraction, found), ("preview", result) and ("first",
-    result).
+def search(payload: tuple[AskedQueries, int, bool], order: TaskContext) -> SearchOutcome:
+    """Return the outcome of a search;
+    it reports ("progress", fraction, found), ("preview", result) and ("first", result).
 
-    Results that are reported are of the query as it was asked.
-
-    A first result has the best fixtures of all, in their order. Of very many fixtures no more than the best
-    are sought, unless every one is asked for.
+    The payload is the query, the most fixtures to keep, and whether every one is wanted. Reported results
+    belong to the query as it was asked; a first result has the best fixtures of all, in their order. Of very
+    many fixtures only the best are sought, unless every one is wanted.
     """
     from workhold.limits import choose_thread_count
     from workhold.search.design import answer
@@ -101,13 +104,14 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
     query = whole = asked.query
 
     def report(kind: str, result: Result) -> None:
+        """Report a result so far."""
         order.report((kind, evolve(result, query=whole, complete=False)))
 
     first = None
     if query.best is None and query.seating is None:
         first = find_best(query, order, report)
         if order.cancel.is_set() or (first.complete and not len(first)):
-            return Found(evolve(first, query=query, complete=first.complete and not len(first)), 0)
+            return SearchOutcome(evolve(first, query=query, complete=first.complete and not len(first)), 0)
     known = first if first is not None and first.complete else None
     if known is not None:
         report("first", known)
@@ -128,8 +132,8 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
         result = put_best_first(result, known)
     left_out = max(len(result) - most, 0)
     if left_out:
-        result = result.part(slice(0, most))
-    return Found(result, left_out, notes)
+        result = result.slice_rows(slice(0, most))
+    return SearchOutcome(result, left_out, notes)
 
 
 class Reporter:
@@ -141,19 +145,24 @@ class Reporter:
     least : how many fixtures are known before.
     """
 
-    def __init__(self, order: Order, begin: float, share: float, least: int = 0) -> None:
+    def __init__(self, order: TaskContext, begin: float, share: float, least: int = 0) -> None:
         self.order, self.begin, self.share, self.least = order, begin, share, least
         self.last = 0.0
 
     def __call__(self, fraction: float, found: int) -> None:
+        """Report progress of this part as progress of the whole,
+        at most every :data:`PAUSE` seconds and at the end.
+        """
         now = perf_counter()
         if now >= self.last + PAUSE or fraction >= 1.0:
             self.last = now
             self.order.report(("progress", self.begin + self.share * fraction, max(found, self.least)))
 
 
-def find_best(query: Query, order: Order, report: Callable[[str, Result], None]) -> Result:
-    """Return the best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
+def find_best(query: Query, order: TaskContext, report: Callable[[str, Result], None]) -> Result:
+    """Return the best :data:`FIRST` fixtures of a query;
+    incomplete where that takes long or the order is cancelled.
+    """
     from workhold.search.design import answer
 
     with limit_time(order) as enough:
@@ -161,17 +170,18 @@ def find_best(query: Query, order: Order, report: Callable[[str, Result], None])
             evolve(query, best=FIRST),
             progress=Reporter(order, 0.0, SHARE),
             cancel=enough,
-            preview=lambda result: report("preview", result.part(slice(0, FIRST))),
+            preview=lambda result: report("preview", result.slice_rows(slice(0, FIRST))),
         )
 
 
 @contextmanager
-def limit_time(order: Order) -> Iterator[Event]:
-    """Yield an event that is set when the order is cancelled, or a part of its time has passed."""
+def limit_time(order: TaskContext) -> Iterator[Event]:
+    """Yield an event that is set when the order is cancelled or a part of its time has passed."""
     enough, done = Event(), Event()
     seconds = min(MOST_SECONDS, MOST_SHARE * order.seconds)
 
     def watch() -> None:
+        """Set the event when its time has come; runs in a thread."""
         end = perf_counter() + seconds
         while not done.wait(TICK) and not order.cancel.is_set() and perf_counter() < end:
             pass
@@ -187,15 +197,16 @@ def limit_time(order: Order) -> Iterator[Event]:
 
 
 def put_best_first(result: Result, best: Result) -> Result:
-    """Return a search that was stopped, with the best of all before what else it found.
+    """Return the incomplete result of a stopped search with
+    the best fixtures of all put first, each fixture once.
 
-    It is not complete all the same.
+    Return it unchanged for fixtures that friction holds.
     """
     if result.holds:
         return result
-    marks = {mark_of(best.table, k) for k in range(len(best))}
-    others = np.array([mark_of(result.table, k) not in marks for k in range(len(result))], bool)
-    table = FixtureTable.joined([best.table, result.table.take(others)])
+    marks = {make_fixture_mark(best.table, k) for k in range(len(best))}
+    others = np.array([make_fixture_mark(result.table, k) not in marks for k in range(len(result))], bool)
+    table = FixtureTable.concatenate([best.table, result.table.take(others)])
     joined = evolve(result, table=table)
     counts = joined.counts
     found = {kind: max(result.found.get(kind, 0), counts.get(kind, 0)) for kind in {**result.found, **counts}}
@@ -203,7 +214,9 @@ def put_best_first(result: Result, best: Result) -> Result:
     return evolve(joined, found=found, distinct=distinct)
 
 
-def mark_of(table: FixtureTable, index: int) -> tuple[object, ...]:
-    """Return what a fixture of a table is known by: arrangement, holes, faces, and how the part lies."""
+def make_fixture_mark(table: FixtureTable, index: int) -> tuple[object, ...]:
+    """Return a key that identifies a fixture of a table:
+    arrangement, holes, faces, and the rounded angle of the part.
+    """
     whole = (table.arrangement[index], *table.column[index], *table.row[index], *table.face[index])
     return (*map(int, whole), round(float(table.theta[index]) / SAME_POSE))

@@ -8,19 +8,19 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.identity import Entries, find_first_of_each, number_near_duplicates
+from workhold.listing.identity import ShownEntries, find_first_of_each, number_near_duplicates
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, find_figure_number, select_figure_column
 from workhold.model.requirements import lie_in_angle_ranges
 from workhold.model.result import Result
-from workhold.statics.judging import unfit
+from workhold.statics.judging import are_unfit
 
-__all__ = ["Selection", "read_angle_range"]
+__all__ = ["ListSelection", "read_angle_range"]
 
 
 @frozen
-class Selection:
-    """What to show of a list of fixtures.
+class ListSelection:
+    """Selection and order of the fixtures to show of a list.
 
     Parameters
     ----------
@@ -42,10 +42,12 @@ class Selection:
     together: bool = False
     unfit: bool = True
 
-    def choose_entries(self, result: Result) -> Entries:
-        """Choose fixtures of a result, in order, each with how many that are like it are left out."""
+    def choose_entries(self, result: Result) -> ShownEntries:
+        """Return the fixtures of a result that are chosen, in order,
+        each with the number of those like it that are left out.
+        """
         found = self.choose_indices(result.table, result.toolkit)
-        chosen, bad = found, unfit(result.table.quality, result.query.tolerance)
+        chosen, bad = found, are_unfit(result.table.quality, result.query.tolerance)
         if not (self.unfit or bad.all()):
             chosen = found[~bad[found]]
         like = np.zeros(len(chosen), np.int64)
@@ -54,15 +56,16 @@ class Selection:
                 number_near_duplicates(result.table, result.workpiece, result.toolkit)[chosen]
             )
             chosen = chosen[first]
-        return Entries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
+        return ShownEntries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 
     def choose_indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
-        """Return the indices of the chosen fixtures of a table, in order.
+        """Return the indices of the chosen fixtures of a table, in order;
+        likeness and fitness are not looked at.
 
         Raises
         ------
         InputError
-            When there is nothing of that name to sort by, or no such arrangement.
+            For an unknown figure to sort by, and an unknown arrangement.
         """
         column = None if self.sort == "rank" else find_figure_number(self.sort)
         if column is None and self.sort != "rank":
@@ -90,7 +93,7 @@ class Selection:
 
 
 def read_angle_range(text: str) -> tuple[float, float]:
-    """Read a range of angles in degrees such as ``-10..10``."""
+    """Return (from, to) in degrees from text such as ``-10..10``; raise InputError for anything else."""
     low, dots, high = text.partition("..")
     try:
         ends = float(low), float(high)

@@ -17,8 +17,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from workhold.errors import InputError
 from workhold.web.app import create_app
-from workhold.web.guard import Hosts, ServerLimits
-from workhold.web.origins import Origins
+from workhold.web.guard import AllowedHosts, ServerLimits
+from workhold.web.origins import AllowedOrigins
 from workhold.web.state import ServerState
 
 __all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
@@ -50,7 +50,7 @@ class PatientProtocol(H11Protocol):
     peer: str = ""
 
     def connection_made(self, transport: Any) -> None:
-        """Count a connection, and close one too many."""
+        """Count a new connection, and close it if its address has too many."""
         super().connection_made(transport)
         self.peer = self.client[0] if self.client else ""
         self.open_connections[self.peer] += 1
@@ -60,12 +60,12 @@ class PatientProtocol(H11Protocol):
         self.watch()
 
     def data_received(self, data: bytes) -> None:
-        """Pass data on, and starts or stops the timer."""
+        """Pass data on, then start or stop the timer for the request's first lines."""
         super().data_received(data)
         self.watch()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Count a connection no longer."""
+        """Count the connection no longer, and stop its timer."""
         if self.header_timer is not None:
             self.header_timer.cancel()
         self.open_connections[self.peer] -= 1
@@ -74,7 +74,7 @@ class PatientProtocol(H11Protocol):
         super().connection_lost(exc)
 
     def watch(self) -> None:
-        """Run the timer while a request has begun and its first lines are not complete."""
+        """Start the timer while the first lines of a request are awaited; stop it once they are complete."""
         awaited = self.cycle is None or self.cycle.response_complete
         if awaited and self.header_timer is None:
             self.header_timer = self.loop.call_later(HEADER_SECONDS, self.give_up)
@@ -83,7 +83,7 @@ class PatientProtocol(H11Protocol):
             self.header_timer = None
 
     def give_up(self) -> None:
-        """Close a connection without a request."""
+        """Close the connection if no request has come."""
         self.header_timer = None
         if self.cycle is None or self.cycle.response_complete:
             self.transport.close()
@@ -101,13 +101,13 @@ class Server(uvicorn.Server):
         self.stopped_by: int | None = None
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """Stop in order on the first signal, and without a wait on the second."""
+        """Stop in order on the first signal, at once on the second."""
         self.force_exit = self.should_exit
         self.should_exit = True
         self.stopped_by = sig
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End streams and workers first, and soon lets go of clients who still send."""
+        """End streams and workers, then shut down; connections that stay open are closed after a moment."""
         state: ServerState | None = getattr(self.config.app.state, "server", None)  # type: ignore[union-attr]
         if state is not None:
             await state.close()
@@ -118,13 +118,13 @@ class Server(uvicorn.Server):
             late.cancel()
 
     async def let_go(self) -> None:
-        """Close the connections that are left after a moment."""
+        """Close the connections that are left after :data:`LAST_SECONDS`."""
         await asyncio.sleep(LAST_SECONDS)
         for connection in list(self.server_state.connections):
             connection.transport.abort()
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, and reports that the server listens."""
+        """Start, and report that the server listens."""
         await super().startup(sockets)
         if self.started and not self.should_exit:
             self.listening()
@@ -141,12 +141,12 @@ def run_server(
     prepare: Callable[[], None],
     origins: Collection[str],
 ) -> None:
-    """Serve until interrupted.
+    """Serve until interrupted; raise SystemExit after SIGTERM.
 
     Parameters
     ----------
     host, port : where to listen; port 0 takes a free one.
-    limits : how much to give.
+    limits : sizes, counts, times and memory that the server allows.
     more_hosts : further names that the server may be called by.
     proxies : addresses of reverse proxies that are trusted to say whom they ask for.
     token : a secret that every request must bring, or None.
@@ -157,13 +157,13 @@ def run_server(
     Raises
     ------
     InputError
-        When nothing can listen there.
+        When the server cannot listen at this address.
     """
     listener = bound_socket(host, port)
     shown = f"http://{format_host(host)}:{listener.getsockname()[1]}/"
     if token is not None:
         shown += f"?token={token}"
-    hosts, allowed = list_hosts(host, more_hosts), Origins(frozenset(origins))
+    hosts, allowed = list_hosts(host, more_hosts), AllowedOrigins(frozenset(origins))
     server = make_server(limits, hosts, partial(listening, shown), proxies, token, allowed)
     try:
         prepare()
@@ -176,13 +176,13 @@ def run_server(
 
 def make_server(
     limits: ServerLimits,
-    hosts: Hosts,
+    hosts: AllowedHosts,
     listening: Callable[[], None],
     proxies: Collection[str] = (),
     token: str | None = None,
-    origins: Origins | None = None,
+    origins: AllowedOrigins | None = None,
 ) -> Server:
-    """Make a server that does not run yet; parameters as for :func:`run_server`.
+    """Return a server that does not run yet; parameters as for :func:`run_server`.
 
     ``listening`` is called once the server takes requests.
     """
@@ -204,9 +204,9 @@ def make_server(
 
 
 def bound_socket(host: str, port: int) -> socket.socket:
-    """Open a socket that listens at an address.
+    """Return a socket bound to an address, which the server then listens at.
 
-    Refuses an address that there is not, or at which another program listens.
+    Raises InputError for a host that this machine does not have, and a port that is taken.
     """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
@@ -231,7 +231,7 @@ def bound_socket(host: str, port: int) -> socket.socket:
 
 
 def is_everywhere(host: str) -> bool:
-    """Return whether a host means every address of the machine."""
+    """Return whether a host stands for every address of the machine, such as 0.0.0.0."""
     try:
         return ip_address(host).is_unspecified
     except ValueError:
@@ -250,15 +250,18 @@ def is_for_others(host: str) -> bool:
         return host.lower() != "localhost"
 
 
-def list_hosts(host: str, more: Collection[str]) -> Hosts:
+def list_hosts(host: str, more: Collection[str]) -> AllowedHosts:
+    """Return the names by which a server at this host may be called:
+    those of this machine, the host, and ``more``.
+    """
     everywhere = is_everywhere(host)
-    names = {*Hosts().names, *(name.lower() for name in more)}
+    names = {*AllowedHosts().names, *(name.lower() for name in more)}
     names.add(socket.gethostname().lower() if everywhere else host.lower())
-    return Hosts(frozenset(names), any_address=everywhere)
+    return AllowedHosts(frozenset(names), any_address=everywhere)
 
 
 def format_host(host: str) -> str:
-    """Write a host as it stands in an address that can be opened."""
+    """Return a host as it stands in an address that can be opened in a browser."""
     if is_everywhere(host):
         return "127.0.0.1"
     return f"[{host}]" if ":" in host else host

@@ -19,8 +19,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from workhold.web.guard import ServerLimits
-from workhold.web.jobs import Jobs
-from workhold.web.pool import Pool, PoolTask, StoppedError
+from workhold.web.jobs import JobRegistry
+from workhold.web.pool import PoolTask, StoppedError, WorkerPool
 from workhold.web.request_forms import Form
 
 __all__ = [
@@ -29,7 +29,7 @@ __all__ = [
     "get_client_address",
     "run_at_desk",
     "run_at_desk_while_connected",
-    "state_of",
+    "get_state",
 ]
 
 TYPES = {
@@ -59,11 +59,14 @@ class StaticFile:
 
 
 def read_static_files() -> dict[str, StaticFile]:
-    """Read the files of the page, by their paths below ``static``, such as ``space/orbit.js``."""
+    """Return the files of the page by their paths below ``static``, such as ``space/orbit.js``."""
     return dict(read_files_below(files("workhold.web") / "static", ""))
 
 
 def read_files_below(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
+    """Yield path and file of each file below a folder whose ending is known,
+    with ``prefix`` before the path.
+    """
     for entry in folder.iterdir():
         kind = TYPES.get(entry.name.rpartition(".")[2].lower())
         if entry.is_dir():
@@ -84,9 +87,9 @@ class ServerState:
     """
 
     limits: ServerLimits
-    searchers: Pool = field(init=False)
-    desks: Pool = field(init=False)
-    jobs: Jobs = field(init=False)
+    searchers: WorkerPool = field(init=False)
+    desks: WorkerPool = field(init=False)
+    jobs: JobRegistry = field(init=False)
     files: dict[str, StaticFile] = field(factory=read_static_files, init=False)
     builtin: dict[str, dict[str, Any]] = field(factory=dict, init=False)
     streams: int = field(default=0, init=False)
@@ -94,13 +97,13 @@ class ServerState:
 
     def __attrs_post_init__(self) -> None:
         limits = self.limits
-        self.searchers = Pool("search", limits.searches, limits.memory_bytes, limits.waiting)
-        self.desks = Pool("desk", limits.desks, limits.desk_memory_bytes, limits.waiting)
-        self.jobs = Jobs(self.searchers, limits)
+        self.searchers = WorkerPool("search", limits.searches, limits.memory_bytes, limits.waiting)
+        self.desks = WorkerPool("desk", limits.desks, limits.desk_memory_bytes, limits.waiting)
+        self.jobs = JobRegistry(self.searchers, limits)
 
     @asynccontextmanager
     async def open(self) -> AsyncIterator[None]:
-        """Run the workers while the block does."""
+        """Run the workers within the block."""
         self.searchers.open()
         self.desks.open()
         sweeper = asyncio.create_task(self.jobs.forget_jobs_regularly())
@@ -113,39 +116,42 @@ class ServerState:
             await self.close()
 
     async def close(self) -> None:
-        """End streams of events, and the workers with what they do; once more does no harm."""
+        """End streams of events, and the workers with what they do; a second call does no harm."""
         self.is_closing.set()
         self.jobs.wake_watchers()
         await asyncio.gather(self.searchers.close(), self.desks.close())
 
 
-def state_of(request: Request) -> ServerState:
+def get_state(request: Request) -> ServerState:
+    """Return the state of the server that a request came to."""
     state: ServerState = request.app.state.server
     return state
 
 
 def get_client_address(request: Request) -> str:
+    """Return the address of the client of a request; "" where it is not known."""
     return "" if request.client is None else request.client.host
 
 
 async def run_at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
-    """Have a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
+    """Return the outcome of a quick task, done by a worker;
+    see :meth:`workhold.web.pool.WorkerPool.run` for errors.
 
-    It may take ``seconds``, if not as long as what is quick.
+    It may take ``seconds``, or the usual time of quick tasks for None.
     """
-    state = state_of(request)
+    state = get_state(request)
     return await state.desks.run(
         PoolTask(name, payload, seconds or state.limits.desk_seconds, get_client_address(request))
     )
 
 
 async def run_at_desk_while_connected(request: Request, name: str, payload: Any) -> Any:
-    """Have a worker do something quick, and ask it to stop when the client hangs up.
+    """Return the outcome of a quick task, done by a worker and asked to stop when the client hangs up.
 
     The task must end by itself when asked to stop. Raises StoppedError when the client is gone; nobody
     receives it.
     """
-    state = state_of(request)
+    state = get_state(request)
     task = PoolTask(name, payload, state.limits.desk_seconds, get_client_address(request), stops_well=True)
     running, gone = asyncio.create_task(state.desks.run(task)), asyncio.create_task(wait_for_hang_up(request))
     try:
@@ -171,25 +177,28 @@ class CheckedRoute(APIRoute):
     """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Return what answers a request of this route."""
+        """Return the handler of a request of this route,
+        which has larger bodies checked by a worker first.
+        """
         handler, form = super().get_route_handler(), self.find_form()
 
         async def checked(request: Request) -> Response:
+            """Return the answer to a request, after a check of a large body."""
             if form is not None:
                 body = await request.body()
                 if len(body) > AT_ONCE:
-                    await run_at_desk(request, "check_body", (form, body, state_of(request).limits.segments))
+                    await run_at_desk(request, "check_body", (form, body, get_state(request).limits.segments))
             return await handler(request)
 
         return checked
 
     def find_form(self) -> type[Form] | None:
-        """Return the shape of its requests; None where they have no body, or bytes of a file."""
+        """Return the form of the route's requests; None where they have no body, or bytes of a file."""
         kinds = get_type_hints(self.endpoint).values()
         return next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Form)), None)
 
 
 async def wait_for_hang_up(request: Request) -> None:
-    """Wait until a client whose request has come whole is gone."""
+    """Wait until the client of a request, whose body has been received, disconnects."""
     while (await request.receive())["type"] != "http.disconnect":
         pass

@@ -15,17 +15,17 @@ import numpy as np
 from attrs import evolve, frozen
 
 from workhold.errors import InputError
-from workhold.geometry.segment import bounding_box
+from workhold.geometry.segment import compute_bounding_box
 from workhold.model.bodies import BodySizes
 from workhold.model.fixture import Fixture
 from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes
 from workhold.model.query import Query
 from workhold.model.requirements import make_zone
 from workhold.model.support_bodies import list_bodies_on_supports, size_supported_bodies
-from workhold.model.support_triples import ChosenSupports, Supports, Triple, recounted
+from workhold.model.support_triples import ChosenSupports, Supports, Triple, recount_holes
 from workhold.units import find_unit
 from workhold.web.request_forms import OF_HARDWARE, SupportsForm
-from workhold.web.worker import Order
+from workhold.web.worker import TaskContext
 
 __all__ = ["SupportsOrder", "choose_supports", "find_supports"]
 
@@ -37,7 +37,7 @@ OWN = ("band", "point", *(row.name for row in OF_HARDWARE))
 
 @frozen(eq=False)
 class SupportsOrder:
-    """What to find supports for.
+    """An order to find supports under a fixture.
 
     Parameters
     ----------
@@ -51,14 +51,15 @@ class SupportsOrder:
     form: SupportsForm
 
 
-def find_supports(payload: SupportsOrder, order: Order) -> dict[str, Any]:
-    """Find the best sets of three supports, and describe them with what shows from the side."""
+def find_supports(payload: SupportsOrder, order: TaskContext) -> dict[str, Any]:
+    """Return the best sets of three supports as plain data, with the boxes that show from the side."""
     return describe_supports(find_asked_supports(payload), payload.form.unit)
 
 
 def find_asked_supports(asked: SupportsOrder) -> Supports:
+    """Return the supports that a form asks for under a fixture."""
     from workhold.supports.asking import make_request
-    from workhold.supports.listing import supports_of
+    from workhold.supports.listing import find_supports
 
     form = asked.form
     own = {name: getattr(form, name) for name in OWN if getattr(form, name) is not None}
@@ -66,25 +67,25 @@ def find_asked_supports(asked: SupportsOrder) -> Supports:
         name: [make_zone(loop) for loop in getattr(form, name)] for name in ("bottom_zones", "top_zones")
     }
     request = make_request(asked.query, form.thickness, own | zones)
-    loads = None if form.loads is None else [load.load() for load in form.loads]
-    return supports_of(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
+    loads = None if form.loads is None else [load.to_load() for load in form.loads]
+    return find_supports(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
 
 
 def choose_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
-    """Find the supports that are asked for, and choose the set of a number from 1; None where none hold.
+    """Return the set with this number, from 1, of the supports asked for; None where no set holds the part.
 
-    Refuses a number of which there is no set.
+    Raises InputError for a number without a set.
     """
     found = find_asked_supports(asked)
-    return ChosenSupports.of(found, number) if found.triples else None
+    return ChosenSupports.from_supports(found, number) if found.triples else None
 
 
 def describe_supports(found: Supports, unit: str) -> dict[str, Any]:
-    """Describe the best sets; places are in mm in the toolkit's frame.
+    """Return the best sets as plain data; places are in mm in the toolkit's frame.
 
-    ``positions`` is how many holes may hold a support, ``count`` how many sets there are, null where not all
-    were looked at. ``bands`` are the heights at which each peg may press. ``notes`` are sentences in
-    ``unit``.
+    ``positions`` is the number of holes that may hold a support, ``count`` that of sets, None where not all
+    were looked at. ``bands`` are the heights at which each peg may press. ``notes`` are sentences with
+    lengths in ``unit``.
     """
     request, listed = found.request, found.triples
     sizes = size_supported_bodies(found)
@@ -97,25 +98,27 @@ def describe_supports(found: Supports, unit: str) -> dict[str, Any]:
         "with_loads": bool(found.loads),
         "positions": found.positions,
         "count": found.count,
-        "bands": request.peg_bands(len(found.fixture.pegs)).tolist(),
-        "sets": [set_answer(found, triple) for triple in listed],
+        "bands": request.list_peg_bands(len(found.fixture.pegs)).tolist(),
+        "sets": [describe_set(found, triple) for triple in listed],
         "boxes": [list(list_boxes(found, triple, sizes)) for triple in listed],
         "notes": list_support_notes(found, unit),
     }
 
 
-def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
-    """Describe one set of three; forces are null without loads.
+def describe_set(found: Supports, triple: Triple) -> dict[str, Any]:
+    """Return one set of three as plain data; forces are None without loads.
 
-    ``travel`` is what the jaws are opened to where the set asks for more than the fixture alone, else null.
+    ``travel`` is what the jaws are opened to where the set asks for more than the fixture alone, else None.
     ``nearest`` is the point of the triangle's border that is nearest to the clamp. ``built`` has the holes of
-    pegs and supports in plates that can take them all, as on the sheet, where these are others, else null.
+    pegs and supports in plates that can take them all, as on the sheet, where these are others than shown,
+    else None.
     """
     fixture, clamp, loaded = found.fixture, triple.clamp, bool(found.loads)
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
     moves = triple.travel is not None and abs(triple.travel - fixture.travel) > 1e-6
 
     def placed(x: float, y: float) -> list[float]:
+        """Return a point of the part in the toolkit's frame."""
         return [float(value) for value in fixture.pose.apply(x, y)]
 
     return {
@@ -123,7 +126,7 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         "carriers": found.query.toolkit.find_carrier_numbers(pad.carrier for pad in triple.supports),
         "pads": [placed(pad.x, pad.y) for pad in triple.supports],
         "at": placed(*clamp.at),
-        "clamped_height": found.request.clamped_height(clamp.at),
+        "clamped_height": found.request.find_clamped_height(clamp.at),
         "at_part": list(clamp.at),
         "nearest": placed(*find_nearest_on_border(corners, np.array(clamp.at))),
         "clamp_force": clamp.clamp_needed if loaded else None,
@@ -139,7 +142,9 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
 
 
 def list_standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
-    """Return the holes of pegs, and of supports, as the page names them: in the middle of the plate."""
+    """Return the names of the holes of pegs, and of supports,
+    with the set-up in the middle of the plate, as the page has it.
+    """
     query = found.query
     move = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
     pegs = [peg.hole for peg in move_fixture_by_holes(found.fixture, query.toolkit, move).pegs]
@@ -148,11 +153,14 @@ def list_standing_holes(found: Supports, triple: Triple) -> tuple[list[str], lis
 
 
 def describe_built_holes(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
-    """Name the holes in which a set is built where the page names others; None where it does not."""
+    """Return the holes in which a set is built, where they differ from those of the page.
+
+    Return None where they do not differ, or the supports fit no holes.
+    """
     query = found.query
     start = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
     try:
-        anew = recounted(found.fixture, query.toolkit, triple, start)
+        anew = recount_holes(found.fixture, query.toolkit, triple, start)
     except InputError:
         return None
     pegs = [peg.hole for peg in anew.fixture.pegs]
@@ -163,7 +171,7 @@ def describe_built_holes(found: Supports, triple: Triple) -> dict[str, list[str]
 
 
 def find_nearest_on_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, float]:
-    """Return the point of a triangle's border (3, 2) that is nearest to a point (2,)."""
+    """Return the point of the border of a triangle with corners (3, 2) that is nearest to a point (2,)."""
     starts, ways = corners, np.roll(corners, -1, axis=0) - corners
     shares = ((point - starts) * ways).sum(axis=1) / (ways**2).sum(axis=1)
     feet = starts + np.clip(shares, 0.0, 1.0)[:, None] * ways
@@ -172,6 +180,7 @@ def find_nearest_on_border(corners: np.ndarray, point: np.ndarray) -> tuple[floa
 
 
 def list_support_notes(found: Supports, unit: str) -> list[str]:
+    """Return sentences on the sets listed, or why there is none, with lengths in a unit."""
     from workhold.supports.words import explain_no_set, write_listing_notes
 
     given, listed = find_unit(unit), found.triples
@@ -180,14 +189,16 @@ def list_support_notes(found: Supports, unit: str) -> list[str]:
 
 
 def list_boxes(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
-    """List the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
+    """Yield the box of each slab of each body of a fixture with a set of supports;
+    nothing where pegs have no body.
+    """
     try:
         bodies = list_bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)
     except InputError:
         return
     for body in bodies:
         for slab in body.slabs:
-            sides = np.array([bounding_box(segment) for segment in slab.outer])
+            sides = np.array([compute_bounding_box(segment) for segment in slab.outer])
             x0, y0 = sides[:, :2].min(axis=0).tolist()
             x1, y1 = sides[:, 2:].max(axis=0).tolist()
             yield {

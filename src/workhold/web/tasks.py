@@ -1,6 +1,6 @@
 """Tasks of the workers.
 
-Every task takes its payload and an :class:`workhold.web.worker.Order`, and returns plain data or objects of
+Every task takes its payload and an :class:`workhold.web.worker.TaskContext`, and returns plain data or objects of
 the model. Heavy modules are imported by the tasks that need them, or by :func:`warm_up`; what is returned
 needs none of them.
 """
@@ -21,7 +21,7 @@ from workhold.web.program_forms import look_at_program
 from workhold.web.request_forms import check_body
 from workhold.web.searching import AskedQueries, search
 from workhold.web.support_tasks import find_supports
-from workhold.web.worker import Order, Tasks, run_tasks
+from workhold.web.worker import TaskContext, Tasks, run_tasks
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
@@ -37,7 +37,7 @@ MOST_RESISTING = 10
 
 
 def warm_up(kind: str) -> None:
-    """Load, and on a first run compile, what workers of a kind need: "search" or "desk"."""
+    """Import and, on a first run, compile what workers of a kind need: "search" or "desk"."""
     from workhold.search.design import design
 
     if kind == "search":
@@ -53,8 +53,10 @@ def warm_up(kind: str) -> None:
     import workhold.web.forms  # noqa: F401
 
 
-def explore_toolkits(payload: AskedQueries, order: Order) -> None:
-    """Answer one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
+def explore_toolkits(payload: AskedQueries, order: TaskContext) -> None:
+    """Answer one query after the other;
+    it reports ("row", row) and ("progress", fraction, found) and returns nothing.
+    """
     from workhold.files.result.writer import make_toolkit_fields
     from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
     from workhold.search.design import explore
@@ -77,14 +79,17 @@ def explore_toolkits(payload: AskedQueries, order: Order) -> None:
         order.report(("progress", number / len(queries), total))
 
 
-def explain_result(payload: AskedQueries, order: Order) -> Explanation:
+def explain_result(payload: AskedQueries, order: TaskContext) -> Explanation:
+    """Return why the query of a search has no fixture."""
     from workhold.search.explaining import explain
 
     return explain(payload.query)
 
 
-def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> AskedQueries:
-    """Make the queries of a request, and check what can be checked before the search."""
+def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: TaskContext) -> AskedQueries:
+    """Return the queries of a request, sealed;
+    raise InputError for what can be found wrong before the search.
+    """
     from workhold.contact.problem import Problem
     from workhold.search.seat_search import make_locating_query
     from workhold.search.seated import refuse_unasked
@@ -93,13 +98,14 @@ def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Or
     queries = form.to_queries(most_segments)
     if len(queries) == 1:
         asked = queries[0][1]
-        Problem.of(asked if asked.toolkit.strap_set is None else make_locating_query(asked))
+        Problem.from_query(asked if asked.toolkit.strap_set is None else make_locating_query(asked))
         if queries[0][1].seating is not None:
             refuse_unasked(queries[0][1])
     return AskedQueries.from_queries(queries)
 
 
-def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
+def make_lesson(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[str, Any]:
+    """Return what the page on the method shows of a part."""
     from workhold.presenting.lesson import compute_lesson
 
     form, most_segments = payload
@@ -107,37 +113,42 @@ def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, A
 
 
 def compute_loads(
-    payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order
+    payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: TaskContext
 ) -> list[dict[str, Any]]:
-    from workhold.presenting.data import load_case_data
-    from workhold.statics.loads import load_cases
+    """Return what each load of a form does to a fixture, as plain data."""
+    from workhold.presenting.data import describe_load_case
+    from workhold.statics.loads import compute_load_cases
 
     fixture, workpiece, toolkit, form = payload
-    asked = [load.load() for load in form.loads]
-    cases = load_cases(fixture, workpiece, toolkit, asked, form.jaw_force, form.friction, form.jaw)
-    return [load_case_data(case) for case in cases]
+    asked = [load.to_load() for load in form.loads]
+    cases = compute_load_cases(fixture, workpiece, toolkit, asked, form.jaw_force, form.friction, form.jaw)
+    return [describe_load_case(case) for case in cases]
 
 
-def list_warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict[str, Any]:
+def list_warnings(payload: tuple[Result, bool, dict[str, Any]], order: TaskContext) -> dict[str, Any]:
+    """Return the warnings of the first fixture of a result and, if ``is_first``, why it comes first."""
     from workhold.drawing.sheet_facts import list_result_cautions
-    from workhold.statics.why_first import why_first
+    from workhold.statics.why_first import explain_why_first
 
     result, is_first, asked = payload
     cautions = list_result_cautions(result, 1, **asked)
     return {
         "warnings": [{"kind": caution.kind, "sentence": caution.sentence} for caution in cautions],
-        "why_first": why_first(result, asked["unit"]) if is_first else "",
+        "why_first": explain_why_first(result, asked["unit"]) if is_first else "",
     }
 
 
-def rank_by_load_reaction(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
+def rank_by_load_reaction(payload: tuple[Result, LoadsForm], order: TaskContext) -> list[tuple[int, float]]:
+    """Return (rank from 1, load reaction in N) of the ten
+    fixtures with the least load reaction, the least first.
+    """
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION
     from workhold.statics.quality import measure_quality
 
     result, form = payload
-    asked = [load.load() for load in form.loads]
+    asked = [load.to_load() for load in form.loads]
     reaction = measure_quality(result.table, result.workpiece, result.toolkit, result.query.tolerance, asked)[
         :, LOAD_REACTION
     ]
@@ -171,5 +182,7 @@ TASKS: Tasks = {
 
 
 def run_worker(connection: Connection, kind: str, memory_bytes: int) -> None:
-    """Run a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.run_tasks`."""
+    """Run a worker of a kind until its pipe ends, see :func:`warm_up` and
+    :func:`workhold.web.worker.run_tasks`.
+    """
     run_tasks(connection, memory_bytes, TASKS, partial(warm_up, kind))

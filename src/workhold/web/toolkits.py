@@ -15,7 +15,7 @@ from typing import Any
 from attrs import asdict, frozen
 
 from workhold.asking.declaring import Choice, Declaration, list_declarations
-from workhold.asking.search import RuledOut, SearchQuestion
+from workhold.asking.search import RestrictionQuestion, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.panel import describe_arrangement
 from workhold.files.result.writer import make_toolkit_fields
@@ -26,7 +26,7 @@ from workhold.fixels.support_hardware import HARDWARE
 
 __all__ = [
     "DESCRIBED",
-    "Described",
+    "DescribedToolkit",
     "describe_kinds",
     "choose_page_kind",
     "describe_questions",
@@ -58,6 +58,9 @@ class PageField:
 
 
 def list_page_fields(row: Declaration, table: str | None = None) -> Iterator[PageField]:
+    """Yield a field of the page for each label of a declared field;
+    ``table`` names the table that it stands in.
+    """
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)
@@ -67,7 +70,7 @@ def list_page_fields(row: Declaration, table: str | None = None) -> Iterator[Pag
 
 
 @frozen
-class Described:
+class DescribedToolkit:
     """A kind of toolkit as the page shows it.
 
     Parameters
@@ -81,18 +84,18 @@ class Described:
 
     @property
     def said(self) -> Mapping[str, Any]:
-        """Fields that the kind's name says by itself."""
+        """Fields with values that follow from the kind's name."""
         return resolve_kind(self.name)[1]
 
     @property
     def fields(self) -> tuple[PageField, ...]:
-        """Fields of the page: those of the kind without those that its name says."""
+        """Fields of the page: those of the kind without those that follow from its name."""
         rows = (row for row in find_table(resolve_kind(self.name)[0]).fields if row.name not in self.said)
         return tuple(one for row in rows for one in list_page_fields(row))
 
     @property
     def roles(self) -> dict[str, str]:
-        """The role of the carriers whose heights a field says, by the name of the field."""
+        """Role of the carriers whose heights a field gives, by the name of the field."""
         any_heights = (1.0, 2.0)
         return {
             row.name: role
@@ -102,6 +105,7 @@ class Described:
         }
 
     def answer(self) -> dict[str, Any]:
+        """Return the kind as plain data: names, usual values, arrangements and fields."""
         toolkit = make_toolkit(self.name, self.words.start)
         types = {one.name: describe_arrangement(one, toolkit) for one in toolkit.arrangements}
         return {
@@ -122,8 +126,10 @@ class Described:
 
 
 def describe_questions() -> dict[str, list[dict[str, Any]]]:
-    """Return what the page asks of a search and of a sheet, field by field, with the section that each is in."""
-    questions = {"restrictions": RuledOut, "search": SearchQuestion, "sheet": SheetQuestion}
+    """Return the fields that the page shows of restrictions,
+    search and sheet as plain data, each with section and help.
+    """
+    questions = {"restrictions": RestrictionQuestion, "search": SearchQuestion, "sheet": SheetQuestion}
     return {
         name: [
             asdict(one) | {"section": row.section, "help": row.help, "needs": row.needs}
@@ -135,6 +141,7 @@ def describe_questions() -> dict[str, list[dict[str, Any]]]:
 
 
 def describe_hardware() -> list[dict[str, Any]]:
+    """Return the fields that the page shows of supports, clamp and other hardware, as plain data."""
     return [
         {
             "name": name,
@@ -145,15 +152,18 @@ def describe_hardware() -> list[dict[str, Any]]:
     ]
 
 
-DESCRIBED = tuple(Described(name, words) for name, words in PAGES.items())
+DESCRIBED = tuple(DescribedToolkit(name, words) for name, words in PAGES.items())
 
 
 def describe_kinds() -> list[dict[str, Any]]:
+    """Return all kinds of toolkits as plain data."""
     return [one.answer() for one in DESCRIBED]
 
 
 def choose_page_kind(loaded: LoadedToolkit) -> str:
-    """Name the kind under which the page shows a toolkit: the one whose name says most of its fields."""
+    """Return the name of the kind under which the page shows a toolkit:
+    the fitting one that fixes most of its fields.
+    """
     fits = [
         one
         for one in DESCRIBED
@@ -163,7 +173,7 @@ def choose_page_kind(loaded: LoadedToolkit) -> str:
 
 
 def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
-    """Describe a preset; its kind is one of those that the page has fields for."""
+    """Return a preset as plain data; its kind is one that the page has fields for."""
     given = make_toolkit_fields(loaded.toolkit)
     return {
         "name": loaded.name,

@@ -31,7 +31,7 @@ from attrs import frozen
 from workhold.errors import InputError, lacks_memory
 from workhold.files.apart import limit_memory, limit_processor
 
-__all__ = ["CANCEL", "Order", "Tasks", "discard_folders", "return_memory", "run_tasks"]
+__all__ = ["CANCEL", "TaskContext", "Tasks", "discard_folders", "return_memory", "run_tasks"]
 
 # The name of a message that asks a task to stop.
 CANCEL = "cancel"
@@ -40,8 +40,8 @@ SPARE_SECONDS = 30.0
 
 
 @frozen
-class Order:
-    """What a task may use of its process.
+class TaskContext:
+    """Means that a task has in its process: reports, cancellation and time.
 
     Parameters
     ----------
@@ -55,11 +55,11 @@ class Order:
     seconds: float
 
 
-Tasks = Mapping[str, Callable[[Any, Order], Any]]
+Tasks = Mapping[str, Callable[[Any, TaskContext], Any]]
 
 
 def run_tasks(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]) -> None:
-    """Run tasks until the pipe ends; the process's main function.
+    """Run tasks until the pipe ends; this is the main function of the process and does not return.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def run_tasks(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: 
         ("ready", 0, None). Each task sends ("report", number, value) any number of times, then one of
         ("done", number, value), ("refused", number, sentence) and ("failed", number, sentence).
     memory_bytes : the most address space the process may take.
-    tasks : what it can do, by name.
+    tasks : functions that do the tasks, by name.
     warm_up : called first, within the limits.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -84,10 +84,11 @@ def run_tasks(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: 
         limit_processor((os.cpu_count() or 1) * (seconds + SPARE_SECONDS))
 
         def report(value: Any, number: int = number) -> None:
+            """Send a report of the task."""
             connection.send(("report", number, value))
 
         try:
-            answer = ("done", number, tasks[name](payload, Order(report, cancel, seconds)))
+            answer = ("done", number, tasks[name](payload, TaskContext(report, cancel, seconds)))
         except InputError as error:
             answer = ("refused", number, str(error))
         except Exception as error:
@@ -104,26 +105,28 @@ folders: list[str] = []
 
 
 def make_own_folder() -> None:
-    """Make a folder for what tasks of this process write for a time, if one can be made."""
+    """Make a temporary folder for this process and its tasks, if possible; tempfile uses it from then on."""
     with suppress(OSError):
         folders.append(tempfile.mkdtemp(prefix=make_folder_prefix(os.getpid())))
         tempfile.tempdir = folders[0]
 
 
 def make_folder_prefix(process: int) -> str:
-    """Return what the name of a worker's folder begins with, by the number of its process."""
+    """Return the beginning of the name of a worker's folder, by its process id."""
     return f"workhold-worker-{process}-"
 
 
 def discard_folders(process: int | None) -> None:
-    """Remove the folder of a worker that has ended, with all that its tasks have left there."""
+    """Remove the temporary folders of a worker that has ended,
+    by its process id, with all that is in them.
+    """
     for path in Path(tempfile.gettempdir()).glob(f"{make_folder_prefix(process or 0)}*"):
         shutil.rmtree(path, ignore_errors=True)
 
 
 @cache
 def find_memory_trimmer() -> Any:
-    """Return the function of the C library that gives freed memory back; None where it has none."""
+    """Return the C library's ``malloc_trim``; None where it has none."""
     with suppress(OSError, AttributeError, TypeError):
         return ctypes.CDLL(None).malloc_trim
     return None
@@ -132,8 +135,8 @@ def find_memory_trimmer() -> Any:
 def return_memory() -> None:
     """Give freed memory back to the system, which takes milliseconds.
 
-    The C library keeps most of what large results took: small pieces in between keep whole blocks from going
-    back by themselves.
+    The C library keeps most of what large results took, because small pieces in between keep whole blocks
+    from going back by themselves.
     """
     gc.collect()
     trim = find_memory_trimmer()
@@ -142,7 +145,9 @@ def return_memory() -> None:
 
 
 def explain_task_error(error: Exception, memory_bytes: int) -> str:
-    """Return a sentence for the client of a task that failed; standard error gets the traceback."""
+    """Return a sentence for the client of a task that failed,
+    and print the traceback on stderr unless memory ran out.
+    """
     if lacks_memory(error):
         return f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives."
     traceback.print_exception(error, file=sys.stderr)
@@ -153,7 +158,11 @@ def explain_task_error(error: Exception, memory_bytes: int) -> str:
 
 
 def receive_orders(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
-    """Receive messages from the server; end the process when the server has ended."""
+    """Put tasks from the pipe into the queue,
+    and set the event of the newest one that is cancelled; runs in a thread.
+
+    Ends the process when the server has ended.
+    """
     newest, cancel = 0, Event()
     while True:
         try:

@@ -17,7 +17,7 @@ from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.part.load import read_workpiece
 from workhold.files.part.survey import list_drawn_layers, survey_part_file
 from workhold.geometry import loop as loop_module
-from workhold.geometry.loop import Comparisons, LoopShape, find_near_segments, loop_segments
+from workhold.geometry.loop import ComparisonBudget, LoopShape, find_near_segments, make_loop_segments
 
 PLATE = [((0, 0), (60, 0)), ((60, 0), (60, 40)), ((60, 40), (0, 35)), ((0, 35), (0, 0))]
 
@@ -183,8 +183,8 @@ def comb(teeth: int) -> list[list[float]]:
 def test_slanted_teeth_are_compared_with_their_neighbours() -> None:
     """Not with all whose boxes overlap theirs."""
     part = Workpiece.from_loops("comb", [comb(300)])
-    shape = LoopShape.of(loop_segments(part.loops[0]))
-    comparisons = Comparisons("the part")
+    shape = LoopShape.from_segments(make_loop_segments(part.loops[0]))
+    comparisons = ComparisonBudget("the part")
     for k in range(len(shape.segments)):
         find_near_segments(shape, k, shape, comparisons)
     assert comparisons.most - comparisons.left < 8 * len(shape.segments)
@@ -192,7 +192,7 @@ def test_slanted_teeth_are_compared_with_their_neighbours() -> None:
 
 def test_what_cannot_be_told_apart_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Crescents within each other: too many pairs to compare."""
-    monkeypatch.setattr(loop_module.Comparisons.__init__, "__defaults__", (500,))
+    monkeypatch.setattr(loop_module.ComparisonBudget.__init__, "__defaults__", (500,))
     rows = [[x, y, 0.3 if k % 2 else -0.3] for k, (x, y, _) in enumerate(comb(100))]
     rows[-4:] = [[*row[:2], 0.0] for row in rows[-4:]]
     with pytest.raises(InputError, match="more than 500 pairs of segments"):
@@ -204,10 +204,10 @@ def test_circles_within_circles_are_nested_by_the_one_around() -> None:
     import numpy as np
 
     from workhold.files.budget import UNLIMITED, Budget
-    from workhold.files.outline.joining import Loop
+    from workhold.files.outline.joining import JoinedLoop
     from workhold.files.outline.nesting import nest_loops
 
-    loops = [Loop(np.array([[r, 0.0, 1.0], [-r, 0.0, 1.0]]), ("", "")) for r in range(1, 201)]
+    loops = [JoinedLoop(np.array([[r, 0.0, 1.0], [-r, 0.0, 1.0]]), ("", "")) for r in range(1, 201)]
     budget = Budget(UNLIMITED)
     parts = nest_loops(loops, budget)
     assert len(parts) == 100 and all(len(part.loops) == 2 for part in parts)

@@ -293,7 +293,7 @@ def test_extrusion_from_below_mirrors_x(tmp_path: Path) -> None:
     assert area(part) == pytest.approx(800 + 100 * pi - 16 * pi - pi * 3.5**2 / 2, rel=1e-12)
     # Half a circle from (33, 5) to (33, 12), bulging right in OCS, so left in the drawing.
     half = next(s for s in part.segments if getattr(s, "radius", 0) == pytest.approx(3.5))
-    assert half.at(0.0) == pytest.approx((29.5, 8.5))
+    assert half.compute_point(0.0) == pytest.approx((29.5, 8.5))
 
 
 def test_truncated_files_are_refused(tmp_path: Path) -> None:

@@ -74,11 +74,11 @@ def test_brackets_outline_is_tangent_where_it_is_drawn_so() -> None:
     outline = part.loop_segments[0]
     smooth = 0
     for before, after in zip(outline, outline[1:] + outline[:1], strict=True):
-        n, m = before.normal(before.half_extent), after.normal(-after.half_extent)
+        n, m = before.compute_normal(before.half_extent), after.compute_normal(-after.half_extent)
         if isinstance(before, Arc):
-            n = before.normal(before.sign * before.half_sweep)
+            n = before.compute_normal(before.sign * before.half_sweep)
         if isinstance(after, Arc):
-            m = after.normal(-after.sign * after.half_sweep)
+            m = after.compute_normal(-after.sign * after.half_sweep)
         smooth += n == pytest.approx(m, abs=1e-7)
     assert smooth == 6
 

@@ -33,7 +33,7 @@ def draw_loose(block: Any) -> None:
 
 def middles(part: Workpiece) -> np.ndarray[Any, Any]:
     """Start and middle points of all segments, sorted: they fix lines and arcs alike."""
-    points = [s.start for s in part.segments] + [s.at(0.0) for s in part.segments]
+    points = [s.start for s in part.segments] + [s.compute_point(0.0) for s in part.segments]
     return np.array(sorted((round(x, 6), round(y, 6)) for x, y in points))
 
 

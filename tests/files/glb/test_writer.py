@@ -19,7 +19,7 @@ from workhold.geometry.segment import Arc, Line
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, list_fixture_bodies
 from workhold.model.solid import SolidOutline
 
-SIZES = BodySizes.of(BLOCK, thickness=12, plate_thickness=8)
+SIZES = BodySizes.from_workpiece(BLOCK, thickness=12, plate_thickness=8)
 
 
 def bodies_of(name: str) -> list[ReadBody]:
@@ -144,9 +144,9 @@ def test_a_part_of_a_solid_has_its_heights() -> None:
     assert read["peg"].heights == pytest.approx((-10, 6), abs=1e-5)
     heights = {body.kind: body.slabs[-1].high for body in list_fixture_bodies(fixture, high, toolkit)}
     assert heights["wall"] == 6.0
-    assert not BodySizes.of(high).is_assumed and BodySizes.of(part).is_assumed
-    assert BodySizes.of(high, thickness=5.0).top == 5.0
-    assert BodySizes.of(high, peg_height=9.0).top == 9.0
+    assert not BodySizes.from_workpiece(high).is_assumed and BodySizes.from_workpiece(part).is_assumed
+    assert BodySizes.from_workpiece(high, thickness=5.0).top == 5.0
+    assert BodySizes.from_workpiece(high, peg_height=9.0).top == 9.0
 
 
 def test_plates_that_nearly_meet_have_notches() -> None:

@@ -199,7 +199,7 @@ def joint_turns(part: Workpiece) -> list[float]:
     turns = []
     for one, other in zip(part.segments, part.segments[1:] + part.segments[:1], strict=True):
         (ax, ay), (bx, by) = (
-            s.normal(compute_first_parameter(s) * sign) for s, sign in ((one, -1.0), (other, 1.0))
+            s.compute_normal(compute_first_parameter(s) * sign) for s, sign in ((one, -1.0), (other, 1.0))
         )
         turns.append(float(np.arctan2(ax * by - ay * bx, ax * bx + ay * by)))
     return turns

@@ -16,7 +16,7 @@ from reading_helpers import area, read_dxf, rectangle
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, compute_moved_bulge
 from workhold.files.outline.joining import close_pairs, group_by_pairs, join
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Arc, make_segment_from_bulge
 
 
@@ -68,8 +68,8 @@ def test_exploding_shuffling_and_joining_gives_the_loop_back(
     assert len(joined.loops) == 1
     assert not joined.strays
     assert len(joined.loops[0].labels) == len(rows)
-    expected = abs(compute_signed_area(loop_segments(rows)))
-    assert abs(compute_signed_area(loop_segments(joined.loops[0].vertices))) == pytest.approx(
+    expected = abs(compute_signed_area(make_loop_segments(rows)))
+    assert abs(compute_signed_area(make_loop_segments(joined.loops[0].vertices))) == pytest.approx(
         expected, abs=1e-6 + 1500 * gap
     )
     assert bool(joined.remarks) == (gap > 1e-9)

@@ -375,7 +375,7 @@ def test_the_end_behind_a_switch_is_refused_where_more_follows(tmp_path: Path) -
 
 def test_the_places_of_a_file_are_those_of_the_text(tmp_path: Path) -> None:
     """The form of a result has no more keys than before, and a start is no part of it."""
-    head = read_text(tmp_path, START + "G1 X5. F100\n", start=(0, 0, 50)).head()
+    head = read_text(tmp_path, START + "G1 X5. F100\n", start=(0, 0, 50)).make_head()
     assert set(head) == {
         *("name", "sha256", "unit", "zero", "z_zero", "clearance", "rapid", "tools", "skipped", "notes")
     }
@@ -390,7 +390,7 @@ def test_a_program_of_two_tools_is_that_of_places_written_out(tmp_path: Path) ->
     read = read_program_with_calls(path, TOOLS, z_zero=12.0).program
     path.write_text(short.replace("X-5.", "X-5. Y-3."))
     long: Program = read_program_with_calls(path, TOOLS, z_zero=12.0).program
-    assert shapes(read.swept(0, 6)) == shapes(long.swept(0, 6))
+    assert shapes(read.list_swept_pieces(0, 6)) == shapes(long.list_swept_pieces(0, 6))
     low = read.moves.cutting & (read.moves.end[:, 2] < 4)
     assert np.ptp(read.moves.end[low, 0]) == 90.0
 

@@ -78,7 +78,9 @@ def test_an_inch_is_254_tenths_of_a_millimetre(tmp_path: Path) -> None:
 def test_an_arc_by_its_radius_is_that_by_its_centre(tmp_path: Path, centre: str, radius: str) -> None:
     """Below and above half a turn, both ways, and as a helix."""
     start = HEAD + "G0 X0 Y10 Z0\n"
-    one, other = (read_text(tmp_path, start + text + " F100\n").swept(-9, 9) for text in (centre, radius))
+    one, other = (
+        read_text(tmp_path, start + text + " F100\n").list_swept_pieces(-9, 9) for text in (centre, radius)
+    )
     first = np.array([piece.path for piece in one if len(piece.path) == 2])
     second = np.array([piece.path for piece in other if len(piece.path) == 2])
     assert first.shape == second.shape and np.allclose(first, second, atol=1e-9)
@@ -211,8 +213,16 @@ def test_a_helix_is_its_chords_within_their_height(tmp_path: Path) -> None:
     lines = read_text(tmp_path, HEAD + "G0 X20 Y0 Z0\n" + chords, tools={1: MILL})
     sagitta = 20 * (1 - cos(pi / count))
     for low, high in ((-9.0, -7.5), (-4.0, -3.999), (23.0, 24.0)):
-        one = {tuple(np.round(point, 2)) for piece in helix.swept(low, high) for point in along_path(piece)}
-        other = {tuple(np.round(point, 2)) for piece in lines.swept(low, high) for point in along_path(piece)}
+        one = {
+            tuple(np.round(point, 2))
+            for piece in helix.list_swept_pieces(low, high)
+            for point in along_path(piece)
+        }
+        other = {
+            tuple(np.round(point, 2))
+            for piece in lines.list_swept_pieces(low, high)
+            for point in along_path(piece)
+        }
         for near, far in ((one, other), (other, one)):
             away = np.array(list(near))[:, None] - np.array(list(far))[None]
             assert np.sqrt((away**2).sum(axis=2)).min(axis=1).max() < sagitta + 0.4
@@ -220,7 +230,7 @@ def test_a_helix_is_its_chords_within_their_height(tmp_path: Path) -> None:
 
 def along_path(piece: object) -> np.ndarray:
     """Points along the path of a piece, some 0.3 mm apart."""
-    from workhold.model.moves import along
+    from workhold.model.moves import compute_path_points
 
     path = np.array(piece.path)  # type: ignore[attr-defined]
     if len(path) == 1:
@@ -228,4 +238,4 @@ def along_path(piece: object) -> np.ndarray:
     count = 2 + int(np.hypot(*(path[1] - path[0])[:2]) / 0.3) * 2
     share = np.linspace(0, 1, count)
     start, end = (np.repeat(path[k : k + 1, :2], count, axis=0) for k in (0, 1))
-    return along(start, end, np.full(count, path[0, 2]), share)
+    return compute_path_points(start, end, np.full(count, path[0, 2]), share)

@@ -27,7 +27,7 @@ BEGIN = b'{"format": "workhold-result/1",\n"fixtures": [\n'
 READ_ALL = """
 import sys
 from pathlib import Path
-from workhold.batch.durations import Measured
+from workhold.batch.durations import TaskDurations
 from workhold.batch.store import FolderStore
 from workhold.benchmark.matching import read_entry
 from workhold.cli.jobs import read_jobs
@@ -54,7 +54,7 @@ for name in sys.argv[1:]:
             assert "regular file" in str(error) or "not a file" in str(error), str(error)
         else:
             raise AssertionError(f"{read} reads {name}")
-    assert not is_supports_file(Path(name)) and not Measured(Path(name)).known
+    assert not is_supports_file(Path(name)) and not TaskDurations(Path(name)).known
 folder = Path(sys.argv[1]).parent
 (folder / "ab").mkdir()
 Path(sys.argv[1]).rename(folder / "ab" / "abc.json")

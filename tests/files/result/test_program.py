@@ -87,7 +87,7 @@ def test_of_one_move_beside_a_fixture_the_nearest_peg_is_named(tmp_path: Path) -
         program = program_of(path(END_MILL, [(x - 40.0, y - 9.0, 2.0), (x - 40.0, y + 9.0, 2.0)]))
         asked = evolve(free.query, program=program, peg_height=PEG_HEIGHT)
         table = free.table.take(slice(place, place + 1))
-        one = Result(asked, table.with_figures(len(FIGURES) + 1), {"I": 1, "II": 1}, {"I": 1, "II": 1})
+        one = Result(asked, table.with_figure_columns(len(FIGURES) + 1), {"I": 1, "II": 1}, {"I": 1, "II": 1})
         workhold.save(one, tmp_path / "a.json")
         said = json.loads((tmp_path / "a.json").read_text())["fixtures"][0]["program_clearance"]
         assert said["element"] == f"peg {first}" and said["line"] in (3, 4, 5)

@@ -16,7 +16,7 @@ from workhold.files.result.parts import parse_head
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_head_json, write_program_json
 from workhold.model.cutting_tool import Tool
-from workhold.model.moves import SweptPiece, moves_of, pack_piece
+from workhold.model.moves import SweptPiece, pack_piece, unpack_moves
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -35,7 +35,7 @@ def test_text_in_parts_is_that_of_the_whole(
     monkeypatch.setattr(writer, "AT_ONCE", at_once)
     one = program(rapid=rapid)
     assert "".join(write_program_json(one)) == json.dumps(one.to_dict())
-    head = {"format": "x", "program": one.head(), "name": "Bügel", "best": None}
+    head = {"format": "x", "program": one.make_head(), "name": "Bügel", "best": None}
     told = json.loads("".join(write_head_json(head, one, ", ")) + "}")
     assert told == {**head, "program": one.to_dict()} and list(told) == list(head)
 
@@ -46,7 +46,7 @@ def test_pieces_are_packed_while_a_head_is_read(rapid: str) -> None:
     one = program(rapid=rapid)
     entries = parse_head("".join(write_program_json(one)))
     assert {type(piece) for piece in entries["pieces"]} == {bytes}
-    read, plain = Program.of_entries(entries), Program.of_entries(one.to_dict())
+    read, plain = Program.from_entries(entries), Program.from_entries(one.to_dict())
     assert read == plain and read.pieces == one.pieces
     assert (read.moves.start == one.moves.start).all() and (read.moves.bulge == one.moves.bulge).all()
 
@@ -73,20 +73,20 @@ def test_pieces_that_are_none_are_refused(change: Any, sentence: str) -> None:
     entries = program().to_dict()
     change(entries["pieces"])
     with pytest.raises((InputError, LookupError), match=sentence):
-        Program.of_entries(parse_head(json.dumps(entries)))
+        Program.from_entries(parse_head(json.dumps(entries)))
 
 
 def test_packed_pieces_make_the_moves_of_their_objects() -> None:
     """One move for each tool's stack of cylinders, its ends and bulge those of the path."""
     one = program()
-    moves = moves_of([pack_piece(piece.to_dict()) for piece in one.pieces], one.tools)
+    moves = unpack_moves([pack_piece(piece.to_dict()) for piece in one.pieces], one.tools)
     assert moves.start.tolist() == one.moves.start.tolist() and moves.line.tolist() == one.moves.line.tolist()
     assert moves.cutting.tolist() == one.moves.cutting.tolist() and not moves.feed.any()
-    assert len(moves_of([], one.tools)) == 0
+    assert len(unpack_moves([], one.tools)) == 0
     (first, *_) = one.tools[1].cylinders
     corners = ((0, 0, 0), (4, 0, 0), (4, 5, 0), (0, 5, 0), (0, 0, 0))
     box = SweptPiece(3, 1, "rapid", corners, (9, 8), first.radius, (first.low, first.high))
-    (line,) = moves_of([pack_piece(box.to_dict())], {1: Tool(1, [first], 10)}).line
+    (line,) = unpack_moves([pack_piece(box.to_dict())], {1: Tool(1, [first], 10)}).line
     assert line == 3
 
 

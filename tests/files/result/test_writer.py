@@ -24,7 +24,7 @@ from workhold.files.result.writer import write_result, write_result_text
 from workhold.files.toolkit_file import load_preset
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import Remark
-from workhold.model.search_report import Undecided
+from workhold.model.search_report import UndecidedCandidate
 
 
 @pytest.fixture
@@ -323,7 +323,7 @@ def test_a_file_may_come_without_an_account(tmp_path: Path, document: dict[str, 
 
 @pytest.mark.parametrize("angle", [360.0, -1e-14, 359.99999999999])
 def test_an_undecided_orientation_is_written_below_a_whole_turn(tmp_path: Path, angle: float) -> None:
-    lost = Undecided("I", (0, 1, 2, 4), (0, 1, 0, 1), (0, 0, 1, 1), angle, "reason")
+    lost = UndecidedCandidate("I", (0, 1, 2, 4), (0, 1, 0, 1), (0, 0, 1, 1), angle, "reason")
     proof = attrs.evolve(fake_proof(1), undecided=(lost,))
     write_result(fake_result(1, proof=proof), tmp_path / "a.json")
     again = read_result(tmp_path / "a.json").proof

@@ -40,10 +40,10 @@ from workhold.files.step.heights import (
 )
 from workhold.files.step.library import list_sub_shapes, occ, turn_axis_up
 from workhold.files.step.projected import OtherCurveError, ProjectedCurves
-from workhold.geometry.loop import loop_segments
+from workhold.geometry.loop import make_loop_segments
 from workhold.geometry.segment import Arc, Line, cross_carrying_line_and_circle, make_segment_from_bulge
-from workhold.geometry.subdivision import BorderPiece, CutCarrier
-from workhold.model.solid import HeightRow, run_at
+from workhold.geometry.subdivision import BorderPiece, CutCurve
+from workhold.model.solid import HeightRow, interpolate_run
 
 
 def sloped(body: Any, z: float, rise: float, across: float = 0.0) -> Any:
@@ -342,7 +342,7 @@ def test_the_run_at_a_contact_is_the_walls_own(name: str) -> None:
     """What a file keeps along a segment is the run that an upright line finds there, below a bore or above it."""
     solid = stand_solid(SOLIDS[name]())
     outline = solid.make_outline()
-    segments = [segment for loop in outline.vertices for segment in loop_segments(loop)]
+    segments = [segment for loop in outline.vertices for segment in make_loop_segments(loop)]
     looked = 0
     for segment, band, rows in zip(segments, outline.bands, outline.runs, strict=True):
         if not rows:
@@ -350,11 +350,12 @@ def test_the_run_at_a_contact_is_the_walls_own(name: str) -> None:
         assert band is not None
         for share in (0.1, 0.37, 0.5, 0.92):
             (x, y), (nx, ny) = (
-                function(segment.half_extent * (2 * share - 1)) for function in (segment.at, segment.normal)
+                function(segment.half_extent * (2 * share - 1))
+                for function in (segment.compute_point, segment.compute_normal)
             )
             runs = runs_beside(solid.shape, (x - 1e-5 * nx, y - 1e-5 * ny), 0.0, 60.0)
             (run,) = (one for one in runs if one[0] <= band[0] + 1e-4 and band[1] <= one[1] + 1e-4)
-            assert run_at(rows, share) == pytest.approx(run, abs=1e-4)
+            assert interpolate_run(rows, share) == pytest.approx(run, abs=1e-4)
             looked += 1
     assert looked > 20
 
@@ -372,7 +373,7 @@ def test_supports_hold_for_all_that_a_peg_can_press_on(tmp_path: Path) -> None:
         for peg, run in zip(fixture.pegs, found.request.bands, strict=True):
             x, y = fixture.pose.inverse.apply(peg.x, peg.y)
             face = next(one for one in part.faces if peg.face in one.segments)
-            px, _ = face.segment.at(face.segment.parameter((x, y)))
+            px, _ = face.segment.compute_point(face.segment.find_parameter((x, y)))
             assert run == (0.0, pytest.approx(min(20.0, 14 + 0.2 * px), abs=1e-6))
 
 
@@ -491,7 +492,7 @@ def test_an_outline_that_does_not_close_is_laid_to_the_face_that_leans() -> None
     """And not to the flat one that it cuts."""
     solid = stand_solid(SOLIDS["cone into a side"]())
     kinds = [face.kind for face in solid.faces]
-    carrier = CutCarrier(Line((0.0, 0.0), (9.0, 0.0)), [(-4.5, 4.5)])
+    carrier = CutCurve(Line((0.0, 0.0), (9.0, 0.0)), [(-4.5, 4.5)])
     pieces = [BorderPiece(carrier, -4.5, 4.5, True)]
     points = np.zeros((3, 2))
     flat, leaning = next(k for k, kind in enumerate(kinds) if kind == "wall"), kinds.index("cone")

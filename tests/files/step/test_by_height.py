@@ -34,8 +34,8 @@ from workhold.files.step.heights import StandingSolid, stand_solid
 from workhold.files.step.library import compute_bounding_box, list_sub_shapes, turn_axis_up
 from workhold.files.step.regions import cut_solid_at_height, measure_area
 from workhold.files.toolkit_file import load_toolkit
-from workhold.geometry.loop import compute_signed_area, loop_segments
-from workhold.geometry.segment import Line, segment_rows
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
+from workhold.geometry.segment import Line, make_segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.model.solid import Band, SolidOutline
 
@@ -68,7 +68,7 @@ def bands(shape: Any, *heights: float, **more: float) -> list[Band | None]:
 def area(solid: StandingSolid, low: float, high: float) -> float:
     """Area of U(low, high)."""
     loops = [[(*piece.start, piece.bulge) for piece in loop] for loop in solid.find_border(low, high)]
-    return sum(compute_signed_area(loop_segments(np.array(loop))) for loop in loops)
+    return sum(compute_signed_area(make_loop_segments(np.array(loop))) for loop in loops)
 
 
 PLATE = box(60, 40, 20)
@@ -212,11 +212,11 @@ def test_sections_lie_within_and_fill(name: str, shape: Any) -> None:
     )
     before = 0.0
     for high in (0.31 * highest, 0.66 * highest, highest):
-        rows = segment_rows(
+        rows = make_segment_rows(
             [
                 segment
                 for loop in solid.find_border(-1.0, high)
-                for segment in loop_segments(np.array([(*piece.start, piece.bulge) for piece in loop]))
+                for segment in make_loop_segments(np.array([(*piece.start, piece.bulge) for piece in loop]))
             ]
         )
         within = np.array([bool(is_inside(x, y, rows)) for x, y in points])
@@ -596,7 +596,7 @@ def test_faces_split_by_an_imprinted_line_are_one() -> None:
     lying = split(lying, 0.0, (0, -20), (0, -5))
     assert len([f for f in stand_solid(lying).faces if f.lie == "level" and not f.upward]) == 2
     found = standing_as_read(lying).bottom
-    areas = sorted(compute_signed_area(loop_segments(np.array(loop))) for loop in found)
+    areas = sorted(compute_signed_area(make_loop_segments(np.array(loop))) for loop in found)
     assert areas == pytest.approx([-25 * pi, 400 * pi])
     # A step beside a face of another height stays a face of its own.
     stepped = standing_as_read(fused(PLATE, box(20, 40, 4, (0, 0, 20))))

@@ -25,7 +25,7 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder, fused
 
 from workhold.files.step.edge_curves import bisect_condition, find_zero_crossing
-from workhold.files.step.enclosing import Enclosure, fold_boxes, fold_squares
+from workhold.files.step.enclosing import Enclosure, find_fold_squares, list_fold_boxes
 from workhold.files.step.faces import find_surface
 from workhold.files.step.heights import measure_outline, stand_solid
 from workhold.files.step.library import list_sub_shapes
@@ -100,7 +100,7 @@ def test_squares_hold_a_fold_with_room_beside_it() -> None:
     ring = BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0.3, 0.2, 0.9)), 10.0, 3.0).Shape()
     (face,) = list_sub_shapes(BRepBuilderAPI_NurbsConvert(ring).Shape(), "FACE")
     surface, size, room = find_surface(face), 0.5, 0.02
-    squares = fold_squares(surface, size)
+    squares = find_fold_squares(surface, size)
     u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), 241)
     v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), 241)
     missed = found = 0
@@ -130,8 +130,8 @@ def test_boxes_hold_the_outline_where_two_folds_cross() -> None:
         return any(hypot(point[0] - x, point[1] - y) < reach - 1e-9 for x, y in ((0.0, 0.0), (19.0, 4.0)))
 
     squares = {(floor(x / size), floor(y / size)) for circle in circles for x, y in circle}
-    held = Enclosure(polygons=fold_boxes(squares, size, is_there))
+    held = Enclosure(polygons=list_fold_boxes(squares, size, is_there))
     border = [place for circle in circles for place in circle if not is_there(place)]
     assert len(border) > 3000 and all(map(held.may_hold, border))
     # A fold at which there is nothing, as it lies below the heights that are asked about, is left out.
-    assert fold_boxes({(100, 100)}, size, is_there) == []
+    assert list_fold_boxes({(100, 100)}, size, is_there) == []

@@ -34,8 +34,8 @@ from workhold.files.step.heights import stand_solid
 from workhold.files.step.level_faces import find_bottom_loops, find_open_level_tops, trace_region
 from workhold.files.step.library import list_sub_shapes, turn_axis_up
 from workhold.files.supports_file import read_supports, write_supports
-from workhold.geometry.loop import compute_signed_area, loop_segments
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
+from workhold.geometry.segment import make_segment_rows
 from workhold.kernels.base.distance import is_inside
 from workhold.supports.faces import TouchableFace
 from workhold.supports.words import write_flat_faces_notes
@@ -47,7 +47,7 @@ BELOW = 0.02
 
 def area(loops: Sequence[Any]) -> float:
     """The area within loops, openings taken off."""
-    return sum(compute_signed_area(loop_segments(np.asarray(loop))) for loop in loops)
+    return sum(compute_signed_area(make_loop_segments(np.asarray(loop))) for loop in loops)
 
 
 def bored_aslant(x: float, degrees: float, radius: float = 6.0) -> Any:
@@ -105,12 +105,15 @@ def test_a_face_with_a_free_border_is_kept_and_none_of_it_is_over_air(
             for face in solid.faces
             if face.lie == "level" and face.low == z and face.upward == (z > 0)
         )
-        border = sum(segment.length for loop in loops for segment in loop_segments(loop))
+        border = sum(segment.length for loop in loops for segment in make_loop_segments(loop))
         assert exact - 0.02 * border <= area(loops) <= exact + 1e-4
         for loop in loops:
-            for segment in loop_segments(loop):
+            for segment in make_loop_segments(loop):
                 for share in (-0.9, -0.4, 0.0, 0.5, 0.95):
-                    (x, y), (nx, ny) = segment.at(share * segment.half_extent), segment.normal()
+                    (x, y), (nx, ny) = (
+                        segment.compute_point(share * segment.half_extent),
+                        segment.compute_normal(),
+                    )
                     # As far below the face as beside its border, where that is: the bore leans by 45 degrees.
                     inner = x - abs(below) / 10 * nx, y - abs(below) / 10 * ny
                     deep = solid.material.find_material_intervals(inner)
@@ -191,7 +194,7 @@ def test_without_a_face_there_is_room_nowhere() -> None:
     zone = np.array([(0.0, 0.0, 1.0), (4.0, 0.0, 1.0)])
     points = np.array([(0.0, 0.0), (2.0, 0.5)])
     for zones in ((), (zone,)):
-        assert (TouchableFace.of((), zones).room(points) == -np.inf).all()
+        assert (TouchableFace.from_loops((), zones).measure_room(points) == -np.inf).all()
 
 
 def test_a_tangent_polygon_holds_its_ellipse() -> None:
@@ -199,7 +202,7 @@ def test_a_tangent_polygon_holds_its_ellipse() -> None:
     lean = 35 * pi / 180
     solid = stand_solid(bored_aslant(40, 35))
     (top,) = find_open_level_tops(solid)
-    (opening,) = [loop for loop in top.open if compute_signed_area(loop_segments(loop)) < 0]
+    (opening,) = [loop for loop in top.open if compute_signed_area(make_loop_segments(loop)) < 0]
     middle = 40 + 8 * sin(lean) / cos(lean)
     for x, y, bulge in opening.tolist():
         size = sqrt(((x - middle) * cos(lean) / 6) ** 2 + ((y - 25) / 6) ** 2)
@@ -238,14 +241,14 @@ def test_what_lies_but_for_rounding_hangs_not_and_what_only_runs_into_the_plane_
 def test_a_loop_around_nearly_nothing_is_no_part_of_a_region() -> None:
     """As polygons beside each other may leave it: less than anything stands on, a millionth of a square millimetre."""
     square = [
-        loop_segments(np.array([(x, y, 0.0) for x, y in corners]))
+        make_loop_segments(np.array([(x, y, 0.0) for x, y in corners]))
         for corners in (
             [(0, 0), (10, 0), (10, 10), (0, 10)],
             [(20, 0), (20 + 5e-4, 0), (20 + 5e-4, 5e-4), (20, 5e-4)],
             [(30, 0), (30.01, 0), (30.01, 0.01), (30, 0.01)],
         )
     ]
-    rows = segment_rows([segment for one in square for segment in one])
+    rows = make_segment_rows([segment for one in square for segment in one])
     loops = trace_region(
         [segment for one in square for segment in one], lambda point: bool(is_inside(*point, rows))
     )
@@ -270,7 +273,7 @@ def test_what_rises_over_a_plate_is_no_part_of_its_top_however_it_is_shaped() ->
     shape = tilted_rings(2)
     (top,) = (one for one in find_open_level_tops(stand_solid(shape)) if one.height == pytest.approx(20.0))
     assert 0.5 * 100 * 60 < area(top.open) < 100 * 60
-    rows = segment_rows([segment for loop in top.open for segment in loop_segments(loop)])
+    rows = make_segment_rows([segment for loop in top.open for segment in make_loop_segments(loop)])
     taken = 0
     for x, y in np.random.default_rng(3).uniform((0, 0), (100, 60), (60, 2)).tolist():
         if is_inside(x, y, rows):

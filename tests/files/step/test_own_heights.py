@@ -17,7 +17,7 @@ from solid_truth import fixture_faults, off_region, section_points, segments_of
 from workhold import Fence, FlatJaw, InputError, Plate, Vise, design, load
 from workhold.files.step.heights import stand_solid
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.segment import make_segment_rows
 
 TIP = (11.0, 18.0)
 
@@ -60,7 +60,7 @@ def test_sections_between_the_heights_lie_in_the_outline_and_its_border_is_their
 ) -> None:
     """At a hundred heights between a and p with the head room; nothing of the border is off all of them."""
     ((_, own),) = load(SOLID, peg_height=7, heights={"clamp": (low, high)}).outlines
-    rows = segment_rows(segments_of(own.loops))
+    rows = make_segment_rows(segments_of(own.loops))
     top = min(high + 0.5, 22.0)
     for k in range(100):
         points = section_points(SOLID, low + (top - low) * (k + 0.5) / 100)

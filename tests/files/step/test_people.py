@@ -24,14 +24,14 @@ from workhold.files.step.bands import Conic
 from workhold.files.step.heights import StandingSolid, measure_outline, stand_solid, tabulate_peg_heights
 from workhold.files.step.projected import cut_edges, cut_lying_ring
 from workhold.files.step.solids import read_solids
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 
 DATA = Path(__file__).parents[2] / "data" / "step"
 
 
 def area_of(part: Workpiece) -> float:
     """The area within the loops of a part, in mm²."""
-    return sum(compute_signed_area(loop_segments(loop)) for loop in part.loops)
+    return sum(compute_signed_area(make_loop_segments(loop)) for loop in part.loops)
 
 
 def test_a_wall_that_is_an_extruded_spline_is_read_by_fit() -> None:

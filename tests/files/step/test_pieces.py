@@ -80,7 +80,9 @@ def test_outer_loops_come_first(feet: Workpiece, eyes: Workpiece) -> None:
         for end in (edge.start, edge.end):
             ends = [point for k in end.faces for point in (faces[k].segment.start, faces[k].segment.end)]
             assert sum(point == pytest.approx(end.point) for point in ends) == len(end.faces)
-    assert all(edge.height(segment.start) > -1e-9 for edge in eyes.hull_edges for segment in eyes.segments)
+    assert all(
+        edge.measure_height(segment.start) > -1e-9 for edge in eyes.hull_edges for segment in eyes.segments
+    )
 
 
 @pytest.mark.parametrize("toolkit", KITS, ids=lambda kit: f"{type(kit).__name__}{getattr(kit, 'clamps', '')}")

@@ -39,19 +39,19 @@ from step_shapes import (
 from workhold import Workpiece
 from workhold.errors import InputError
 from workhold.files.outline.curves import CurveReader
-from workhold.files.part.load import Loaded, read_workpiece
+from workhold.files.part.load import LoadedPart, read_workpiece
 from workhold.files.part.loaded import from_drawing
 from workhold.files.step.reader import read_step_apart, refuse_missing_volume
 from workhold.files.step.regions import make_edge_piece
 from workhold.geometry.segment import Arc, Line
 
 
-def read(tmp_path: Path, *shapes: Any, **options: Any) -> Loaded:
+def read(tmp_path: Path, *shapes: Any, **options: Any) -> LoadedPart:
     """What is read from a STEP file of some shapes."""
     return read_workpiece(write_step(tmp_path / "part.step", *shapes), **options)
 
 
-def silhouette(tmp_path: Path, *shapes: Any, **options: Any) -> Loaded:
+def silhouette(tmp_path: Path, *shapes: Any, **options: Any) -> LoadedPart:
     """The silhouette of a STEP file of some shapes, which is read where no outline by height is found."""
     path = write_step(tmp_path / "part.step", *shapes)
     return from_drawing(path, read_step_apart(path.read_bytes(), **options), None, 0.0, None)

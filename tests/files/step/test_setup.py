@@ -29,7 +29,7 @@ from workhold import Fixture, Peg, Pose, Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.files.step.solids import Solid, read_solids
 from workhold.files.step.writer import make_setup_step, write_setup_step
-from workhold.model.setup import part_zero
+from workhold.model.setup import choose_part_zero
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
 # A part about pegs in L-A1 and L-A3 (on a side and on a quarter circle), R-B1 and R-B3, as it lies in the vise; with a
@@ -56,7 +56,7 @@ def fixture(pose: Pose, jaw_separation: float = 50.0) -> Fixture:
     holes = [("left", 0, 0), ("left", 0, 2), ("right", 1, 0), ("right", 1, 2)]
     pegs = []
     for jaw, column, row in holes:
-        x, y = VISE.carriers[jaw == "right"].place(column, row, jaw_separation)
+        x, y = VISE.carriers[jaw == "right"].compute_hole_center(column, row, jaw_separation)
         pegs.append(Peg("right" if jaw == "right" else "left", column, row, x, y, 0, 0.5))
     return Fixture("I", (pegs[0], pegs[1], pegs[2], pegs[3]), pose, jaw_separation, {})
 
@@ -133,7 +133,7 @@ def test_bodies_are_named_by_what_they_are() -> None:
 @pytest.mark.parametrize("pose", POSES)
 def test_part_zero_stands_where_it_was_asked_for(pose: Pose) -> None:
     """The three ends of its axes: the centre of the hole, a pitch along the part's x and half of one along its y."""
-    zero = part_zero(part(pose), "hole 1")
+    zero = choose_part_zero(part(pose), "hole 1")
     reader = STEPControl_Reader()
     reader.ReadStream("zero.step", BytesIO(make_setup_step(fixture(pose), part(pose), VISE, zero=zero)))
     reader.TransferRoots()

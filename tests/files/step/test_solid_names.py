@@ -23,7 +23,7 @@ from step_shapes import box, write_step
 
 from workhold import InputError, load, solids_in
 from workhold.files.part.survey import survey_part_file
-from workhold.files.step.solids import clean_name, name_of
+from workhold.files.step.solids import clean_name, read_name
 
 BOXES = (box(60, 40, 10), box(20, 20, 5, (0, 0, 20)), box(12, 10, 5, (30, 0, 20)), box(8, 5, 5, (45, 0, 20)))
 
@@ -175,4 +175,4 @@ def test_the_nearest_name_is_taken() -> None:
         (("machine", "machine", "", ""), 1, "boss"),
         (("gear", "gear"), 1, "gear"),
     ):
-        assert name_of(solid, names, count, Entity()) == wanted
+        assert read_name(solid, names, count, Entity()) == wanted

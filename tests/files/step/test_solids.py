@@ -19,7 +19,7 @@ from solid_truth import border_faults, fixture_faults, off_region, section_fault
 from workhold import Fence, FlatJaw, Plate, Vise, Workpiece, design, load
 from workhold.files.step.heights import StandingSolid, stand_solid
 from workhold.files.step.library import turn_axis_up
-from workhold.geometry.segment import segment_rows
+from workhold.geometry.segment import make_segment_rows
 
 QUICK = ("bearing housing", "rounded top", "casting", "dovetail")
 KITS = (
@@ -61,9 +61,11 @@ def test_sections_lie_in_the_outline_and_make_it(example: SolidExample) -> None:
         assert section_faults(solid.shape, loops, high, 200) == []
         assert border_faults(solid.shape, loops, high, example.prismatic) == []
         # What lower pegs meet is met by higher ones.
-        rows = segment_rows(segments_of(loops))
+        rows = make_segment_rows(segments_of(loops))
         for segment in segments_of(before):
-            points = np.array([segment.at(share * segment.half_extent) for share in (-1.0, -0.3, 0.4)])
+            points = np.array(
+                [segment.compute_point(share * segment.half_extent) for share in (-1.0, -0.3, 0.4)]
+            )
             assert off_region(points, rows).max() <= 1e-6
         before = loops
 
@@ -95,7 +97,7 @@ def test_turned_over_twice(example: SolidExample) -> None:
         assert same_strips(solid.make_outline(high), twice.make_outline(high))
     over = stand_solid(turn_axis_up(solid.shape, "-z"))
     mirrored = [loop * np.array([-1.0, 1.0, 1.0]) for loop in outline(over, over.height)]
-    rows = segment_rows(segments_of(outline(solid, solid.height)))
+    rows = make_segment_rows(segments_of(outline(solid, solid.height)))
     points = np.concatenate([loop[:, :2] for loop in mirrored])
     # Corners of one are on the border of the other.
     assert np.abs(border_distance(points, rows)).max() <= 1e-6
@@ -103,9 +105,9 @@ def test_turned_over_twice(example: SolidExample) -> None:
 
 def border_distance(points: Any, rows: Any) -> Any:
     """Distances of points (N, 2) from a border."""
-    from workhold.kernels.base.distance import outline_distances
+    from workhold.kernels.base.distance import measure_outline_distances
 
-    return outline_distances(np.ascontiguousarray(points), rows)
+    return measure_outline_distances(np.ascontiguousarray(points), rows)
 
 
 def same_strips(one: Any, other: Any) -> bool:
@@ -195,8 +197,8 @@ def allowed(part: Workpiece, fixture: Any, peg: Any) -> bool:
     x, y = fixture.pose.inverse.apply(peg.x, peg.y)
     away = []
     for number, segment in enumerate(part.segments):
-        place = min(max(segment.parameter((x, y)), -segment.half_extent), segment.half_extent)
-        px, py = segment.at(place)
+        place = min(max(segment.find_parameter((x, y)), -segment.half_extent), segment.half_extent)
+        px, py = segment.compute_point(place)
         away.append((round(np.hypot(x - px, y - py), 6), number))
     nearest = [number for distance, number in away if distance == min(away)[0]]
     return any(part.solid.bands[number] is not None for number in nearest)

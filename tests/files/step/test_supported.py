@@ -34,7 +34,9 @@ def on_face(result: Result, at: tuple[float, float], tip_radius: float = 5.0) ->
     """The best supports with the clamp at a point of the part."""
     asked = result.supports(best=4, point=at, inside=1, tip_radius=tip_radius, head_radius=tip_radius)
     found = next(one for one in asked if one.triples)
-    return ChosenSupports.of(evolve(found, triples=tuple(t for t in found.triples if t.given is not None)))
+    return ChosenSupports.from_supports(
+        evolve(found, triples=tuple(t for t in found.triples if t.given is not None))
+    )
 
 
 def assembled(chosen: ChosenSupports) -> Assembly:
@@ -87,7 +89,7 @@ def test_the_clamp_stands_on_the_face_at_its_place(
     """Its tip ends on the face under it, above which the knob is free of everything; a file keeps that."""
     chosen = on_face(result, at)
     write_supports(chosen.supports, tmp_path / "supports.json")
-    again = ChosenSupports.of(read_supports(tmp_path / "supports.json"))
+    again = ChosenSupports.from_supports(read_supports(tmp_path / "supports.json"))
     for one in (chosen, again):
         clamp = list_bodies_with_supports(one)[-1]
         assert clamp.name == "clamp on top"
@@ -101,7 +103,7 @@ def test_heights_of_upper_faces_are_one_for_each_loop(result: Result) -> None:
     request = on_face(result, (60, 30)).supports.request
     with pytest.raises(InputError, match=r"2 loops of upper faces and 1 heights"):
         evolve(request, top_heights=(20.0,))
-    assert evolve(request, top_heights=None).clamped_height((60, 30)) == HIGH
+    assert evolve(request, top_heights=None).find_clamped_height((60, 30)) == HIGH
 
 
 def test_a_file_of_supports_has_the_solid_and_is_verified(tmp_path: Path) -> None:

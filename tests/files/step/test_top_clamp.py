@@ -45,9 +45,9 @@ from workhold.files.step.level_faces import LevelTop, find_open_level_tops
 from workhold.files.step.library import turn_axis_up
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.fixels.support_hardware import TopClamp
-from workhold.geometry.segment import segment_rows
-from workhold.kernels.base.distance import is_inside, outline_distances
-from workhold.model.support_request import pressed_by
+from workhold.geometry.segment import make_segment_rows
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
+from workhold.model.support_request import find_pressed_heights
 from workhold.model.support_triples import ChosenSupports, Supports
 from workhold.supports.words import write_listing_notes
 from workhold.units import MILLIMETRE
@@ -84,7 +84,7 @@ class Rays:
 
 def holds(loops: list[Any], x: float, y: float) -> bool:
     """Whether a region holds a point."""
-    return bool(loops) and bool(is_inside(x, y, segment_rows(segments_of(loops))))
+    return bool(loops) and bool(is_inside(x, y, make_segment_rows(segments_of(loops))))
 
 
 def sky_faults(shape: Any, tops: list[LevelTop], count: int, seed: int) -> list[str]:
@@ -98,8 +98,8 @@ def sky_faults(shape: Any, tops: list[LevelTop], count: int, seed: int) -> list[
     for loop in loops:
         low, high = np.minimum(low, loop[:, :2].min(axis=0)), np.maximum(high, loop[:, :2].max(axis=0))
     points = np.random.default_rng(seed).uniform(low - 2.0, high + 2.0, (count, 2))
-    rows = [segment_rows(segments_of([loop])) for loop in loops]
-    away = np.min([outline_distances(points, one) for one in rows], axis=0)
+    rows = [make_segment_rows(segments_of([loop])) for loop in loops]
+    away = np.min([measure_outline_distances(points, one) for one in rows], axis=0)
     faults = []
     for x, y in points[away > NEAR].tolist():
         met = rays.at(x, y)
@@ -148,9 +148,9 @@ def test_half_of_a_foot_under_a_round_arm_is_half_open() -> None:
 
 def abs_area(loop: Any) -> float:
     """The area within a loop of lines and arcs."""
-    from workhold.geometry.loop import compute_signed_area, loop_segments
+    from workhold.geometry.loop import compute_signed_area, make_loop_segments
 
-    return abs(compute_signed_area(loop_segments(np.asarray(loop))))
+    return abs(compute_signed_area(make_loop_segments(np.asarray(loop))))
 
 
 def test_what_a_pipe_aslant_covers_is_off_within_a_hair() -> None:
@@ -198,7 +198,7 @@ def test_tip_head_and_column_are_what_the_library_sees(make: Callable[[], Any], 
     assert found.triples and request.tip_margin == 1.0 and request.head_radius == 1.5 * request.tip_radius
     for triple in found.triples:
         for clamp in (triple.best.at, triple.arm_at):
-            z, wide = request.clamped_height(clamp), request.tip_radius + request.tip_margin - 1e-5
+            z, wide = request.find_clamped_height(clamp), request.tip_radius + request.tip_margin - 1e-5
             assert solid_share(shape, cylinder(wide, 0.5, (*clamp, z - 0.5))) == pytest.approx(1.0, abs=1e-6)
             above = cylinder(request.head_radius - 1e-5, 200, (*clamp, z + 1e-3))
             assert distance(above, shape) > 1e-6
@@ -217,7 +217,7 @@ def test_a_pillow_block_is_clamped_on_its_feet_or_nowhere() -> None:
     found = supported(pillow_block, 13.0)
     for triple in found.triples:
         x, _ = triple.clamp.at
-        assert found.request.clamped_height(triple.clamp.at) == 14.0 and abs(x) >= 36 + 7.5 - 1e-6
+        assert found.request.find_clamped_height(triple.clamp.at) == 14.0 and abs(x) >= 36 + 7.5 - 1e-6
     part = load(pillow_block(12.0), name="pillow block", peg_height=13)
     none = workhold.design(part, TOOLKIT, best=1)[0].supports(best=3)
     words = last_paragraph(none)
@@ -235,7 +235,7 @@ def test_a_head_does_not_stand_in_a_narrow_slot() -> None:
     fixture = workhold.design(part, TOOLKIT, best=1)[0]
     for head, fits in ((7.5, False), (7.0, True)):
         found = fixture.supports(best=1, head_radius=head, tip_radius=5.0, inside=1.0)
-        on_base = [one for one in found.triples if found.request.clamped_height(one.clamp.at) == 20.0]
+        on_base = [one for one in found.triples if found.request.find_clamped_height(one.clamp.at) == 20.0]
         assert bool(on_base) is fits, head
 
 
@@ -332,12 +332,12 @@ def test_pegs_press_over_their_own_runs_with_supports_and_without() -> None:
     """The sheet's heights are the whole run at each contact, up to the top of the pegs."""
     found = supported(clevis, 18.0)
     fixture, part = found.fixture, found.query.workpiece
-    chosen = ChosenSupports.of(found)
+    chosen = ChosenSupports.from_supports(found)
     plain = SheetDetails(number=1, count=1, day="", result_hash="", version="")
     for details in (plain, evolve(plain, supports=chosen)):
         heights = find_sheet_heights(fixture, part, TOOLKIT, details)
         assert heights is not None
-        own = [pressed_by(peg, fixture, part.numbered) for peg in fixture.pegs]
+        own = [find_pressed_heights(peg, fixture, part.numbered) for peg in fixture.pegs]
         assert list(heights.bands) == own and all(band == (0.0, 18.0) for band in own)
     low = find_sheet_heights(
         fixture, part, TOOLKIT, evolve(plain, supports=chosen, peg_height=22.0, support_height=10.0)

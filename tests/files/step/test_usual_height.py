@@ -16,7 +16,7 @@ from solid_examples import bearing_housing, boss, lying_shaft, ribbed, stepped
 from workhold.cli.tables import explain_sliding_part
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece, refuse_unsure_numbers
-from workhold.model.dowel_lengths import standouts
+from workhold.model.dowel_lengths import list_standouts
 
 VISE = workhold.Vise(pitch=20, columns=3, peg_radius=3)
 SIXTEEN = workhold.Vise(pitch=50, columns=2, peg_radius=8)
@@ -57,7 +57,7 @@ def test_it_is_the_rule_word_for_word(make: Any, toolkit: workhold.Vise) -> None
     loaded = read_workpiece(shape, peg_diameter=toolkit.peg_diameter)
     assert loaded.usual is not None and loaded.workpiece.solid is not None
     top, best = loaded.usual.height, max(row.touchable for row in loaded.heights)
-    possible = [p for p in standouts(toolkit.peg_diameter) if p <= top + 1e-5]
+    possible = [p for p in list_standouts(toolkit.peg_diameter) if p <= top + 1e-5]
     enough = [p for p in possible if touchable(shape, p) >= best / 2 * (1 - 1e-9)]
     low = [p for p in enough if p <= 2 * toolkit.peg_diameter]
     expected = max(low) if low else min(enough, default=top)

@@ -34,7 +34,7 @@ from workhold.files.part.load import read_workpiece
 from workhold.files.step.heights import measure_outline, stand_solid
 from workhold.files.step.level_faces import find_bottom_loops, find_open_level_tops
 from workhold.files.step.library import list_sub_shapes
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 
 PLATE = cut(filleted(box(60, 40, 20), 5, upright), cylinder(6, 40, (30, 20, -5)))
 
@@ -73,7 +73,7 @@ def figures(shape: Any, high: float, scale: float = 1.0) -> list[float]:
     outline = solid.make_outline(scale * high, 0.5 * scale, scale)
     area, border, touchable, band = measure_outline(outline)
     level = [
-        sum(compute_signed_area(loop_segments(loop)) for loop in loops)
+        sum(compute_signed_area(make_loop_segments(loop)) for loop in loops)
         for loops in (
             find_bottom_loops(solid),
             [loop for top in find_open_level_tops(solid) for loop in top.open],

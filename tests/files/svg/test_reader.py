@@ -158,7 +158,7 @@ def test_transforms_that_keep_circles(
     u, v = scale * 52, sy * 11  # the arc's middle, (50, 10), moved by (2, 1)
     middle = (c * u - s * v + x, -(s * u + c * v + 3))
     arc = next(segment for segment in part.segments if hasattr(segment, "radius"))
-    assert arc.at(0.0) == pytest.approx(middle, abs=1e-7)
+    assert arc.compute_point(0.0) == pytest.approx(middle, abs=1e-7)
     assert arc.radius == pytest.approx(10 * scale, rel=1e-9)
 
 

@@ -6,13 +6,13 @@ import pytest
 
 from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Chain
-from workhold.files.svg.viewport import Window
+from workhold.files.svg.viewport import ClipPolygon
 
-SQUARE = Window(((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)), "the clip-path")
+SQUARE = ClipPolygon(((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)), "the clip-path")
 
 
 @pytest.mark.parametrize(
-    "window", [SQUARE, Window(SQUARE.corners[::-1], SQUARE.label)], ids=["turning left", "right"]
+    "window", [SQUARE, ClipPolygon(SQUARE.corners[::-1], SQUARE.label)], ids=["turning left", "right"]
 )
 @pytest.mark.parametrize(
     ("low", "high", "shown"),
@@ -26,7 +26,7 @@ SQUARE = Window(((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0))
     ],
 )
 def test_rounding_at_an_edge_shows_nothing_and_hides_nothing(
-    window: Window, low: float, high: float, shown: str
+    window: ClipPolygon, low: float, high: float, shown: str
 ) -> None:
     """A millionth of the window's size on either side of an edge is on it."""
     chain = Chain(((low, 4.0), (high, 4.0), (high, 6.0), (low, 6.0), (low, 4.0)), (0.0,) * 4, ("line",) * 4)

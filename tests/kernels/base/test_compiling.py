@@ -16,7 +16,7 @@ import pytest
 
 import workhold
 from workhold.kernels.base import compiling, distance
-from workhold.kernels.base.compiling import Kernel, Matrix, Vector, letters, taker
+from workhold.kernels.base.compiling import Kernel, Matrix, Vector, make_format_letters, make_taker
 from workhold.kernels.base.libraries import ROOMS
 from workhold.kernels.base.tables import Features, Setting
 
@@ -66,8 +66,8 @@ def test_answers_are_those_of_python() -> None:
     """Numbers, truths and arrays that are written to: the functions themselves say what is right."""
     out = np.empty(len(POINTS))
     distance.write_outline_distances(POINTS, SQUARE, out)
-    assert out.tobytes() == distance.outline_distances(POINTS, SQUARE).tobytes()
-    assert distance.outline_distances(POINTS[:0], SQUARE).shape == (0,)
+    assert out.tobytes() == distance.measure_outline_distances(POINTS, SQUARE).tobytes()
+    assert distance.measure_outline_distances(POINTS[:0], SQUARE).shape == (0,)
     for (x, y), away in zip(POINTS, out, strict=True):
         assert away == pytest.approx(
             abs(max(abs(x), abs(y)) - 10)
@@ -75,7 +75,7 @@ def test_answers_are_those_of_python() -> None:
             else np.hypot(abs(x) - 10, abs(y) - 10)
         )
         assert distance.is_inside(x, y, SQUARE) is bool(max(abs(x), abs(y)) < 10)
-        turned = distance.turns_around(x, y, SQUARE)
+        turned = distance.measure_winding(x, y, SQUARE)
         assert type(turned) is float and turned == pytest.approx(
             2 * pi if max(abs(x), abs(y)) < 10 else 0.0, abs=1e-9
         )
@@ -109,9 +109,9 @@ def test_what_a_kernel_was_not_compiled_for_is_refused(arguments: tuple[Any, ...
 
 def test_records_are_taken_apart_and_counted() -> None:
     """A record is as many words as its fields are; one of another length, or of another kind, is refused."""
-    assert letters(Pair) == "dqqq" and letters(tuple[int, bool]) == "q?7x"
+    assert make_format_letters(Pair) == "dqqq" and make_format_letters(tuple[int, bool]) == "q?7x"
     taken: list[Any] = []
-    taker(Pair, "given")(Pair(2, SQUARE), taken)
+    make_taker(Pair, "given")(Pair(2, SQUARE), taken)
     assert taken == [2, SQUARE.ctypes.data, 4, 10]
     for value, words in (
         ((1.0, SQUARE, SQUARE), "given must be a record of 2"),
@@ -120,7 +120,7 @@ def test_records_are_taken_apart_and_counted() -> None:
         ([2, SQUARE], "given must be a record of 2, not list"),
     ):
         with pytest.raises(TypeError, match=re.escape(words)):
-            taker(Pair, "given")(value, [])
+            make_taker(Pair, "given")(value, [])
 
 
 def test_truths_and_numbers_are_words() -> None:
@@ -132,18 +132,18 @@ def test_truths_and_numbers_are_words() -> None:
     ):
         for value in values:
             taken: list[Any] = []
-            taker(kind, "x")(value, taken)
-            packed = Struct("=" + letters(kind)).pack(*taken)
+            make_taker(kind, "x")(value, taken)
+            packed = Struct("=" + make_format_letters(kind)).pack(*taken)
             assert len(packed) == 8
             assert Struct("=d" if kind is float else "=q").unpack(packed) == (value,)
     for kind, value in ((int, 2.0), (bool, 1), (float, "1")):
         with pytest.raises(TypeError, match="x must be"):
-            taker(kind, "x")(value, [])
+            make_taker(kind, "x")(value, [])
 
 
 def test_arrays_in_records_are_looked_up_once() -> None:
     """As long as they live: another array in the place of one is another."""
-    take = taker(Pair, "given")
+    take = make_taker(Pair, "given")
     for _ in range(3):
         for rows in (SQUARE, SQUARE[1:]):
             taken: list[Any] = []
@@ -189,7 +189,7 @@ def test_arrays_are_taken_however_they_were_made(make: Any) -> None:
     """Where they are looked at, they are what they are."""
     out = np.empty(len(POINTS))
     distance.write_outline_distances(POINTS, make(SQUARE), out)
-    assert out.tobytes() == distance.outline_distances(POINTS, SQUARE).tobytes()
+    assert out.tobytes() == distance.measure_outline_distances(POINTS, SQUARE).tobytes()
 
 
 @pytest.mark.thorough
@@ -201,7 +201,8 @@ def test_the_interpreter_goes_on_while_a_kernel_runs() -> None:
     try:
         # On a busy machine this thread may not get its turn before the kernel is done.
         assert any(
-            counted_during(Thread(target=distance.outline_distances, args=(many, SQUARE))) for _ in range(20)
+            counted_during(Thread(target=distance.measure_outline_distances, args=(many, SQUARE)))
+            for _ in range(20)
         )
     finally:
         sys.setswitchinterval(before)
@@ -217,7 +218,13 @@ def counted_during(thread: Thread) -> int:
 
 
 def test_types_name_their_elements_and_dimensions() -> None:
-    assert compiling.element(Matrix) == np.float64 and compiling.dimensions(Matrix) == 2
-    assert compiling.dimensions(Vector) == 1 and compiling.element(compiling.ByteStack) == np.int8
-    assert [name for name, _ in compiling.fields(Pair) or ()] == ["x", "rows"]
-    assert compiling.fields(Features) and compiling.fields(Setting) and compiling.fields(float) is None
+    assert compiling.get_element_type(Matrix) == np.float64 and compiling.count_dimensions(Matrix) == 2
+    assert (
+        compiling.count_dimensions(Vector) == 1 and compiling.get_element_type(compiling.ByteStack) == np.int8
+    )
+    assert [name for name, _ in compiling.list_fields(Pair) or ()] == ["x", "rows"]
+    assert (
+        compiling.list_fields(Features)
+        and compiling.list_fields(Setting)
+        and compiling.list_fields(float) is None
+    )

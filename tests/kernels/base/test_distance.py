@@ -7,15 +7,23 @@ import pytest
 from hypothesis import given, settings
 
 from strategies import outlines, seeds
-from workhold.geometry.segment import segment_rows
-from workhold.kernels.base.distance import is_inside, outline_distance, outline_distances, segment_distance
+from workhold.geometry.segment import make_segment_rows
+from workhold.kernels.base.distance import (
+    is_inside,
+    measure_outline_distance,
+    measure_outline_distances,
+    measure_segment_distance,
+)
 
 STEPS = 400
 
 
 def polygon(segments) -> list[np.ndarray]:
     """Points along every segment, ends included, close enough that the chords are within 1e-3 mm of arcs."""
-    return [np.array([s.at(t) for t in np.linspace(-s.half_extent, s.half_extent, STEPS)]) for s in segments]
+    return [
+        np.array([s.compute_point(t) for t in np.linspace(-s.half_extent, s.half_extent, STEPS)])
+        for s in segments
+    ]
 
 
 def distance_to_chains(point, chains) -> float:
@@ -45,7 +53,7 @@ def crossings_of_a_ray(point, chains) -> int:
 @given(outlines(), seeds)
 def test_distance_and_inside_agree_with_a_fine_polygon(part, seed):
     """min over segments is the distance to the outline (to the sagitta), and the winding test is the parity of a ray."""
-    rows = segment_rows(part.segments)
+    rows = make_segment_rows(part.segments)
     chains = polygon(part.segments)
     random = np.random.default_rng(seed)
     sagitta = max(
@@ -53,10 +61,10 @@ def test_distance_and_inside_agree_with_a_fine_polygon(part, seed):
     )
     slack = 2 * sagitta + 1e-9
     points = random.uniform(-70, 70, (12, 2))
-    distances = outline_distances(points, rows)
+    distances = measure_outline_distances(points, rows)
     for point, distance in zip(points, distances, strict=True):
         assert abs(distance - distance_to_chains(point, chains)) <= slack
-        assert distance == outline_distance(*point, rows)
+        assert distance == measure_outline_distance(*point, rows)
         if distance > 10 * slack:
             assert is_inside(*point, rows) == (crossings_of_a_ray(point, chains) % 2 == 1)
 
@@ -65,9 +73,9 @@ def test_distance_and_inside_agree_with_a_fine_polygon(part, seed):
 @given(outlines(holes=True))
 def test_material_is_on_the_left_of_every_segment(part):
     """A step to the left of a segment's middle is inside, a step to the right is outside."""
-    rows = segment_rows(part.segments)
+    rows = make_segment_rows(part.segments)
     for segment in part.segments:
-        (x, y), (nx, ny) = segment.at(0.0), segment.normal(0.0)
+        (x, y), (nx, ny) = segment.compute_point(0.0), segment.compute_normal(0.0)
         step = 1e-4
         assert is_inside(x - step * nx, y - step * ny, rows)
         assert not is_inside(x + step * nx, y + step * ny, rows)
@@ -78,9 +86,9 @@ def test_material_is_on_the_left_of_every_segment(part):
 def test_points_of_a_segment_have_distance_zero_and_offsets_their_offset(part, seed):
     """|at(t) + r n(t)| is at distance |r| from its own segment, for r short of an arc's centre."""
     random = np.random.default_rng(seed)
-    for segment, row in zip(part.segments, segment_rows(part.segments), strict=True):
+    for segment, row in zip(part.segments, make_segment_rows(part.segments), strict=True):
         t = random.uniform(-1, 1) * segment.half_extent
         limit = row[6] if row[0] else 9.0
         r = random.uniform(-1, 1) * limit
-        (x, y), (nx, ny) = segment.at(t), segment.normal(t)
-        assert abs(segment_distance(x + r * nx, y + r * ny, row) - abs(r)) < 1e-9 * (1 + limit)
+        (x, y), (nx, ny) = segment.compute_point(t), segment.compute_normal(t)
+        assert abs(measure_segment_distance(x + r * nx, y + r * ny, row) - abs(r)) < 1e-9 * (1 + limit)

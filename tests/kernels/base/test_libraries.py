@@ -21,7 +21,7 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(libraries, "KERNELS", tmp_path / "package")
     folder = tmp_path / "cache"
     folder.mkdir()
-    monkeypatch.setattr(libraries, "cache_folder", lambda: folder)
+    monkeypatch.setattr(libraries, "make_cache_folder", lambda: folder)
     return folder
 
 
@@ -32,7 +32,7 @@ def fill(folder: Path, name: str, content: bytes = b"") -> None:
 
 
 def test_a_library_of_the_package_comes_before_that_of_the_cache(elsewhere: Path) -> None:
-    name = libraries.library_name("base", "so")
+    name = libraries.make_library_name("base", "so")
     assert libraries.find_library("base") is None and not libraries.is_built(("base",))
     fill(elsewhere, name)
     assert libraries.find_library("base") == elsewhere / name and libraries.is_built(("base",))
@@ -43,14 +43,14 @@ def test_a_library_of_the_package_comes_before_that_of_the_cache(elsewhere: Path
 
 def test_the_package_can_be_left_out(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As benchmarks of the first run do."""
-    fill(libraries.KERNELS, libraries.library_name("base", "so"))
+    fill(libraries.KERNELS, libraries.make_library_name("base", "so"))
     monkeypatch.setenv("WORKHOLD_KERNELS", "cache")
     assert libraries.find_library("base") is None
 
 
 def test_a_library_of_other_sources_is_not_used(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    fill(elsewhere, libraries.library_name("base", "so"))
-    monkeypatch.setattr(libraries, "source_hash", lambda: "another")
+    fill(elsewhere, libraries.make_library_name("base", "so"))
+    monkeypatch.setattr(libraries, "compute_source_hash", lambda: "another")
     assert libraries.find_library("base") is None
 
 
@@ -72,7 +72,7 @@ def test_a_library_is_built_in_a_process_that_reports(elsewhere: Path) -> None:
     told: list[float] = []
     libraries.build_libraries(("base",), report=told.append)
     assert told == sorted(told) and told[-1] == 1.0
-    assert [path.name for path in elsewhere.iterdir()] == [libraries.library_name("base", "so")]
+    assert [path.name for path in elsewhere.iterdir()] == [libraries.make_library_name("base", "so")]
     assert callable(libraries.load_entry("base", "is_inside"))
 
 
@@ -80,7 +80,7 @@ def test_a_library_is_built_in_a_process_that_reports(elsewhere: Path) -> None:
 def test_without_a_linker_an_object_file_is_loaded(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(elsewhere / "nothing"))
     libraries.build_libraries(("base",))
-    assert [path.name for path in elsewhere.iterdir()] == [libraries.library_name("base", "o")]
+    assert [path.name for path in elsewhere.iterdir()] == [libraries.make_library_name("base", "o")]
     assert callable(libraries.load_entry("base", "is_inside"))
 
 
@@ -100,14 +100,17 @@ def test_a_process_that_belongs_to_no_user_does_without_a_cache(monkeypatch: pyt
         raise RuntimeError("Could not determine home directory.")
 
     monkeypatch.setattr(Path, "expanduser", nobody)
-    monkeypatch.setattr(libraries, "cache_folder", libraries.cache_folder.__wrapped__)
-    assert libraries.cache_folder() is None
-    assert libraries.library_folder() == libraries.temporary_folder() and libraries.library_folder().is_dir()
+    monkeypatch.setattr(libraries, "make_cache_folder", libraries.make_cache_folder.__wrapped__)
+    assert libraries.make_cache_folder() is None
+    assert (
+        libraries.find_library_folder() == libraries.make_temporary_folder()
+        and libraries.find_library_folder().is_dir()
+    )
 
 
 def test_the_hash_covers_every_kernel_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Any change of any source, and any new source, changes the hash; the same sources give the same hash."""
-    package, hash_now = tmp_path / "kernels", libraries.source_hash.__wrapped__
+    package, hash_now = tmp_path / "kernels", libraries.compute_source_hash.__wrapped__
     for name in ("base/compiling.py", "a.py", "other/b.py", "../conventions.py"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(f"# {name}")
@@ -142,16 +145,16 @@ def test_old_folders_are_dropped_and_the_newest_kept(tmp_path: Path) -> None:
 def test_the_cache_is_named_by_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """WORKHOLD_CACHE_DIR comes first, then XDG_CACHE_HOME, then the home folder."""
     monkeypatch.setenv("WORKHOLD_CACHE_DIR", str(tmp_path / "own"))
-    assert libraries.user_cache() == tmp_path / "own"
+    assert libraries.find_user_cache() == tmp_path / "own"
     monkeypatch.delenv("WORKHOLD_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert libraries.user_cache() == tmp_path / "workhold"
+    assert libraries.find_user_cache() == tmp_path / "workhold"
     monkeypatch.delenv("XDG_CACHE_HOME")
-    assert libraries.user_cache() == Path("~/.cache/workhold").expanduser()
+    assert libraries.find_user_cache() == Path("~/.cache/workhold").expanduser()
 
 
 def test_a_damaged_library_of_the_package_is_one_sentence(elsewhere: Path) -> None:
-    fill(libraries.KERNELS, libraries.library_name("base", "so"), b"no library")
+    fill(libraries.KERNELS, libraries.make_library_name("base", "so"), b"no library")
     with pytest.raises(InputError, match="library of compiled kernels is damaged; install again"):
         libraries.load_entry("base", "is_inside")
 
@@ -160,7 +163,7 @@ def test_a_damaged_library_of_the_cache_is_built_anew(
     elsewhere: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As a loss of power may leave one; here another whole one takes its place."""
-    name = libraries.library_name("base", "so")
+    name = libraries.make_library_name("base", "so")
     fill(elsewhere, name, b"")
     monkeypatch.setattr(libraries, "build_library", lambda room: WHOLE)
     assert callable(libraries.load_entry("base", "is_inside"))

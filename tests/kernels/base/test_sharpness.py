@@ -41,10 +41,10 @@ def cosine(random: Random, kernel: Kernel) -> float:
 CONSTANTS = [
     Constant(
         "interval, 6e-16",
-        interval.outward,
+        interval.widen_outward,
         scaled,
         symbol="ROUNDING",
-        within=lambda form: changed(interval.iscale, outward=form),
+        within=lambda form: changed(interval.iscale, widen_outward=form),
     ),
     Constant("interval of a cosine, 6e-16", interval.icos, cosine, symbol="ROUNDING", draws=3000),
 ]

@@ -31,11 +31,17 @@ from workhold.kernels.chord.coincidences import (
     CONCENTRIC,
     NONE,
     TOUCHING,
+    get_regular_radius,
     is_regular,
-    regular_radius,
 )
-from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state, curve_value, regular_error
-from workhold.kernels.curves.piece_bounds import chord_tail, tail_disc, tail_radius, value_disc
+from workhold.kernels.chord.evaluation import (
+    HEIGHT,
+    POSITION,
+    bound_regular_error,
+    compute_chord_state,
+    evaluate_curve,
+)
+from workhold.kernels.curves.piece_bounds import bound_tail_error, compute_tail, enclose_tail, enclose_value
 
 kinds = st.tuples(st.sampled_from(KINDS), st.sampled_from(KINDS))
 positions = kinds | st.sampled_from(SPECIAL)
@@ -96,7 +102,7 @@ def test_values_and_slopes_are_within_their_errors(seed, position, depth, mode):
         a, b, d, alpha, branch, _ = near_an_end(random, position, depth)
         shift = random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
-        value, slope, error, spread = curve_value(a, b, curve, psi, mode)
+        value, slope, error, spread = evaluate_curve(a, b, curve, psi, mode)
         with exactly():
             exact = exact_chord(a, b, d, arb(psi) + shift, branch)
             if exact is None:
@@ -108,7 +114,7 @@ def test_values_and_slopes_are_within_their_errors(seed, position, depth, mode):
                 assert abs(difference(mode, a, value, expected[0])) <= error, detail
                 assert within(slope, expected[1], spread) or spread == inf, detail
             else:
-                value, error = value_disc(a, b, curve, psi, 2e-15, mode)
+                value, error = enclose_value(a, b, curve, psi, 2e-15, mode)
                 assert abs(difference(mode, a, value, expected[0])) <= error, detail
 
 
@@ -122,7 +128,7 @@ def test_computed_contacts_are_off_their_features_by_no_more_than_the_blur(seed,
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
         if curve[COINCIDENCE] not in (NONE, CONCENTRIC):
             continue
-        ux, uy, *_ = chord_state(a, b, curve, psi, cos(psi), sin(psi))
+        ux, uy, *_ = compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))
         with exactly():
             place = arb(psi) + shift
             if exact_chord(a, b, d, place, branch) is None:
@@ -147,7 +153,7 @@ def test_errors_are_small_away_from_tangencies(seed, pair):
     low, high, branch, *_ = ranges[0]
     alpha = (low + high) / 2.0
     assume(abs(turn_at(a, b, d, alpha, branch)) > 0.1)
-    _, _, error, spread = curve_value(a, b, curve_row(a, b, d, branch, 0.3), alpha - 0.3, HEIGHT)
+    _, _, error, spread = evaluate_curve(a, b, curve_row(a, b, d, branch, 0.3), alpha - 0.3, HEIGHT)
     assert error < 1e-9
     assert spread < 1e-6
 
@@ -155,19 +161,19 @@ def test_errors_are_small_away_from_tangencies(seed, pair):
 @pytest.mark.thorough
 @given(seeds, positions, depths, st.floats(3.0, 16.0).map(lambda exponent: 10.0**-exponent) | st.just(0.0))
 def test_tails_are_within_their_radius(seed, position, depth, reach):
-    """The exact tail at every direction within ``reach`` lies in the disc told by ``tail_radius``, ``chord_tail`` and
-    ``tail_disc``."""
+    """The exact tail at every direction within ``reach`` lies in the disc told by ``bound_tail_error``, ``compute_tail`` and
+    ``enclose_tail``."""
     random = Random(seed)
     for _ in range(20):
         a, b, d, alpha, branch, ends = near_an_end(random, position, depth)
         shift = random.choice([0.0, random.uniform(-pi, pi)])
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
-        state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
-        near = tail_radius(curve, state, reach)
+        state = compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))
+        near = bound_tail_error(curve, state, reach)
         discs = [
             (state[0], state[1], near),
-            chord_tail(a, b, curve, psi, cos(psi), sin(psi), reach),
-            tail_disc(a, b, curve, psi, reach),
+            compute_tail(a, b, curve, psi, cos(psi), sin(psi), reach),
+            enclose_tail(a, b, curve, psi, reach),
         ]
         with exactly():
             for place in directions(random, arb(psi) + shift, reach, ends):
@@ -191,7 +197,7 @@ def test_discs_hold_the_values_of_a_branch(seed, position, depth, reach, mode):
         a, b, d, alpha, branch, ends = near_an_end(random, position, depth)
         shift = random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
-        value, radius = value_disc(a, b, curve, psi, reach, mode)
+        value, radius = enclose_value(a, b, curve, psi, reach, mode)
         with exactly():
             for place in directions(random, arb(psi) + shift, reach, ends):
                 exact = exact_chord(a, b, d, place, branch)
@@ -248,7 +254,7 @@ def test_errors_hold_through_a_coincidence(mode, off):
         gamma = random.choice([1, -1]) * 10.0 ** random.uniform(-9, -0.3)
         alpha, branch, shift = middle + gamma, random.choice([1.0, -1.0]), random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
-        value, slope, error, spread = curve_value(a, b, curve, psi, mode)
+        value, slope, error, spread = evaluate_curve(a, b, curve, psi, mode)
         if curve[COINCIDENCE] != NONE:
             a, b = snapped
         with exactly():
@@ -276,13 +282,13 @@ def test_errors_hold_for_arcs_that_nearly_touch():
         branch = random.choice([1.0, -1.0])
         curve = curve_row(a, b, d, branch, 0.0)
         assert curve[COINCIDENCE] == TOUCHING
-        value, _, error, _ = curve_value(a, b, curve, middle + gamma, HEIGHT)
+        value, _, error, _ = evaluate_curve(a, b, curve, middle + gamma, HEIGHT)
         with exactly():
             exact = exact_chord(a, b, d, arb(middle + gamma), branch)
             if exact is None:
                 continue
             off_by = abs(difference(HEIGHT, a, value, exact.height(arb(middle + gamma))[0]))
-            checked, needed = checked + 1, needed + bool(off_by > regular_error(curve))
+            checked, needed = checked + 1, needed + bool(off_by > bound_regular_error(curve))
             assert off_by <= error, (float(off_by), error, gamma, a.tolist(), b.tolist(), d)
     assert checked > 300 and needed > 30
 
@@ -303,13 +309,16 @@ def test_tails_hold_through_a_coincidence(off):
         reach = 10.0 ** random.uniform(-15, -2)
         branch, shift = random.choice([1.0, -1.0]), random.uniform(-pi, pi)
         curve, psi = curve_row(a, b, d, branch, shift), middle + gamma - shift
-        discs = [tail_disc(a, b, curve, psi, reach), chord_tail(a, b, curve, psi, cos(psi), sin(psi), reach)]
+        discs = [
+            enclose_tail(a, b, curve, psi, reach),
+            compute_tail(a, b, curve, psi, cos(psi), sin(psi), reach),
+        ]
         with exactly():
             for part in (-1.0, 0.0, 0.7, 1.0):
                 place = arb(psi) + shift + reach * part
                 if (gamma > 0) != bool(place - middle > 0):
                     continue
-                radius = regular_radius(a, b, curve[COINCIDENCE])
+                radius = get_regular_radius(a, b, curve[COINCIDENCE])
                 near = is_regular(curve[COINCIDENCE], radius, d, float(place - middle))
                 exact = exact_chord(*(snapped if near else (a, b)), d, place, branch)
                 if exact is None:

@@ -11,8 +11,14 @@ import pytest
 from chord_examples import PAIRS, arc_row, curve_row, line_row, off_carrier, random_ranges, turn_at
 from workhold.kernels.base.tables import COINCIDENCE
 from workhold.kernels.chord.coincidences import NONE, are_one_chord_apart
-from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord, chord_state, curve_value
-from workhold.kernels.chord.stretches import center_motion
+from workhold.kernels.chord.evaluation import (
+    HEIGHT,
+    POSITION,
+    compute_chord,
+    compute_chord_state,
+    evaluate_curve,
+)
+from workhold.kernels.chord.stretches import enclose_center_motion
 
 
 def difference(values: np.ndarray, step: float) -> float:
@@ -31,7 +37,7 @@ def test_tail_and_head_touch_their_features(kinds):
         for low, high, branch, *_ in ranges:
             for part in (1e-9, 0.3, random.random(), 1 - 1e-9):
                 alpha = low + part * (high - low)
-                ux, uy, rax, ray, rbx, rby = chord(a, b, d, alpha, branch)
+                ux, uy, rax, ray, rbx, rby = compute_chord(a, b, d, alpha, branch)
                 head = np.array([[ux + d * cos(alpha), uy + d * sin(alpha)]])
                 assert off_carrier(a, np.array([[ux, uy]])) < 1e-9
                 assert off_carrier(b, head) < 1e-9
@@ -53,10 +59,12 @@ def test_slope_is_the_derivative_of_the_value(kinds, mode):
         shift = random.uniform(-pi, pi)
         curve, alpha = curve_row(a, b, d, branch, shift), low + random.uniform(0.05, 0.95) * (high - low)
         step = min(alpha - low, high - alpha, 0.3) / 600
-        values = np.array([curve_value(a, b, curve, alpha - shift + k * step, mode)[0] for k in range(-3, 4)])
+        values = np.array(
+            [evaluate_curve(a, b, curve, alpha - shift + k * step, mode)[0] for k in range(-3, 4)]
+        )
         if mode == POSITION and a[0] != 0.0:
             values = np.unwrap(values)
-        slope = curve_value(a, b, curve, alpha - shift, mode)[1]
+        slope = evaluate_curve(a, b, curve, alpha - shift, mode)[1]
         assert difference(values, step) == pytest.approx(slope, rel=1e-5, abs=1e-7 + 1e-12 / step)
         checked += 1
 
@@ -66,7 +74,7 @@ def test_the_height_of_a_chord_between_square_lines_is_known():
     wall, floor = line_row(0, 0, pi / 2, 50), line_row(0, 0, 0, 50)
     curve = curve_row(wall, floor, 10.0, 1.0)
     for alpha in np.linspace(0.1, 6.2, 40):
-        value, slope, *_ = curve_value(wall, floor, curve, alpha, HEIGHT)
+        value, slope, *_ = evaluate_curve(wall, floor, curve, alpha, HEIGHT)
         assert value == pytest.approx(-10 * sin(alpha) * cos(alpha), abs=1e-12)
         assert slope == pytest.approx(-10 * cos(2 * alpha), abs=1e-12)
 
@@ -81,7 +89,7 @@ def test_the_instant_centre_is_where_the_lines_of_action_meet():
             alpha = low + random.uniform(0.1, 0.9) * (high - low)
             shift = random.uniform(-pi, pi)
             curve, psi = curve_row(a, b, d, branch, shift), alpha - shift
-            ux, uy, rax, ray, rbx, rby, px, py, *_ = chord_state(a, b, curve, psi, cos(psi), sin(psi))
+            ux, uy, rax, ray, rbx, rby, px, py, *_ = compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))
             size = 1 + hypot(px - ux, py - uy)
             assert abs((px - ux) * ray - (py - uy) * rax) < 1e-9 * size
             assert abs((px - ux - d * cos(alpha)) * rby - (py - uy - d * sin(alpha)) * rbx) < 1e-9 * size
@@ -94,10 +102,10 @@ def test_at_a_tangency_no_error_is_told():
     for d in (6.0, 14.0):
         curve = curve_row(wall, circle, d, 1.0)
         curve[COINCIDENCE] = NONE
-        state = chord_state(wall, circle, curve, 0.0, 1.0, 0.0)
+        state = compute_chord_state(wall, circle, curve, 0.0, 1.0, 0.0)
         assert not isfinite(state[8]) and not isfinite(state[9])
         for mode in (HEIGHT, POSITION):
-            _, _, error, slope_error = curve_value(wall, circle, curve, 0.0, mode)
+            _, _, error, slope_error = evaluate_curve(wall, circle, curve, 0.0, mode)
             assert not isfinite(error) and not isfinite(slope_error)
 
 
@@ -114,7 +122,7 @@ def test_equal_arcs_one_chord_apart_turn_smoothly_through_the_coincidence():
                 tails = []
                 for branch in (1.0, -1.0):
                     alpha = angle + side * away
-                    ux, uy, *_ = chord(a, b, 12.0, alpha, branch)
+                    ux, uy, *_ = compute_chord(a, b, 12.0, alpha, branch)
                     head = np.array([[ux + 12 * cos(alpha), uy + 12 * sin(alpha)]])
                     assert off_carrier(a, np.array([[ux, uy]])) < 1e-12
                     assert off_carrier(b, head) < 1e-12
@@ -135,7 +143,7 @@ def sub_range(random: Random, low: float, high: float) -> tuple[float, float]:
 
 def center(a, b, curve, psi) -> tuple[float, float]:
     """The instant centre."""
-    return chord_state(a, b, curve, psi, cos(psi), sin(psi))[6:8]
+    return compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))[6:8]
 
 
 @pytest.mark.thinned(2)
@@ -150,7 +158,7 @@ def test_center_motion_encloses_every_divided_difference_of_the_instant_centre(k
         low, high = sub_range(random, first, last)
         sign = 1.0 if turn_at(a, b, d, (low + high) / 2, branch) > 0 else -1.0
         curve = curve_row(a, b, d, branch)
-        turn, *numerator = center_motion(a, b, curve, low, high, sign)[:3]
+        turn, *numerator = enclose_center_motion(a, b, curve, low, high, sign)[:3]
         assert turn[0] <= turn[1]
         if not turn[0] > 0.0 and not turn[1] < 0.0:
             continue
@@ -191,7 +199,7 @@ def test_center_motion_closes_in_on_the_speed(kinds):
             continue
         curve, step = curve_row(a, b, d, branch), min(alpha - first, last - alpha, 0.3) / 300
         centers = np.array([center(a, b, curve, alpha + k * step) for k in range(-3, 4)])
-        size, *numerator = center_motion(a, b, curve, alpha - 5e-8, alpha + 5e-8, np.sign(turn))[:3]
+        size, *numerator = enclose_center_motion(a, b, curve, alpha - 5e-8, alpha + 5e-8, np.sign(turn))[:3]
         for k, (low, high) in enumerate(numerator):
             speed = difference(centers[:, k], step)
             quotients = [n / x**3 for n in (low, high) for x in size]

@@ -21,7 +21,7 @@ from chord_examples import (
     touching,
     turn_at,
 )
-from workhold.kernels.chord.evaluation import chord
+from workhold.kernels.chord.evaluation import compute_chord
 from workhold.kernels.chord.intervals import NARROW, share_one_line
 
 
@@ -77,7 +77,7 @@ def test_inside_its_range_a_branch_lies_on_both_features(kinds):
         for low, high, branch, *_ in ranges:
             for part in (1e-12, 0.01, random.random(), 0.99, 1 - 1e-12):
                 alpha = low + part * (high - low)
-                c = chord(a, b, d, alpha, branch)
+                c = compute_chord(a, b, d, alpha, branch)
                 tail = np.array([c[:2]])
                 head = tail + d * np.array([cos(alpha), sin(alpha)])
                 assert off_carrier(a, tail) < 1e-9 and off_carrier(b, head) < 1e-9
@@ -123,7 +123,7 @@ def test_a_range_ends_at_a_tangency_or_at_an_end_of_a_feature(kinds):
                 if tangent:
                     assert abs(turn_at(a, b, d, alpha, branch)) < 1e-5
                 elif not (abs(hypot(*(b[1:3] - a[1:3])) - d) < 1e-9 and a[6] == b[6]):
-                    c = chord(a, b, d, alpha, branch)
+                    c = compute_chord(a, b, d, alpha, branch)
                     tail = np.array([c[:2]])
                     head = tail + d * np.array([cos(alpha), sin(alpha)])
                     at_end = min(abs(overshoot(a, tail)[0]), abs(overshoot(b, head)[0]))

@@ -31,7 +31,7 @@ from workhold.conventions import EXACT
 from workhold.kernels.base.feature import is_shallow
 from workhold.kernels.base.tables import BACKWARD_ERROR, COINCIDENCE, KAPPA, MIDDLE
 from workhold.kernels.chord import coincidences, evaluation, intervals
-from workhold.kernels.chord.coincidences import NONE, are_concentric, coincidence
+from workhold.kernels.chord.coincidences import NONE, are_concentric, find_coincidence
 from workhold.kernels.curves import piece_bounds
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -61,7 +61,7 @@ def apart(place: Point, x: float, y: float) -> float:
 
 def general(a: Array, b: Array, d: float) -> bool:
     """Whether a chord is at no coincidence."""
-    return bool(coincidence(a, b, d)[0] == NONE and not are_concentric(a, b))
+    return bool(find_coincidence(a, b, d)[0] == NONE and not are_concentric(a, b))
 
 
 def toward_an_end(random: Random, low: float, high: float, least: float) -> float:
@@ -138,7 +138,7 @@ def off_features_or_turned(turned: bool) -> Callable[[Random, Kernel], float]:
         away = min(square / (kappa * part * (d if turned else 1.0)) if kappa else 1e-4, 1e-2)
         eta, reach = (0.0, away) if turned else (away, 0.0)
         curve[BACKWARD_ERROR] = eta
-        state = evaluation.chord_state(a, b, curve, alpha, cos(alpha), sin(alpha))
+        state = evaluation.compute_chord_state(a, b, curve, alpha, cos(alpha), sin(alpha))
         radius = kernel(curve, state, reach)
         if away < 1e-9 or not isfinite(radius):
             return 0.0
@@ -164,7 +164,7 @@ def in_disc(make: Callable[[Random], Pair], arcs: bool = False) -> Callable[[Ran
         curve = curve_row(a, b, d, branch)
         curve[BACKWARD_ERROR] = 0.0
         reach = 10 ** random.uniform(-7, -0.5) * min(1, high - low)
-        state = evaluation.chord_state(a, b, curve, alpha, cos(alpha), sin(alpha))
+        state = evaluation.compute_chord_state(a, b, curve, alpha, cos(alpha), sin(alpha))
         radius = kernel(a, b, state, d * reach, 0.0) if arcs else kernel(a, b, curve, state, alpha, reach)
         directions = [min(max(alpha + part * reach, low), high) for part in (-1, -0.5, 0.5, 1)]
         return farthest(a, b, d, branch, directions, state[0], state[1]) / float(radius)
@@ -186,7 +186,7 @@ def in_disc_with_a_small_gap(random: Random, kernel: Kernel) -> float:
     if not intervals.carriers_meet(a, b, d, alpha):
         return 0.0
     reach = gap / d * random.uniform(0.3, 4)
-    state = evaluation.chord_state(a, b, curve_row(a, b, d, 1.0), alpha, cos(alpha), sin(alpha))
+    state = evaluation.compute_chord_state(a, b, curve_row(a, b, d, 1.0), alpha, cos(alpha), sin(alpha))
     try:
         radius = kernel(a, b, state, d * reach, 0.0)
     except ValueError:
@@ -239,8 +239,11 @@ def contacts_rounded(random: Random, kernel: Kernel) -> float:
 
 
 def rounded_chord() -> Kernel:
-    inner = {name: changed(getattr(evaluation, name), **ROUNDED) for name in ("line_to_arc", "arc_to_arc")}
-    return changed(evaluation.chord_along, **inner, **ROUNDED)
+    inner = {
+        name: changed(getattr(evaluation, name), **ROUNDED)
+        for name in ("compute_line_to_arc", "compute_arc_to_arc")
+    }
+    return changed(evaluation.compute_chord_along, **inner, **ROUNDED)
 
 
 ROUNDED_CHORD = rounded_chord()
@@ -274,7 +277,7 @@ def tangency_rounded(kinds: tuple[str, str]) -> Callable[[Random, Kernel], float
 def of_lines(form: Kernel) -> Kernel:
     names = {
         "add_event": changed(intervals.add_event),
-        "beyond_line": changed(intervals.beyond_line, **ROUNDED),
+        "find_line_side": changed(intervals.find_line_side, **ROUNDED),
     }
     return changed(form, add_pair=changed(intervals.add_pair, **names, **ROUNDED), **names, **ROUNDED)
 
@@ -282,7 +285,7 @@ def of_lines(form: Kernel) -> Kernel:
 def of_pair(form: Kernel) -> Kernel:
     names = {
         "add_event": changed(intervals.add_event),
-        "beyond_line": changed(intervals.beyond_line, **ROUNDED),
+        "find_line_side": changed(intervals.find_line_side, **ROUNDED),
     }
     return changed(
         intervals.add_line_tangencies, add_pair=changed(form, **names, **ROUNDED), **names, **ROUNDED
@@ -293,7 +296,7 @@ def of_arcs(form: Kernel) -> Kernel:
     names = {
         "add_event": changed(intervals.add_event),
         "are_one_chord_apart": intervals.are_one_chord_apart.py_func,
-        "touching_side": changed(coincidences.touching_side, is_shallow=is_shallow.py_func),
+        "find_touching_side": changed(coincidences.find_touching_side, is_shallow=is_shallow.py_func),
     }
     return changed(
         intervals.add_arc_tangencies, add_gap=changed(form, **names, **ROUNDED), **names, **ROUNDED
@@ -320,7 +323,9 @@ def place_rounded(random: Random, kernel: Kernel) -> float:
     return error_of(ROUNDED_PLACE(row.tolist(), Rounded(float(x)), Rounded(float(y)))) / float(told)
 
 
-ROUNDED_PLACE = changed(evaluation.parameter_on, angle_on=changed(evaluation.angle_on, **ROUNDED), **ROUNDED)
+ROUNDED_PLACE = changed(
+    evaluation.find_parameter, find_arc_parameter=changed(evaluation.find_arc_parameter, **ROUNDED), **ROUNDED
+)
 
 
 def regular_rounded(random: Random, kernel: Kernel) -> float:
@@ -337,10 +342,10 @@ def regular_rounded(random: Random, kernel: Kernel) -> float:
 
 
 ROUNDED_MOTION = changed(
-    coincidences.motion,
-    from_coincidence=coincidences.from_coincidence.py_func,
+    coincidences.compute_motion,
+    measure_from_coincidence=coincidences.measure_from_coincidence.py_func,
     is_regular=changed(coincidences.is_regular, **ROUNDED),
-    regular_radius=changed(coincidences.regular_radius, **ROUNDED),
+    get_regular_radius=changed(coincidences.get_regular_radius, **ROUNDED),
     **ROUNDED,
 )
 
@@ -353,7 +358,7 @@ def nearly_at_a_coincidence(random: Random, kernel: Kernel) -> float:
     arc[1:3] += EXACT * random.uniform(0.9, 1) * np.array([random.choice([-1, 1]), random.choice([-1, 0, 1])])
     curve = curve_row(a, b, d, random.choice([1.0, -1.0]))
     alpha = float(curve[MIDDLE]) + random.choice([-1, 1]) * 10 ** random.uniform(-3, 0)
-    applies, motion = coincidences.motion(a, b, curve, alpha)
+    applies, motion = coincidences.compute_motion(a, b, curve, alpha)
     if not applies:
         return 0.0
     with exactly():
@@ -368,7 +373,9 @@ def within_a_disc(random: Random, kernel: Kernel) -> float:
     row = np.array(random_row(random, "circle"))
     radius, angle = row[6] * random.uniform(0.01, 0.5), random.uniform(-pi, pi)
     disc = (*(row[1:3] + row[6] * np.array([cos(angle), sin(angle)])), radius)
-    _, told = changed(kernel, tail_disc=lambda *_: disc)(row, row, np.zeros(0), 0.0, 0.0, evaluation.POSITION)
+    _, told = changed(kernel, enclose_tail=lambda *_: disc)(
+        row, row, np.zeros(0), 0.0, 0.0, evaluation.POSITION
+    )
     return asin(radius / row[6]) / float(told)
 
 
@@ -379,10 +386,10 @@ def anywhere(line: bool) -> Callable[[Random, Kernel], float]:
         row, angle = np.array(random_row(random, "line" if line else "circle")), random.uniform(-pi, pi)
         axis, part = row[3:5], random.uniform(-1, 1)
         place = row[1:3] + (part * row[5] * axis if line else row[6] * np.array([cos(angle), sin(angle)]))
-        stub = {"chord_state": lambda *_: (*place, *[0.0] * 8), "tail_radius": lambda *_: inf}
+        stub = {"compute_chord_state": lambda *_: (*place, *[0.0] * 8), "bound_tail_error": lambda *_: inf}
         curve = curve_row(row, row, 1.0, 1.0)
         curve[COINCIDENCE] = NONE
-        x, y, radius = changed(kernel, **stub, disc_radius=lambda *_: inf)(
+        x, y, radius = changed(kernel, **stub, bound_disc_radius=lambda *_: inf)(
             row, row, curve, 0.0, 1.0, 0.0, 0.0
         )
         ends = [row[1:3] + side * row[5] * axis for side in (-1, 1)] if line else [2 * row[1:3] - place]
@@ -393,62 +400,64 @@ def anywhere(line: bool) -> Callable[[Random, Kernel], float]:
 
 ARC_FIRST, LINE_FIRST = ("circle", "line"), ("line", "circle")
 CONSTANTS = [
-    Constant("tail, 6 η", evaluation.chord_state, off_features(TAIL, TAIL_ERROR), 6.0),
-    Constant("instant centre, 8 η", evaluation.chord_state, off_features(CENTER, CENTER_ERROR), 8.0),
-    Constant("chord, 16 κη", evaluation.chord_state, off_features(CENTER, CENTER_ERROR), 16.0),
-    Constant("chord, 32 half units", evaluation.backward_error, contacts_rounded, symbol="ROUNDINGS"),
-    Constant("tail radius, 5 η", piece_bounds.tail_radius, off_features_or_turned(False), 5.0),
-    Constant("tail radius, 16 κη", piece_bounds.tail_radius, off_features_or_turned(False), 16.0, 0),
-    Constant("tail radius, 16 dκ", piece_bounds.tail_radius, off_features_or_turned(True), 16.0, 1),
-    Constant("tail radius, 1.3 d", piece_bounds.tail_radius, off_features_or_turned(True), 1.3),
-    Constant("disc of lines, 1.1 e", piece_bounds.disc_radius, in_disc(two_lines), 1.1),
-    Constant("disc at a coincidence, 2.6", piece_bounds.disc_radius, in_disc(at_a_coincidence), 2.6),
+    Constant("tail, 6 η", evaluation.compute_chord_state, off_features(TAIL, TAIL_ERROR), 6.0),
+    Constant("instant centre, 8 η", evaluation.compute_chord_state, off_features(CENTER, CENTER_ERROR), 8.0),
+    Constant("chord, 16 κη", evaluation.compute_chord_state, off_features(CENTER, CENTER_ERROR), 16.0),
+    Constant("chord, 32 half units", evaluation.bound_backward_error, contacts_rounded, symbol="ROUNDINGS"),
+    Constant("tail radius, 5 η", piece_bounds.bound_tail_error, off_features_or_turned(False), 5.0),
+    Constant("tail radius, 16 κη", piece_bounds.bound_tail_error, off_features_or_turned(False), 16.0, 0),
+    Constant("tail radius, 16 dκ", piece_bounds.bound_tail_error, off_features_or_turned(True), 16.0, 1),
+    Constant("tail radius, 1.3 d", piece_bounds.bound_tail_error, off_features_or_turned(True), 1.3),
+    Constant("disc of lines, 1.1 e", piece_bounds.bound_disc_radius, in_disc(two_lines), 1.1),
+    Constant("disc at a coincidence, 2.6", piece_bounds.bound_disc_radius, in_disc(at_a_coincidence), 2.6),
     Constant(
         "disc from line to arc, 2 R",
-        piece_bounds.disc_radius,
+        piece_bounds.bound_disc_radius,
         in_disc(lambda r: line_and_arc(r, LINE_FIRST)),
         2.0,
         1,
     ),
     Constant(
         "disc from line to arc, 1.01",
-        piece_bounds.disc_radius,
+        piece_bounds.bound_disc_radius,
         in_disc(lambda r: line_and_arc(r, LINE_FIRST)),
         1.01,
         0,
     ),
     Constant(
         "disc from arc to line, 2 R",
-        piece_bounds.disc_radius,
+        piece_bounds.bound_disc_radius,
         in_disc(lambda r: line_and_arc(r, ARC_FIRST)),
         2.0,
         3,
     ),
     Constant(
         "disc from arc to line, 1.01",
-        piece_bounds.disc_radius,
+        piece_bounds.bound_disc_radius,
         in_disc(lambda r: line_and_arc(r, ARC_FIRST)),
         1.01,
         1,
     ),
-    Constant("disc of arcs, gap of 2 e", piece_bounds.arcs_radius, in_disc_with_a_small_gap, 2.0, 0),
-    Constant("disc of arcs, 2.2 R", piece_bounds.arcs_radius, in_disc(like_arcs, True), 2.2),
-    Constant("disc of arcs, e / 2", piece_bounds.arcs_radius, in_disc(two_arcs, True), 2.0, 1, times=10.0),
-    Constant("disc of arcs, 1.01", piece_bounds.arcs_radius, in_disc(two_arcs, True), 1.01),
-    Constant("disc of arcs, 1.6 e", piece_bounds.arcs_radius, in_disc(like_arcs, True), 1.6),
-    Constant("place on an arc, 1e-15", evaluation.valued, place_rounded, 1e-15),
-    Constant("angle from a coincidence, 3e-15", coincidences.angle_box, turn_rounded, 3e-15, draws=1000),
-    Constant("regular chord, 4 misfits", evaluation.regular_error, nearly_at_a_coincidence, 4.0),
+    Constant("disc of arcs, gap of 2 e", piece_bounds.bound_arc_tail_error, in_disc_with_a_small_gap, 2.0, 0),
+    Constant("disc of arcs, 2.2 R", piece_bounds.bound_arc_tail_error, in_disc(like_arcs, True), 2.2),
+    Constant(
+        "disc of arcs, e / 2", piece_bounds.bound_arc_tail_error, in_disc(two_arcs, True), 2.0, 1, times=10.0
+    ),
+    Constant("disc of arcs, 1.01", piece_bounds.bound_arc_tail_error, in_disc(two_arcs, True), 1.01),
+    Constant("disc of arcs, 1.6 e", piece_bounds.bound_arc_tail_error, in_disc(like_arcs, True), 1.6),
+    Constant("place on an arc, 1e-15", evaluation.evaluate_state, place_rounded, 1e-15),
+    Constant("angle from a coincidence, 3e-15", coincidences.enclose_angle, turn_rounded, 3e-15, draws=1000),
+    Constant("regular chord, 4 misfits", evaluation.bound_regular_error, nearly_at_a_coincidence, 4.0),
     Constant(
         "regular chord, 2 η",
-        evaluation.regular_error,
+        evaluation.bound_regular_error,
         regular_rounded,
         2.0,
         within=lambda form: changed(form, EXACT=0.0),
     ),
-    Constant("place in a disc, 1.1", piece_bounds.value_disc, within_a_disc, 1.1),
-    Constant("tail anywhere on an arc, 2.2 R", piece_bounds.chord_tail, anywhere(False), 2.2, 0, draws=50),
-    Constant("tail anywhere on a line, 1.1", piece_bounds.chord_tail, anywhere(True), 1.1, draws=50),
+    Constant("place in a disc, 1.1", piece_bounds.enclose_value, within_a_disc, 1.1),
+    Constant("tail anywhere on an arc, 2.2 R", piece_bounds.compute_tail, anywhere(False), 2.2, 0, draws=50),
+    Constant("tail anywhere on a line, 1.1", piece_bounds.compute_tail, anywhere(True), 1.1, draws=50),
     Constant(
         "tangency of line and arc, 2 roundings",
         intervals.add_pair,

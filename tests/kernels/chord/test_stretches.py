@@ -40,8 +40,8 @@ from workhold.kernels.chord.stretches import (
     Y_HIGH,
     Y_LOW,
     add_stretches,
-    center_motion,
-    turn_size,
+    enclose_center_motion,
+    enclose_turn,
     write_stretch,
 )
 
@@ -200,9 +200,9 @@ def test_the_size_of_the_turn_is_enclosed_over_any_range(seed):
         curve = curve_row(a, b, d, branch)
         if low > high or curve[COINCIDENCE] != NONE:
             continue
-        turns = turn_size(a, b, d, low, high)
+        turns = enclose_turn(a, b, d, low, high)
         sign = 1.0 if turn_at(a, b, d, (first + last) / 2, branch) > 0 else -1.0
-        turn, x, y, along, _, _ = center_motion(a, b, curve, low, high, sign)
+        turn, x, y, along, _, _ = enclose_center_motion(a, b, curve, low, high, sign)
         with exactly():
             for alpha in places(random, low, high):
                 chord, speed = (

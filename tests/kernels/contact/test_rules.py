@@ -22,7 +22,7 @@ from workhold.search.toolkit_search import ToolkitSearch
 @pytest.mark.parametrize("count", [3, 4])
 def test_three_parallel_lines_are_seen(count: int) -> None:
     """Of three pegs all must touch such lines, of four any three; arcs never count."""
-    rows = Problem.of(Query(cad_part(2), Vise(pitch=10, columns=2, peg_radius=3))).rows
+    rows = Problem.from_query(Query(cad_part(2), Vise(pitch=10, columns=2, peg_radius=3))).rows
     pegs, seen = np.zeros((4, PEG_LENGTH)), set()
     for touched in combinations_with_replacement(range(len(rows)), 4):
         pegs[:, PEG_FEATURE] = touched
@@ -43,9 +43,9 @@ def test_three_parallel_lines_are_seen(count: int) -> None:
 @pytest.mark.parametrize("kit", [Vise(pitch=8, columns=2, peg_radius=3), Plate(pitch=16, peg_radius=3)])
 def test_no_record_is_of_three_parallel_lines(kit: Toolkit) -> None:
     """They are most of what a vise would hand on, and the last stage would leave them out one by one."""
-    problem = Problem.of(Query(load("widget"), kit))
-    search = ToolkitSearch.of(problem)
-    records = np.concatenate(run_blocks(search.blocks(problem.query.types), 1, None, None)[0])
+    problem = Problem.from_query(Query(load("widget"), kit))
+    search = ToolkitSearch.from_problem(problem)
+    records = np.concatenate(run_blocks(search.make_blocks(problem.query.types), 1, None, None)[0])
     rows = problem.rows[records[:, FEATURES : FEATURES + 4].astype(np.int64)]
     straight, axis = rows[..., IS_ARC] == 0.0, rows[..., AXIS_X] + 1j * rows[..., AXIS_Y]
     for three in combinations(range(4), 3):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, closures_of
+from workhold.kernels.contact.clamp_pairs import CLAMP_LENGTH, PUSH, write_closures
 from workhold.kernels.contact.seats import (
     AMPLIFICATION,
     BOUND_LENGTH,
@@ -15,7 +15,7 @@ from workhold.kernels.contact.seats import (
     FREEDOM,
     MARGIN,
     OFF,
-    bounds_of_pairs,
+    write_pair_bounds,
 )
 from workhold.model.clamps import compute_working_forces
 
@@ -29,7 +29,7 @@ ASKED[0, 2] = 1
 def bounds(forces: Array, directions: list[int], wants_margin: bool = True) -> Array:
     """What bounds the pairs of one seat (3,)."""
     out, starts = np.empty((1, BOUND_LENGTH)), np.array([0, len(forces)])
-    bounds_of_pairs(starts, np.array(directions), forces, ASKED, wants_margin, out, np.empty((2, 3)))
+    write_pair_bounds(starts, np.array(directions), forces, ASKED, wants_margin, out, np.empty((2, 3)))
     return out[0]
 
 
@@ -46,7 +46,7 @@ def figures(forces: Array) -> tuple[float, float, float] | None:
     """Clamp freedom, closure margin and clamp amplification of a pair of forces (2, 4); None where they do not close."""
     clamps, out = np.zeros((1, 2, CLAMP_LENGTH)), np.empty((1, 2))
     clamps[0, :, :3], clamps[0, :, PUSH] = forces[:, :3] / forces[:, FACE, None], 1.0 / forces[:, FACE]
-    closures_of(clamps, out)
+    write_closures(clamps, out)
     margin, freedom = out[0].tolist()
     if margin <= 0.0 or freedom <= 0.0:
         return None

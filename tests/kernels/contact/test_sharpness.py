@@ -42,7 +42,7 @@ def minors_off(turned: bool) -> Callable[[Random, Kernel], float]:
             random.choice([p + square, places[0] + square]) + random.uniform(-spread, spread) for p in places
         ]
         worst = 0.0
-        rules.minors(points, np.array([(cos(a), sin(a)) for a in angles]), length, null)
+        rules.write_minors(points, np.array([(cos(a), sin(a)) for a in angles]), length, null)
         for signs in product((-1.0, 1.0), repeat=4):
             normals = np.array([(cos(a), sin(a)) for a in angles])
             there = points.copy()
@@ -51,7 +51,7 @@ def minors_off(turned: bool) -> Callable[[Random, Kernel], float]:
                 normals = np.array([(cos(a), sin(a)) for a in tilted])
             else:
                 there += OFF * np.array(signs)[:, None] * np.stack([-normals[:, 1], normals[:, 0]], axis=1)
-            rules.minors(there, normals, length, again)
+            rules.write_minors(there, normals, length, again)
             worst = max(worst, np.abs(null - again).max())
         return worst / float(kernel(OFF if turned else 0.0, 0.0 if turned else OFF, length))
 
@@ -75,7 +75,7 @@ class Rows(list):  # type: ignore[type-arg]
         return list.__getitem__(self, place[0])[place[1]]
 
 
-ROUNDED_MINORS = changed(rules.minors, cross=rules.cross.py_func)
+ROUNDED_MINORS = changed(rules.write_minors, cross=rules.cross.py_func)
 
 
 def needed(keeps: Callable[[float], bool]) -> float:
@@ -167,7 +167,7 @@ def row_met(lines: bool) -> Callable[[Random, Kernel], float]:
         meets, x, y, off = kernel(row, ax, ay, height, error, side)
         worst = 0.0
         for part in (-1, -0.5, 0.5, 1):
-            one, px, py, _ = moving_pegs.row_meets(row, ax, ay, height + part * error, 0.0, side)
+            one, px, py, _ = moving_pegs.intersect_at_height(row, ax, ay, height + part * error, 0.0, side)
             if one and not meets:
                 return inf
             if one and meets:
@@ -178,17 +178,17 @@ def row_met(lines: bool) -> Callable[[Random, Kernel], float]:
 
 
 CONSTANTS = [
-    Constant("minor, 20 swing", rules.minor_band, minors_off(True), 20.0, draws=400),
-    Constant("minor, 4 away / L", rules.minor_band, minors_off(False), 4.0, draws=400),
-    Constant("minor, rounding", rules.minor_band, minors_rounded, symbol="ROUNDING"),
+    Constant("minor, 20 swing", rules.bound_minor_error, minors_off(True), 20.0, draws=400),
+    Constant("minor, 4 away / L", rules.bound_minor_error, minors_off(False), 4.0, draws=400),
+    Constant("minor, rounding", rules.bound_minor_error, minors_rounded, symbol="ROUNDING"),
     Constant("contact past the end, 1.2", rules.is_within, past_the_end, 1.2),
     Constant("gap, 2 radii", rules.is_fixture, at_the_edge("gap"), 2.0, 0, draws=60),
     Constant("clamping, 3 bands", rules.is_fixture, at_the_edge("clamp"), 3.0, 0, draws=1500),
-    Constant("row and line, 1.1", moving_pegs.row_meets, row_met(True), 1.1, draws=600),
-    Constant("row and arc, 2.2 R", moving_pegs.row_meets, row_met(False), 2.2, draws=600),
-    Constant("row and arc, 1.3", moving_pegs.row_meets, row_met(False), 1.3, draws=600),
-    Constant("row and arc, 16 R", moving_pegs.row_meets, row_met(False), 16.0, draws=600),
-    Constant("row and arc, 2 roots", moving_pegs.row_meets, row_met(False), 2.0, draws=600),
+    Constant("row and line, 1.1", moving_pegs.intersect_at_height, row_met(True), 1.1, draws=600),
+    Constant("row and arc, 2.2 R", moving_pegs.intersect_at_height, row_met(False), 2.2, draws=600),
+    Constant("row and arc, 1.3", moving_pegs.intersect_at_height, row_met(False), 1.3, draws=600),
+    Constant("row and arc, 16 R", moving_pegs.intersect_at_height, row_met(False), 16.0, draws=600),
+    Constant("row and arc, 2 roots", moving_pegs.intersect_at_height, row_met(False), 2.0, draws=600),
 ]
 
 

@@ -37,11 +37,17 @@ from workhold.kernels.base.tables import (
     X_MOVING,
     X_STANDING,
 )
-from workhold.kernels.chord.evaluation import HEIGHT, POSITION, chord_state
-from workhold.kernels.contact.record import PEG_LENGTH, angle_of, place_peg
-from workhold.kernels.contact.rules import is_fixture, minors, outward_normal, share_a_carrier
+from workhold.kernels.chord.evaluation import HEIGHT, POSITION, compute_chord_state
+from workhold.kernels.contact.record import PEG_LENGTH, make_angle, place_peg
+from workhold.kernels.contact.rules import compute_outward_normal, is_fixture, share_a_carrier, write_minors
 from workhold.kernels.curves.block_work import ROLE_LENGTH, TRIPLE_ROWS, place_chord, place_triple
-from workhold.kernels.curves.moving_pegs import faces_away, height_range, may_close, row_meets, write_triple
+from workhold.kernels.curves.moving_pegs import (
+    faces_away,
+    find_height_range,
+    intersect_at_height,
+    may_close,
+    write_triple,
+)
 from workhold.kernels.curves.piece_bounds import HAIR
 from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import (
@@ -50,13 +56,13 @@ from workhold.kernels.curves.roots import (
     ROOT_RADIUS,
     STACK_DEPTH,
     STACK_LENGTH,
-    crossings,
     may_meet,
+    write_crossings,
 )
-from workhold.kernels.curves.three_and_one import farthest_right
+from workhold.kernels.curves.three_and_one import find_farthest_right
 from workhold.kernels.curves.two_and_two import (
     ROLE_X,
-    flat_slope,
+    find_flat_slope,
     may_cross,
     write_roles,
 )
@@ -88,7 +94,7 @@ FARTHEST, VALUES, MEETING, RIGHT_FACE, CLOSES = range(5)
 
 def prepared(part: Workpiece, vise: Vise) -> ToolkitSearch:
     """A search with its table of curves."""
-    return ToolkitSearch.of(Problem.of(Query(part, vise)))
+    return ToolkitSearch.from_problem(Problem.from_query(Query(part, vise)))
 
 
 def pieces_in(search: ToolkitSearch, low: float, high: float, mode: float) -> np.ndarray:
@@ -111,8 +117,10 @@ def clamping(pegs, psi, features, length):
     points, normals, null = np.empty((4, 2)), np.empty((4, 2)), np.empty(4)
     for k in range(4):
         points[k, 0], points[k, 1] = pegs[k, 0], pegs[k, 1]
-        normals[k, 0], normals[k, 1] = outward_normal(features[int(pegs[k, 2])], pegs[k, 0], pegs[k, 1])
-    size = minors(points, normals, length, null)
+        normals[k, 0], normals[k, 1] = compute_outward_normal(
+            features[int(pegs[k, 2])], pegs[k, 0], pegs[k, 1]
+        )
+    size = write_minors(points, normals, length, null)
     clamp = 0.0
     for k in range(2):
         clamp -= null[k] * (normals[k, 0] * cos(psi) + normals[k, 1] * sin(psi))
@@ -123,10 +131,10 @@ def clamping(pegs, psi, features, length):
 def clamping_bound(one, two, psi, features, integers, reals):
     """The slope of the difference of heights over the distance y . (P_B - P_A); infinite where that is too small."""
     cosine, sine = cos(psi), sin(psi)
-    first = chord_state(
+    first = compute_chord_state(
         features[integers[one, TAIL]], features[integers[one, HEAD]], reals[one], psi, cosine, sine
     )
-    second = chord_state(
+    second = compute_chord_state(
         features[integers[two, TAIL]], features[integers[two, HEAD]], reals[two], psi, cosine, sine
     )
     px, py = second[6] - first[6], second[7] - first[7]
@@ -160,18 +168,22 @@ def try_pairs(pieces, features, curves, lattice, limits, standing_force, moving_
             one, two = int(first[CURVE]), int(second[CURVE])
             if one == two or (integers[one, CENTER] >= 0 and integers[one, CENTER] == integers[two, CENTER]):
                 continue
-            number = crossings(first, second, loose, curves, HEIGHT, row_offset, pitch_y, 0.0, stack, roots)
+            number = write_crossings(
+                first, second, loose, curves, HEIGHT, row_offset, pitch_y, 0.0, stack, roots
+            )
             if number <= 0:
                 continue
-            flat = flat_slope(first, second)
-            steep = crossings(first, second, loose, curves, HEIGHT, row_offset, pitch_y, flat, stack, fewer)
+            flat = find_flat_slope(first, second)
+            steep = write_crossings(
+                first, second, loose, curves, HEIGHT, row_offset, pitch_y, flat, stack, fewer
+            )
             for root in range(number):
                 psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
-                place_chord(pegs[:2], one, angle_of(psi), reach, 0.0, rows, curves)
-                place_chord(pegs[2:], two, angle_of(psi), reach, roots[root, 2], rows, curves)
+                place_chord(pegs[:2], one, make_angle(psi), reach, 0.0, rows, curves)
+                place_chord(pegs[2:], two, make_angle(psi), reach, roots[root, 2], rows, curves)
                 row = out[count]
                 row[FIRST], row[SECOND], row[ROOT], row[REACH] = i, j, psi, reach
-                row[VERDICT], _ = is_fixture(pegs, 2.0, angle_of(psi), reach, features, limits, work, null)
+                row[VERDICT], _ = is_fixture(pegs, 2.0, make_angle(psi), reach, features, limits, work, null)
                 row[FORCE_DIRECTIONS] = as_number(
                     first[standing_force] <= first[standing_force + 1]
                     and second[moving_force] <= second[moving_force + 1]
@@ -208,7 +220,7 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
         np.empty(4),
         np.empty((TRIPLE_ROWS, 3)),
     )
-    farthest = farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
+    farthest = find_farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
     length = limits.wrench_length
     for i in range(pieces.shape[0]):
         for j in range(i):
@@ -221,19 +233,19 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
                 continue
             circle = loose[tail, 0] != 0.0 and loose[tail, 5] >= pi
             period = 2.0 * pi if circle else 0.0
-            number = crossings(first, second, loose, curves, POSITION, 0.0, period, 0.0, stack, roots)
+            number = write_crossings(first, second, loose, curves, POSITION, 0.0, period, 0.0, stack, roots)
             for root in range(number):
                 psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
                 if reach >= 1e-6:
                     continue
                 cx, cy = cos(psi), sin(psi)
-                place_triple(pegs, one, two, angle_of(psi), reach, rows, curves)
+                place_triple(pegs, one, two, make_angle(psi), reach, rows, curves)
                 write_triple(triple, pegs, cx, cy, rows, length)
                 base = cx * pegs[0, 1] - cy * pegs[0, 0] + row_offset
                 error = pegs[0, 5] + 4.0 * length * reach
                 gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
                 for e in range(rows.shape[0]):
-                    lowest, highest = height_range(rows[e], -cy, cx)
+                    lowest, highest = find_height_range(rows[e], -cy, cx)
                     slack = 1e-9 + error / pitch_y
                     for line in range(
                         int(np.ceil((lowest - base) / pitch_y - slack)),
@@ -241,12 +253,12 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
                     ):
                         for k in range(2):
                             height, side = base + line * pitch_y, 1.0 - 2.0 * k
-                            meets, x, y, radius = row_meets(rows[e], -cy, cx, height, error, side)
+                            meets, x, y, radius = intersect_at_height(rows[e], -cy, cx, height, error, side)
                             if not meets:
                                 continue
                             place_peg(pegs[3], x, y, e, 0.0, float(line), radius)
                             verdict, _ = is_fixture(
-                                pegs, 3.0, angle_of(psi), reach, features, limits, work, null
+                                pegs, 3.0, make_angle(psi), reach, features, limits, work, null
                             )
                             if verdict < 2:
                                 continue
@@ -277,7 +289,7 @@ def try_triples(pieces, low, high, features, curves, lattice, limits):
 
 def common(search: ToolkitSearch) -> tuple:
     """What the trials take of a search."""
-    return search.features, search.table.curves, search.frame.lattice, search.limits_from(0.0, np.inf)
+    return search.features, search.table.curves, search.frame.lattice, search.make_limits(0.0, np.inf)
 
 
 def check_type_one(search: ToolkitSearch, low: float, high: float) -> tuple[int, int]:

@@ -14,8 +14,8 @@ from chord_examples import SPECIAL, is_rounded_coincidence
 from curve_examples import HEIGHT, POSITION, pieces_of, pitch_of, random_table, special_table, steps_of
 from exact_chords import dot, exact_chord, exact_speed, exactly, plus
 from strategies import seeds
-from workhold.contact.curves import curve_table
-from workhold.kernels.base.interval import slope_range
+from workhold.contact.curves import make_curve_table
+from workhold.kernels.base.interval import enclose_slope
 from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
@@ -54,9 +54,9 @@ from workhold.kernels.base.tables import (
     X_MOVING,
     X_STANDING,
 )
-from workhold.kernels.chord.evaluation import chord_state
-from workhold.kernels.curves.piece_bounds import force_range, write_force_directions
-from workhold.kernels.curves.piece_enclosures import largest_part
+from workhold.kernels.chord.evaluation import compute_chord_state
+from workhold.kernels.curves.piece_bounds import find_force_range, write_force_directions
+from workhold.kernels.curves.piece_enclosures import find_largest_part
 
 # The check's own rounding: a number at 200 bits, doubled orientation and places as doubles.
 EXACT_TO = 1e-15
@@ -92,7 +92,7 @@ def slope_bounds(piece) -> tuple[float, float]:
     if piece[STEADY] == 0.0:
         return -inf, inf
     ends = (float(piece[k]) for k in (SLOPE_LOW, SLOPE_HIGH, SECOND_DERIVATIVE_LOW, SECOND_DERIVATIVE_HIGH))
-    least, most = slope_range(*ends, float(piece[HIGH] - piece[LOW]))
+    least, most = enclose_slope(*ends, float(piece[HIGH] - piece[LOW]))
     doubt = max(piece[SLOPE_ERROR_LOW], piece[SLOPE_ERROR_HIGH])
     return least - doubt, most + doubt
 
@@ -256,7 +256,7 @@ def test_a_small_part_between_lines_of_action_near_the_middle(seed):
         return
     moved = features.copy()
     moved[:, 1:3] -= center
-    table = curve_table(moved, steps_of(table))
+    table = make_curve_table(moved, steps_of(table))
     for step in range(len(table)):
         psi = alpha - float(table.curves.reals[step, SHIFT])
         width = 10 ** random.uniform(-3, -0.5)
@@ -288,7 +288,7 @@ def test_what_the_errors_of_the_instant_centre_allow_is_told():
             pieces = pieces_of(features, table, low, low + 10 ** random.uniform(-9, -4), HEIGHT)
             for piece in pieces[(pieces[:, CURVE] == curve) & (pieces[:, STEADY] == 1.0)]:
                 for psi in (float(piece[LOW]), float(piece[HIGH])):
-                    state = chord_state(a, b, table.curves.reals[curve], psi, cos(psi), sin(psi))
+                    state = compute_chord_state(a, b, table.curves.reals[curve], psi, cos(psi), sin(psi))
                     across = cos(psi) * state[7] - sin(psi) * state[6]
                     assert piece[ACROSS_LEAST] <= across - state[9] <= across + state[9] <= piece[ACROSS_MOST]
                     assert piece[SECOND_DERIVATIVE_HIGH] >= (hypot(state[6], state[7]) + state[9]) * (
@@ -304,7 +304,7 @@ def test_largest_part_bounds_a_direction_that_turns(seed):
     for _ in range(100):
         one = random.choice([random.uniform(-pi, pi), 0.0, pi / 2, pi])
         turn = random.uniform(-1, 1)
-        told = largest_part(cos(one), sin(one), cos(one + turn), sin(one + turn))
+        told = find_largest_part(cos(one), sin(one), cos(one + turn), sin(one + turn))
         most = max(abs(cos(one + turn * k / 50)) for k in range(51))
         assert told >= most - 1e-12
         if most < 0.7:
@@ -322,7 +322,7 @@ def test_push_range_holds_every_direction_between(seed):
         two = random.choice(
             [random.uniform(-pi, pi), one + pi, one, one + pi + random.uniform(-2, 2) * doubt]
         )
-        bottom, top = force_range(np.cos(one), np.sin(one), np.cos(two), np.sin(two), doubt)
+        bottom, top = find_force_range(np.cos(one), np.sin(one), np.cos(two), np.sin(two), doubt)
         off = [random.uniform(-1, 1) * doubt / 2 for _ in range(2)]
         for angle in angle_range(one + off[0], two + off[1]):
             told = np.sin(angle) / (np.cos(angle) + abs(np.sin(angle)))
@@ -376,10 +376,10 @@ def test_pushes_of_a_piece_hold_those_at_every_orientation_between(seed):
 
 def test_push_range_is_known():
     """Forces up and to the right, forces that all point left, and forces to either side of straight right."""
-    assert force_range(1.0, 0.0, 0.0, 1.0, 0.0) == pytest.approx((0.0, 1.0))
-    assert force_range(-1.0, 0.1, -1.0, -0.1, 0.0) == (1.0, -1.0)
-    assert force_range(1.0, 1.0, 1.0, -1.0, 0.0) == pytest.approx((-0.5, 0.5))
+    assert find_force_range(1.0, 0.0, 0.0, 1.0, 0.0) == pytest.approx((0.0, 1.0))
+    assert find_force_range(-1.0, 0.1, -1.0, -0.1, 0.0) == (1.0, -1.0)
+    assert find_force_range(1.0, 1.0, 1.0, -1.0, 0.0) == pytest.approx((-0.5, 0.5))
     # The shorter way from up and right to down and left leads over the right side or the left one.
-    assert force_range(1.0, 2.0, -1.0, -1.0, 0.0) == pytest.approx((2 / 3, 1.0))
-    assert force_range(2.0, 1.0, -1.0, -1.0, 0.0) == pytest.approx((-1.0, 1 / 3))
-    assert force_range(1.0, 1.0, -1.0, -1.0, 0.0) == (-1.0, 1.0)
+    assert find_force_range(1.0, 2.0, -1.0, -1.0, 0.0) == pytest.approx((2 / 3, 1.0))
+    assert find_force_range(2.0, 1.0, -1.0, -1.0, 0.0) == pytest.approx((-1.0, 1 / 3))
+    assert find_force_range(1.0, 1.0, -1.0, -1.0, 0.0) == (-1.0, 1.0)

@@ -12,8 +12,8 @@ from flint import arb
 from chord_examples import arc_row
 from curve_examples import HEIGHT, POSITION, pieces_of, random_table, sampled
 from exact_chords import exact_chord, exactly
-from workhold.contact.curves import LatticeSteps, curve_table
-from workhold.kernels.base.interval import slope_range
+from workhold.contact.curves import LatticeSteps, make_curve_table
+from workhold.kernels.base.interval import enclose_slope
 from workhold.kernels.base.tables import (
     BRANCH,
     CURVE,
@@ -38,7 +38,7 @@ from workhold.kernels.base.tables import (
     VALUE_HIGH,
     VALUE_LOW,
 )
-from workhold.kernels.chord.coincidences import NONE, coincidence
+from workhold.kernels.chord.coincidences import NONE, find_coincidence
 
 
 def parts_in_cell(reals: np.ndarray, low: float, high: float) -> list[tuple[float, float]]:
@@ -94,13 +94,13 @@ def test_slopes_stay_in_the_enclosure_of_a_piece(mode):
             s, t = sorted(piece[LOW] + span * random.random() for _ in range(2))
             psis = np.concatenate([[s, t], np.linspace(s, t, 25)[1:-1]])
             slopes = sampled(psis, curve, features, table.curves, mode)[:, 1]
-            lowest, highest = slope_range(
+            lowest, highest = enclose_slope(
                 slopes[0], slopes[1], piece[SECOND_DERIVATIVE_LOW], piece[SECOND_DERIVATIVE_HIGH], t - s
             )
             away = min(s - piece[LOW], piece[HIGH] - t, 1.0)
             slack = 1e-13 * (100 + np.abs(slopes)) / max(away, 1e-9)
             assert (slopes >= lowest - slack).all() and (slopes <= highest + slack).all()
-            whole = slope_range(
+            whole = enclose_slope(
                 piece[SLOPE_LOW],
                 piece[SLOPE_HIGH],
                 piece[SECOND_DERIVATIVE_LOW],
@@ -191,7 +191,7 @@ def test_values_at_the_ends_of_pieces_are_within_their_errors():
                 curve = int(piece[CURVE])
                 a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
                 d, branch, shift = (float(table.curves.reals[curve, k]) for k in (LENGTH, BRANCH, SHIFT))
-                if coincidence(a, b, d)[0] != NONE:
+                if find_coincidence(a, b, d)[0] != NONE:
                     continue
                 for end, value, error in (
                     (piece[LOW], piece[VALUE_LOW], piece[VALUE_ERROR_LOW]),
@@ -219,11 +219,11 @@ def test_values_at_the_ends_of_pieces_are_within_their_errors():
 
 def test_slope_range_is_exact_for_parabolas():
     """For f' with f'' = m the enclosure from its end values is [min, max] of f' at the ends."""
-    assert slope_range(1.0, 3.0, 2.0, 2.0, 1.0) == (1.0, 3.0)
-    assert slope_range(3.0, 1.0, -2.0, -2.0, 1.0) == (1.0, 3.0)
-    assert slope_range(0.0, 0.0, -inf, inf, 1.0) == (-inf, inf)
+    assert enclose_slope(1.0, 3.0, 2.0, 2.0, 1.0) == (1.0, 3.0)
+    assert enclose_slope(3.0, 1.0, -2.0, -2.0, 1.0) == (1.0, 3.0)
+    assert enclose_slope(0.0, 0.0, -inf, inf, 1.0) == (-inf, inf)
     # With |f''| <= 1 over width 2 and f' = 0 at both ends, f' reaches at most 1 in the middle.
-    assert slope_range(0.0, 0.0, -1.0, 1.0, 2.0) == pytest.approx((-1.0, 1.0))
+    assert enclose_slope(0.0, 0.0, -1.0, 1.0, 2.0) == pytest.approx((-1.0, 1.0))
 
 
 @pytest.mark.parametrize("gap", [3.0, 1e-2, 1e-4])
@@ -235,6 +235,6 @@ def test_a_chord_of_one_circle_takes_few_pieces_however_near_it_is_to_the_diamet
     """
     features = np.array([arc_row(3, 4, 8.0)])
     steps = LatticeSteps(np.array([16 - gap]), np.array([0, 1]), np.array([[1, 0]]), np.array([0.0]))
-    table = curve_table(features, steps)
+    table = make_curve_table(features, steps)
     assert len(table) >= 2
     assert len(pieces_of(features, table, 0.1, 0.13, mode)) <= 8 * len(table)

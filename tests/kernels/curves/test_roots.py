@@ -14,7 +14,7 @@ from curve_examples import HEIGHT, POSITION, cross, lattice, pieces_of, random_t
 from exact_chords import exact_chord, exactly
 from sharpness import changed
 from strategies import random_row
-from workhold.contact.curves import curve_table
+from workhold.contact.curves import make_curve_table
 from workhold.kernels.base.tables import (
     BRANCH,
     CURVE,
@@ -28,14 +28,14 @@ from workhold.kernels.base.tables import (
     TAIL,
     VALUE_LOW,
 )
-from workhold.kernels.chord.coincidences import NONE, coincidence
-from workhold.kernels.curves.piece_bounds import value_disc
+from workhold.kernels.chord.coincidences import NONE, find_coincidence
+from workhold.kernels.curves.piece_bounds import enclose_value
 from workhold.kernels.curves.roots import (
     MULTIPLE,
     ROOT_PSI,
     ROOT_RADIUS,
-    crossings,
-    value_turned,
+    evaluate_at_angle,
+    write_crossings,
     write_monotone_roots,
 )
 
@@ -129,7 +129,7 @@ def disc_size(piece, psi: float, reach: float, features, table, mode: float) -> 
     """How far the values of a piece's curve within ``reach`` of an orientation may be from a middle one."""
     curve = int(piece[CURVE])
     a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
-    return value_disc(a, b, table.curves.reals[curve], psi, reach, mode)[1]
+    return enclose_value(a, b, table.curves.reals[curve], psi, reach, mode)[1]
 
 
 def merged_roots(roots: np.ndarray) -> np.ndarray:
@@ -209,7 +209,7 @@ def test_positions_on_a_shared_tail_cross_wherever_a_dense_sampling_changes_sign
 
 def shared_tails(features, steps, low: float, high: float) -> set[tuple[float, float]]:
     """(direction from the centre, psi) of all tails on feature 0, a circle, that two chords share."""
-    table = curve_table(features, steps, [0])
+    table = make_curve_table(features, steps, [0])
     pieces = pieces_of(features, table, low, high, POSITION)
     start = atan2(features[0, 4], features[0, 3])
     found = set()
@@ -271,7 +271,7 @@ def test_known_crossings_of_two_ladders():
     """h = -d sin a cos a on square lines, d = 5 and d = 10 along x: they differ by 5/2 sin 2 psi, so by 2 at four angles."""
     features = np.array([line_row(0, 0, pi / 2, 40), line_row(0, 0, 0, 40)])
     steps = lattice(5.0, 3, 1)
-    table = curve_table(features, steps, [0])
+    table = make_curve_table(features, steps, [0])
     pick = [
         int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0])
         for columns in (1, 2)
@@ -291,7 +291,7 @@ def test_curves_on_top_of_each_other_are_told_as_ranges_and_not_given_up():
     """Two chords with the same height everywhere meet at every orientation: the roots told cover the whole common range."""
     line, arc = line_row(0, 0, 0, 40), arc_row(0, 15, 10, 0.0, 3.0)
     features = np.array([line, arc, arc])
-    table = curve_table(features, lattice(12.0, 1, 1), [0])
+    table = make_curve_table(features, lattice(12.0, 1, 1), [0])
     pieces = pieces_of(features, table, 0.95, 0.95 + 2e-6, HEIGHT)
     heads = table.curves.integers[pieces[:, CURVE].astype(int)]
     branch = table.curves.reals[pieces[:, CURVE].astype(int), 2]
@@ -350,7 +350,7 @@ def test_the_exact_root_is_within_the_radius():
 def is_coincident(features, table, curve: int) -> bool:
     """Whether a curve's chord is at a coincidence, taken as exact when it is so within rounding."""
     a, b = (features[k] for k in table.curves.integers[curve, [TAIL, HEAD]])
-    return bool(coincidence(a, b, float(table.curves.reals[curve, LENGTH]))[0] != NONE)
+    return bool(find_coincidence(a, b, float(table.curves.reals[curve, LENGTH]))[0] != NONE)
 
 
 def exact_difference(features, table, curves: list[int], psi: arb) -> arb | None:
@@ -371,7 +371,7 @@ def test_planted_double_roots_are_told(rest):
     """The ladders' difference 5/2 sin 2 psi touches its largest value 5/2 at pi / 4: a target there, or less than it by a
     rest, is met within the ranges told; one above it by far more than rounding is not told at all."""
     features = np.array([line_row(0, 0, pi / 2, 40), line_row(0, 0, 0, 40)])
-    table = curve_table(features, lattice(5.0, 3, 1), [0])
+    table = make_curve_table(features, lattice(5.0, 3, 1), [0])
     pick = [
         int(np.flatnonzero((table.curves.integers[:, :4] == [0, 1, columns, 0]).all(axis=1))[0])
         for columns in (1, 2)
@@ -406,11 +406,12 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
     def first_guess(low, high, f_low, f_high, one, two, features, curves, mode, target, start):
         psi = min(max(low + 0.1 * (high - low), low), high) if random.random() < 0.5 else start
         value_one, value_two = (
-            value_turned(psi, cos(psi), sin(psi), curve, features, curves, mode)[0] for curve in (one, two)
+            evaluate_at_angle(psi, cos(psi), sin(psi), curve, features, curves, mode)[0]
+            for curve in (one, two)
         )
         return psi, abs(value_two - value_one - target)
 
-    early = changed(crossings, write_monotone_roots=changed(write_monotone_roots, solve=first_guess))
+    early = changed(write_crossings, write_monotone_roots=changed(write_monotone_roots, solve=first_guess))
     for _ in range(60):
         features, table = random_table(random)
         low = random.uniform(-4, 4)

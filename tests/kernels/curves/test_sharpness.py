@@ -37,7 +37,7 @@ from workhold.kernels.base.tables import (
     VALUE_MOST,
     X_MOVING,
 )
-from workhold.kernels.chord.coincidences import NONE, coincidence
+from workhold.kernels.chord.coincidences import NONE, find_coincidence
 from workhold.kernels.chord.evaluation import HEIGHT
 from workhold.kernels.chord.stretches import SPEED, STRETCH_LENGTH, write_stretch
 from workhold.kernels.curves import piece_bounds, piece_enclosures
@@ -61,7 +61,7 @@ def steady_chord(random: Random) -> tuple[Array, Array, float, float, float, flo
     """A chord over a range with a bounded speed: features, length, branch, middle and width of directions, stretch."""
     while True:
         a, b, d, ranges = any_ranges(random, 1e-2)
-        if coincidence(a, b, d)[0] != NONE:
+        if find_coincidence(a, b, d)[0] != NONE:
             continue
         low, high, branch = (float(v) for v in ranges[random.randrange(len(ranges))][:3])
         width = (high - low) * 10 ** random.uniform(-4, -1)
@@ -215,7 +215,7 @@ CONSTANTS = [
     Constant(
         "directions of a piece, 2 errors", piece_enclosures.write_steady, normals_off, 2.0, 0, draws=150
     ),
-    Constant("turn of normals, 1.06", piece_bounds.largest_turn, turn_told, 1.06),
+    Constant("turn of normals, 1.06", piece_bounds.bound_normal_turn, turn_told, 1.06),
     Constant("hull of forces, 4 doubts", piece_bounds.write_hull, sagging(False), 4.0, draws=600),
     Constant("forces at both ends, 2 doubts", piece_bounds.write_hull, sagging(False), 2.0, 0, draws=600),
     Constant("sums of forces, 2.6", piece_bounds.write_force_directions, sagging(True), 2.6, draws=600),

@@ -31,7 +31,7 @@ from workhold.kernels.base.tables import (
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves import moving_pegs, roots, sliding_pairs
-from workhold.kernels.curves.block_work import STATISTICS, block_work, make_block_space
+from workhold.kernels.curves.block_work import STATISTICS, make_block_space, make_block_work
 from workhold.search.toolkit_search import ANY_ERROR
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -45,7 +45,7 @@ def rest_rounded(random: Random, kernel: Kernel) -> float:
     multiple = round((two - one - offset) / period)
     target = offset + multiple * period
     values = {0: (one, 1.0, 0.0, 0.0), 1: (two, 1.0, 0.0, 0.0)}
-    form = changed(kernel, value_turned=lambda _, __, ___, curve, *____: values[curve])
+    form = changed(kernel, evaluate_at_angle=lambda _, __, ___, curve, *____: values[curve])
     _, told = form(0.0, 1.0, target - 1, target + 1, 0, 1, None, None, 0.0, target, 0.5)
     rest = Fraction(abs(two - one - target))
     exact = abs(Fraction(two) - Fraction(one) - Fraction(offset) - multiple * Fraction(period))
@@ -73,14 +73,16 @@ def direction_rounded(random: Random, kernel: Kernel) -> float:
     orientation = float(pair[DIRECTION] - np.arctan2(row, column))
     with exactly():
         off = arb.atan2(arb(b[2]), arb(b[1])) - arb.atan2(arb(row), arb(column)) - orientation
-        return float(abs(off).upper()) / float(changed(kernel, backward_error=lambda *_: 0.0)(a, b, pair))
+        return float(abs(off).upper()) / float(
+            changed(kernel, bound_backward_error=lambda *_: 0.0)(a, b, pair)
+        )
 
 
 def arcs_off(random: Random, kernel: Kernel) -> float:
     """How far a chord of arcs that miss a sliding pair by a millionth is turned where it slides, its lines of action 15
     degrees from it or more, over how far it may as told."""
     a, b, pair = slid(random, 1e-6)
-    told = changed(kernel, backward_error=lambda *_: 0.0)(a, b, pair)
+    told = changed(kernel, bound_backward_error=lambda *_: 0.0)(a, b, pair)
     phi = random.choice([-1, 1]) * random.uniform(asin(0.25), pi - asin(0.25)) + pair[DIRECTION]
     tail, d = a[1:3] + a[6] * np.array([cos(phi), sin(phi)]), pair[STEP_LENGTH]
     # The head beside it: where the circle about the tail meets the other arc, by Newton's method.
@@ -123,7 +125,7 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
 
         rows = np.zeros((4, FEATURE_LENGTH))
         rows[:, :SEGMENT_LENGTH] = line_row(0, 0, 1.0, length)
-        form = changed(kernel, row_meets=meets, may_close=closes)
+        form = changed(kernel, intersect_at_height=meets, may_close=closes)
         features = Features(rows[:, :SEGMENT_LENGTH], rows, (0, 4), (0, 4), ANY_ERROR, EVERYWHERE)
         curves = Curves(
             np.zeros((0, CURVE_INTEGERS), np.int64),
@@ -131,7 +133,7 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
             np.zeros((0, STRETCH_LENGTH)),
         )
         given = features, curves, Lattice(1.0, 1.0, 0.0), limits(length, 0.0), False
-        work = block_work(*given, np.zeros(STATISTICS, np.int64), make_block_space(1, 1, 1))
+        work = make_block_work(*given, np.zeros(STATISTICS, np.int64), make_block_space(1, 1, 1))
         out = np.zeros((16, RECORD_LENGTH))
         work.pegs[:] = 0.0
         form(out, 0, (0.0, 1.0, 0.0), reach, work)
@@ -145,13 +147,13 @@ CONSTANTS = [
     Constant("crossing, 4 half units", roots.solve, rest_rounded, symbol="ROUNDINGS", draws=400),
     Constant(
         "sliding pair, 4e-15",
-        sliding_pairs.sliding_pair_reach,
+        sliding_pairs.bound_orientation_error,
         direction_rounded,
         symbol="ROUNDING",
         draws=300,
     ),
-    Constant("sliding arcs, 4 misfits", sliding_pairs.sliding_pair_reach, arcs_off, 4.0),
-    Constant("sliding tail, 1.2", sliding_pairs.tail_inside, past_a_sliding_end, 1.2),
+    Constant("sliding arcs, 4 misfits", sliding_pairs.bound_orientation_error, arcs_off, 4.0),
+    Constant("sliding tail, 1.2", sliding_pairs.is_tail_inside, past_a_sliding_end, 1.2),
     Constant(
         "moving peg's height, 4 L", moving_pegs.add_moving_pegs, moving_peg_off("height"), 4.0, 0, draws=20
     ),

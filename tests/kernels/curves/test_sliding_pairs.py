@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row, off_carrier, overshoot, sliding_pairs_between
-from workhold.kernels.base.feature import point_at
+from workhold.kernels.base.feature import compute_point
 from workhold.kernels.base.tables import COLUMN_STEP, HEAD, ROW_STEP, TAIL, SlidingPairs
 from workhold.kernels.contact.record import (
     PEG_COLUMN,
@@ -20,7 +20,7 @@ from workhold.kernels.contact.record import (
     PEG_X,
     PEG_Y,
 )
-from workhold.kernels.curves.sliding_pairs import place_sliding_pair, placed_pair
+from workhold.kernels.curves.sliding_pairs import place_pair, place_sliding_pair
 
 
 def random_sliding_pair(random: Random) -> tuple[np.ndarray, np.ndarray, float]:
@@ -46,7 +46,7 @@ def random_sliding_pair(random: Random) -> tuple[np.ndarray, np.ndarray, float]:
 
 def touches(a, b, d, s, alpha, slack):
     """Whether the chord with its tail at parameter s of a touches both features, ends moved out by slack mm."""
-    tail = np.array([point_at(a, s)])
+    tail = np.array([compute_point(a, s)])
     head = tail + d * np.array([cos(alpha), sin(alpha)])
     on = overshoot(a, tail)[0] <= slack and overshoot(b, head)[0] <= slack
     return on and off_carrier(b, head)[0] < 1e-9
@@ -73,7 +73,7 @@ def test_the_head_of_a_pair_in_place_is_as_far_off_as_it_may_be_turned():
         psi, shift, radius = random.uniform(-pi, pi), random.uniform(-pi, pi), 10 ** random.uniform(-9, -3)
         tables = SlidingPairs(np.zeros((1, 7), np.int64), np.array([[-1.0, 1.0, psi + shift, d, psi]]))
         tables.integers[0, [TAIL, HEAD, COLUMN_STEP, ROW_STEP]] = 0, 1, 2, 3
-        pair = placed_pair(0, tables, np.stack([a, b]))
+        pair = place_pair(0, tables, np.stack([a, b]))
         assert pair.angle == (psi, cos(psi), sin(psi)) and pair.reach > 0.0
         wide = pair._replace(reach=1e-3, swing=1e-3 * pair.swing / pair.reach)
         place_sliding_pair(pegs, 1.0, 2.0, 4.0, radius, tables.integers[0], wide)

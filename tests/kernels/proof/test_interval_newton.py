@@ -14,7 +14,7 @@ from workhold.kernels.proof import interval_newton as in_doubles
 from workhold.kernels.proof import variation as variations
 from workhold.kernels.proof.newton_kantorovich import DISCARDED, OPEN
 from workhold.proof.ball_contacts import CandidateBox
-from workhold.proof.interval_newton import solutions_in
+from workhold.proof.interval_newton import find_solutions
 
 LENGTH = 20.0
 LIMITS = Limits(-100.0, 0.0, LENGTH, 9.0, 1.0, 0.0, 0.0)
@@ -37,9 +37,9 @@ def interval_newton(
     row: NDArray[np.float64], features: NDArray[np.float64] = FEATURES
 ) -> tuple[int, NDArray[np.float64]]:
     """The verdict on one record, and its roots."""
-    left, _, right = np.linalg.svd(in_doubles.jacobians(row, features, SETTING))
+    left, _, right = np.linalg.svd(in_doubles.compute_jacobians(row, features, SETTING))
     frames = np.stack([left, right.transpose(0, 2, 1)], axis=1)
-    verdicts, roots = in_doubles.interval_newton(row, features, SETTING, frames)
+    verdicts, roots = in_doubles.contract_boxes(row, features, SETTING, frames)
     return int(verdicts[0]), roots
 
 
@@ -49,7 +49,7 @@ def decided(row: NDArray[np.float64]) -> list[float]:
     places = list(zip(row[0, 5:9].tolist(), row[0, 9:13].tolist(), strict=True))
     middle = (float(row[0, PSI]), float(row[0, TAIL_X]), float(row[0, TAIL_Y]), float(row[0, SEPARATION]))
     widths = (reach, radius, radius, 2.0 * (radius + LENGTH * reach))
-    outcome = solutions_in(CandidateBox(ladders.FEATURES, places, 2, middle, widths), LIMITS)
+    outcome = find_solutions(CandidateBox(ladders.FEATURES, places, 2, middle, widths), LIMITS)
     assert outcome is not None and outcome.reason == ""
     return [fixture[0] for fixture in outcome.fixtures]
 
@@ -104,7 +104,7 @@ def test_roots_hold_the_solution_and_are_small() -> None:
 def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the variation of normals and moments over a part solutions are lost, and the comparison above sees it."""
 
-    spread = in_doubles.spread
+    spread = in_doubles.write_variation
 
     def still(*arguments: object) -> None:
         spread(*arguments)
@@ -118,11 +118,11 @@ def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None
         low, high = (float(psi) for psi in ladders.orientations(height))
     row = record(height, 0.0, 2.0 * (high - low))
     (fixture,) = decided(row)
-    left, _, right = np.linalg.svd(in_doubles.jacobians(row, FEATURES, SETTING))
+    left, _, right = np.linalg.svd(in_doubles.compute_jacobians(row, FEATURES, SETTING))
     frame = np.stack([left[0], right[0].T])
     roots, space = np.empty((4, RECORD_LENGTH)), in_doubles.make_newton_space()
-    found = in_doubles.solutions_in.py_func(row[0], FEATURES, SETTING, frame, space, roots)
+    found = in_doubles.find_solutions.py_func(row[0], FEATURES, SETTING, frame, space, roots)
     assert found > 0 and (np.abs(roots[:found, PSI] - fixture) <= roots[:found, 17] + 1e-15).any()
-    monkeypatch.setattr(in_doubles, "spread", still)
-    found = in_doubles.solutions_in.py_func(row[0], FEATURES, SETTING, frame, space, roots)
+    monkeypatch.setattr(in_doubles, "write_variation", still)
+    found = in_doubles.find_solutions.py_func(row[0], FEATURES, SETTING, frame, space, roots)
     assert not (np.abs(roots[: max(found, 0), PSI] - fixture) <= roots[: max(found, 0), 17] + 1e-15).any()

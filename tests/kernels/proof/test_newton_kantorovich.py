@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from exact_chords import exact_solution, exactly
 from strategies import seeds
-from workhold.kernels.contact.record import UNKNOWNS, WORK_LENGTH, touch
+from workhold.kernels.contact.record import UNKNOWNS, WORK_LENGTH, write_contact_equations
 from workhold.kernels.proof import newton_kantorovich as kernel
 
 LENGTH = 30.0
@@ -85,14 +85,14 @@ def planted(random: Random, tilt: float) -> Planted:
     work = np.zeros((WORK_LENGTH, 4))
     work[:4] = [psi, x, y, apart], slides, [o[0] for o in offsets], [o[1] for o in offsets]
     contacts = Planted(np.array(rows), offsets, slides, work, np.zeros((4, 2)))
-    kernel.polish(contacts.record, contacts.features, LENGTH, work, contacts.points)
+    kernel.polish_unknowns(contacts.record, contacts.features, LENGTH, work, contacts.points)
     return contacts
 
 
 def certified(contacts: Planted) -> tuple[float, float]:
     """Radius and distance told of the contacts in place."""
-    size, smallest = kernel.sizes(contacts.record, contacts.features, contacts.points)
-    return kernel.certificate(contacts.work, size, smallest, LENGTH, 0.0)
+    size, smallest = kernel.measure_sizes(contacts.record, contacts.features, contacts.points)
+    return kernel.certify_contacts(contacts.work, size, smallest, LENGTH, 0.0)
 
 
 def away(contacts: Planted, start: list[float]) -> float:
@@ -161,7 +161,7 @@ def test_a_start_moved_off_the_solution_has_a_radius_that_reaches_it(seed: int) 
         contacts = planted(random, 1.0)
         moved = start_at(contacts, [random.uniform(-1e-4, 1e-4) for _ in range(4)])
         contacts.work[UNKNOWNS] = moved
-        touch(contacts.record, contacts.features, LENGTH, contacts.work, contacts.points)
+        write_contact_equations(contacts.record, contacts.features, LENGTH, contacts.work, contacts.points)
         radius, _ = certified(contacts)
         if np.isfinite(radius):
             assert 0.0 < away(contacts, moved) <= radius

@@ -17,7 +17,7 @@ from exact_chords import exact_solution, exactly
 from rounding import ROUNDED, error_of
 from sharpness import Constant, changed, check_sharpness
 from workhold.conventions import GAP_SLACK
-from workhold.kernels.contact.record import INVERSE, OFF, SLOPES, UNKNOWNS, touch
+from workhold.kernels.contact.record import INVERSE, OFF, SLOPES, UNKNOWNS, write_contact_equations
 from workhold.kernels.proof import newton_kantorovich as kantorovich
 from workhold.kernels.proof import variation
 from workhold.kernels.proof.newton_kantorovich import OPEN
@@ -56,7 +56,7 @@ def second_derivative_told(lines: bool) -> Callable[[Random, Kernel], float]:
         contacts = held(random, lines)
         work, points = contacts.work()
         work[OFF] = 0.0
-        size, smallest = kantorovich.sizes(RECORD, contacts.rows, points)
+        size, smallest = kantorovich.measure_sizes(RECORD, contacts.rows, points)
         _, unique = kernel(work, size, smallest, contacts.length, 0.0)
         if not 0.0 < unique < smallest / 16.0 * 0.999:
             return 0.0
@@ -82,8 +82,8 @@ def from_aside(random: Random, kernel: Kernel) -> float:
     start = work[UNKNOWNS].copy()
     move = np.array([random.uniform(-1, 1) for _ in range(4)]) * 10 ** random.uniform(-6, -1)
     work[UNKNOWNS] += move / [contacts.length, 1, 1, 1]
-    touch(RECORD, contacts.rows, contacts.length, work, points)
-    radius, _ = kernel(work, *kantorovich.sizes(RECORD, contacts.rows, points), contacts.length, 0.0)
+    write_contact_equations(RECORD, contacts.rows, contacts.length, work, points)
+    radius, _ = kernel(work, *kantorovich.measure_sizes(RECORD, contacts.rows, points), contacts.length, 0.0)
     if not isfinite(radius):
         return 0.0
     with exactly():
@@ -108,7 +108,7 @@ class Rows:
         self.rows[place[0]][place[1]] = value
 
 
-ROUNDED_TOUCH = changed(touch, **ROUNDED)
+ROUNDED_TOUCH = changed(write_contact_equations, **ROUNDED)
 
 
 def jacobian_rounded(random: Random, kernel: Kernel) -> float:
@@ -121,7 +121,7 @@ def jacobian_rounded(random: Random, kernel: Kernel) -> float:
     off = max(sum(error_of(rows[SLOPES + k, j]) for j in range(4)) for k in range(4))
     # With an inverse of 1 what is told to be the only solution's reach falls by as much as I - A J may be off; it is
     # looked at with a thousandfold rounding.
-    work[OFF], sizes = 0.0, kantorovich.sizes(RECORD, contacts.rows, points)
+    work[OFF], sizes = 0.0, kantorovich.measure_sizes(RECORD, contacts.rows, points)
     work[SLOPES : SLOPES + 4] = work[INVERSE : INVERSE + 4] = np.eye(4)
     exact, less = (
         changed(kernel, ROUNDINGS=scale * kantorovich.ROUNDINGS, invert=lambda _: 1.0)(
@@ -138,7 +138,7 @@ def far_from_an_arc(random: Random, kernel: Kernel) -> float:
     contacts = held(random, False)
     work, points = contacts.work()
     work[OFF] = 0.0
-    _, smallest = kantorovich.sizes(RECORD, contacts.rows, points)
+    _, smallest = kantorovich.measure_sizes(RECORD, contacts.rows, points)
     # An inverse so small that the arc alone limits how far that is.
     work[INVERSE : INVERSE + 4], work[SLOPES : SLOPES + 4] = 1e-3 * np.eye(4), 1e3 * np.eye(4)
     _, unique = changed(kernel, invert=lambda _: 1.0)(work, 0.0, smallest, contacts.length, 0.0)
@@ -160,7 +160,7 @@ def rounding_certified(random: Random, kernel: Kernel) -> float:
     contacts = held(random)
     work, points = contacts.work()
     work[OFF] = 0.0
-    radius, _ = kernel(work, *kantorovich.sizes(RECORD, contacts.rows, points), contacts.length, 0.0)
+    radius, _ = kernel(work, *kantorovich.measure_sizes(RECORD, contacts.rows, points), contacts.length, 0.0)
     return 1.01 * equations_rounded(contacts) * norm(work) / float(radius) if isfinite(radius) else 0.0
 
 
@@ -189,7 +189,7 @@ def varies(column: int, about: bool = False) -> Callable[[Random, Kernel], float
         work, points = contacts.work()
         pairs, told = np.zeros((3, 4, 2)), np.zeros((variation.NUMBERS, 4))
         pairs[0] = points
-        size, _ = kantorovich.sizes(RECORD, contacts.rows, points)
+        size, _ = kantorovich.measure_sizes(RECORD, contacts.rows, points)
         kernel(RECORD, contacts.rows, size, setting(contacts.length), place, frame, work, pairs, told)
         here = numbers(contacts, np.zeros(4))[column]
         worst = 0.0
@@ -234,7 +234,7 @@ def test_what_varies_over_a_part_of_a_box_is_bounded_to_its_second_order(column:
     """Centres, normals, arms, moments and pushes at the corners of a part are within their variations, also where the first
     order is 0 because the part turns about a peg; and the bounds are no more than ten times as wide as needed."""
     random, ratio = Random(7), varies(column, about)
-    worst = max(ratio(random, variation.spread) for _ in range(200))
+    worst = max(ratio(random, variation.write_variation) for _ in range(200))
     assert 0.1 < worst <= 1.0 + 1e-6
 
 
@@ -320,22 +320,31 @@ def ended(row: Array, point: Array, side: float) -> list[float]:
 
 
 CONSTANTS = [
-    Constant("certificate, 2 v² / R", kantorovich.certificate, second_derivative_told(False), 2.0, 0),
-    Constant("certificate, v = 4.42", kantorovich.certificate, second_derivative_told(False), 4.42),
-    Constant("certificate, 4 / L", kantorovich.certificate, second_derivative_told(True), 4.0, 0),
-    Constant("certificate, radius", kantorovich.certificate, from_aside, 1.01),
+    Constant("certificate, 2 v² / R", kantorovich.certify_contacts, second_derivative_told(False), 2.0, 0),
+    Constant("certificate, v = 4.42", kantorovich.certify_contacts, second_derivative_told(False), 4.42),
+    Constant("certificate, 4 / L", kantorovich.certify_contacts, second_derivative_told(True), 4.0, 0),
+    Constant("certificate, radius", kantorovich.certify_contacts, from_aside, 1.01),
     Constant(
-        "contact equation, 16 half units", kantorovich.certificate, rounding_certified, symbol="ROUNDINGS"
+        "contact equation, 16 half units",
+        kantorovich.certify_contacts,
+        rounding_certified,
+        symbol="ROUNDINGS",
     ),
-    Constant("contact equation in a box", variation.spread, equation_error, symbol="HALF_UNIT"),
-    Constant("judged, end 1.2", kantorovich.judged, judged_from_aside("end", True), 1.2, draws=20),
-    Constant("judged, gap 1.5", kantorovich.judged, judged_from_aside("gap", True), 1.5, 0, draws=20),
-    Constant("judged, reach 4.5", kantorovich.judged, judged_from_aside("end", True), 4.5, draws=20),
-    Constant("certificate, R / 16", kantorovich.certificate, far_from_an_arc, 16.0),
+    Constant("contact equation in a box", variation.write_variation, equation_error, symbol="HALF_UNIT"),
+    Constant("judged, end 1.2", kantorovich.judge_contacts, judged_from_aside("end", True), 1.2, draws=20),
+    Constant("judged, gap 1.5", kantorovich.judge_contacts, judged_from_aside("gap", True), 1.5, 0, draws=20),
+    Constant("judged, reach 4.5", kantorovich.judge_contacts, judged_from_aside("end", True), 4.5, draws=20),
+    Constant("certificate, R / 16", kantorovich.certify_contacts, far_from_an_arc, 16.0),
     Constant(
-        "judged, closure 1.1 bands", kantorovich.judged, judged_from_aside("closure", True), 1.1, draws=200
+        "judged, closure 1.1 bands",
+        kantorovich.judge_contacts,
+        judged_from_aside("closure", True),
+        1.1,
+        draws=200,
     ),
-    Constant("judged, span 4 bands", kantorovich.judged, judged_from_aside("span", True), 4.0, 0, draws=20),
+    Constant(
+        "judged, span 4 bands", kantorovich.judge_contacts, judged_from_aside("span", True), 4.0, 0, draws=20
+    ),
 ]
 
 
@@ -343,7 +352,7 @@ CONSTANTS = [
 def test_the_rounding_of_a_jacobian_is_allowed_for() -> None:
     """What a certificate adds to I - A J holds the roundings of a row, and is no more than twenty times as much."""
     random = Random(9)
-    assert 0.05 < max(jacobian_rounded(random, kantorovich.certificate) for _ in range(60)) <= 1.0
+    assert 0.05 < max(jacobian_rounded(random, kantorovich.certify_contacts) for _ in range(60)) <= 1.0
 
 
 @pytest.mark.parametrize("constant", CONSTANTS, ids=lambda constant: constant.name)

@@ -11,7 +11,7 @@ from chord_examples import arc_row, line_row
 from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, RECORD_LENGTH
 from workhold.kernels.proof import interval_newton as in_doubles
-from workhold.kernels.proof.variation import NUMBERS, TILT, face_one_way
+from workhold.kernels.proof.variation import NUMBERS, TILT, are_normals_one_sided
 
 LIMITS = Limits(-np.inf, 0.0, 20.0, 99.0, 1.0, 0.0, 0.0)
 SETTING = Setting(Lattice(1.0, 1.0, 0.0), LIMITS, 0.0, 0.0, 0.0)
@@ -41,14 +41,14 @@ def tilted(*tilts: float) -> np.ndarray:
 def test_normals_face_one_way_up_to_what_each_may_turn(turned: float) -> None:
     """Four within 1.5 radians of the first do, unless one may turn so far that it is square to it; opposite ones never."""
     at = [turned + angle for angle in (0.0, 0.3, -0.8, 1.5)]
-    assert face_one_way(normals(*at), tilted(0, 0, 0, 0))
-    assert face_one_way(normals(*at), tilted(0.9, 0.9, 0.6, 0.9 * cos(1.5)))
+    assert are_normals_one_sided(normals(*at), tilted(0, 0, 0, 0))
+    assert are_normals_one_sided(normals(*at), tilted(0.9, 0.9, 0.6, 0.9 * cos(1.5)))
     for k in range(4):
         wide = [0.0, 0.0, 0.0, 0.0]
         wide[k] = 1.01 * cos(at[k] - turned)
-        assert not face_one_way(normals(*at), tilted(*wide))
-        assert not face_one_way(normals(*at[:k], turned + pi, *at[k + 1 :]), tilted(0, 0, 0, 0))
-    assert not face_one_way(normals(turned, turned + 2.0, turned - 2.0, turned), tilted(0, 0, 0, 0))
+        assert not are_normals_one_sided(normals(*at), tilted(*wide))
+        assert not are_normals_one_sided(normals(*at[:k], turned + pi, *at[k + 1 :]), tilted(0, 0, 0, 0))
+    assert not are_normals_one_sided(normals(turned, turned + 2.0, turned - 2.0, turned), tilted(0, 0, 0, 0))
 
 
 def test_pegs_in_a_row_along_a_rounded_top_are_dropped_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,10 +61,12 @@ def test_pegs_in_a_row_along_a_rounded_top_are_dropped_at_once(monkeypatch: pyte
     row[PSI:] = 0.0, -3.0, 0.0, -7.0, 1e-12, 0.1
     assert row[LARGEST_RADIUS] == 0.1
     features = np.array(TOP)
-    left, _, right = np.linalg.svd(in_doubles.jacobians(row[None], features, SETTING)[0])
+    left, _, right = np.linalg.svd(in_doubles.compute_jacobians(row[None], features, SETTING)[0])
     frame, roots = np.stack([left, right.T]), np.empty((4, RECORD_LENGTH))
     monkeypatch.setattr(in_doubles, "MOST_PARTS", 2)
     assert (
-        in_doubles.solutions_in.py_func(row, features, SETTING, frame, in_doubles.make_newton_space(), roots)
+        in_doubles.find_solutions.py_func(
+            row, features, SETTING, frame, in_doubles.make_newton_space(), roots
+        )
         == 0
     )

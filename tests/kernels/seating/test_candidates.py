@@ -12,8 +12,8 @@ from workhold.kernels.seating.candidates import (
     DOUBTFUL,
     IN_BALANCE,
     NO_BALANCE,
-    fourths,
     judge_balance,
+    write_fourths,
 )
 from workhold.kernels.seating.columns import (
     CANDIDATE_LENGTH,
@@ -29,8 +29,8 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     THETA,
 )
-from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, gathered
-from workhold.seating.closing import filled
+from workhold.kernels.seating.gathering import GATHERED_LENGTH, SUBSET, write_gathered
+from workhold.seating.closing import fill_rows
 from workhold.seating.pattern import Pattern, list_subsets
 
 STOP, WIDEST = -20.0, 60.0
@@ -40,8 +40,8 @@ STOP, WIDEST = -20.0, 60.0
 def given():
     """What kernels are given of a pattern, and its groups."""
     solver, fixture, _ = solved(0)
-    pattern = Pattern.of(fixture, solver.toolkit)
-    return two_contacts_of(solver.closing(pattern, False)).given, list_subsets(pattern)
+    pattern = Pattern.from_fixture(fixture, solver.toolkit)
+    return two_contacts_of(solver.make_closing(pattern, False)).given, list_subsets(pattern)
 
 
 def rows_of(random, count, pegs):
@@ -86,7 +86,7 @@ def test_all_are_told_in_order_from_where_they_are(given):
         kept.append(rows)
         own = as_of_pattern(group, rows)
         if group.is_of_a_jaw:
-            own = reached(filled(CANDIDATE_LENGTH, 4096, fourths, own, group.sides[0], given))
+            own = reached(fill_rows(CANDIDATE_LENGTH, 4096, write_fourths, own, group.sides[0], given))
             fixed += len(own)
             whose += [(-1, -1)] * len(own)
         else:
@@ -97,14 +97,14 @@ def test_all_are_told_in_order_from_where_they_are(given):
     assert {group.is_of_a_jaw for group in groups} == {True, False}
     work = np.empty(CANDIDATE_LENGTH)
     among = np.array(told, dtype=np.float64), np.concatenate(kept), before, after, STOP, WIDEST, given, work
-    every, room = filled(GATHERED_LENGTH, 4096, gathered, *among), 1
+    every, room = fill_rows(GATHERED_LENGTH, 4096, write_gathered, *among), 1
     wanted = np.concatenate([reached(before), *wanted, reached(after)])
     assert fixed > 10 and len(wanted) > fixed + 20 and np.array_equal(every[:, :SUBSET], wanted)
     whose = [(-1, -1)] * len(reached(before)) + whose + [(-1, -1)] * len(reached(after))
     assert every[:, SUBSET:].astype(int).tolist() == [list(one) for one in whose]
     # With any room the same, or none.
     while room < 3 * len(every):
-        assert np.array_equal(filled(GATHERED_LENGTH, room, gathered, *among), every)
+        assert np.array_equal(fill_rows(GATHERED_LENGTH, room, write_gathered, *among), every)
         room = room * 5 // 4 + 1
 
 

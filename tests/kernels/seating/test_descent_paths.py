@@ -10,7 +10,7 @@ import pytest
 from loose_sets import laid_out, straight
 from workhold.kernels.seating.closing import AT_REST, AT_THE_STOP, GAVE_UP
 from workhold.kernels.seating.columns import Manifolds
-from workhold.kernels.seating.descent_paths import OUTSIDE, STOP, leads_out, write_places
+from workhold.kernels.seating.descent_paths import OUTSIDE, STOP, find_pass_to_outside, write_places
 
 NO_SEATS = np.zeros((0, 4))
 
@@ -112,9 +112,9 @@ def test_of_two_seats_in_one_pose_the_level_one_is_the_nearest():
 def test_the_first_pass_that_joins_a_place_with_the_outside():
     """Through other places, of which some are joined among themselves only; and none where there is no way."""
     joins = np.array([[0, 1], [2, STOP], [3, OUTSIDE], [1, 0], [STOP, 3], [4, 0], [1, 2]])
-    out = {place: leads_out(joins, place, np.empty(8, np.int64)) for place in range(6)}
+    out = {place: find_pass_to_outside(joins, place, np.empty(8, np.int64)) for place in range(6)}
     assert out == {0: 6, 1: 6, 2: 4, 3: 2, 4: 6, 5: -1}
-    assert leads_out(joins[:0], 0, np.empty(8, np.int64)) == -1
+    assert find_pass_to_outside(joins[:0], 0, np.empty(8, np.int64)) == -1
 
 
 @pytest.mark.parametrize("level", [0.0, 12.5])

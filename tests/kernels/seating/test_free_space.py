@@ -10,7 +10,7 @@ import pytest
 
 from sharpness import changed
 from workhold.kernels.seating import free_space, obstacles, two_contact_curves
-from workhold.kernels.seating.free_space import way_left
+from workhold.kernels.seating.free_space import find_direction_left
 
 # Columns of a piece: arc, place, axis, half its extent, radius, sign.
 LINE = np.array([0.0, 3.0, -2.0, 0.8, 0.6, 4.0, 0.0, 1.0, 0.0, 0.0])
@@ -19,9 +19,19 @@ ARCS = [np.array([*ARC, half, 5.0, sign, 0.0, 0.0]) for half in (0.4, 1.5, 2.6, 
 # Each with those before it in their Python form.
 INNER: dict[str, Any] = {}
 for module, names in (
-    (obstacles, ("length", "angle_from_middle", "on_piece", "normal_at")),
-    (two_contact_curves, ("gap",)),
-    (free_space, ("add_range", "is_touched", "add_line", "seen_outside", "seen_inside", "add_side")),
+    (obstacles, ("compute_length", "compute_angle_from_middle", "is_on_piece", "compute_normal")),
+    (two_contact_curves, ("measure_gap",)),
+    (
+        free_space,
+        (
+            "add_range",
+            "is_touched",
+            "add_line",
+            "compute_angle_from_outside",
+            "compute_angle_from_inside",
+            "add_side",
+        ),
+    ),
     (free_space, ("add_concave", "add_piece", "add_peg")),
 ):
     for name in names:
@@ -104,7 +114,7 @@ def test_a_peg_goes_along_what_it_touches_and_not_into_it():
 @pytest.mark.thorough
 def test_what_ranges_leave_is_found():
     """And nothing where they leave nothing: against many directions."""
-    rng, seen, left = np.random.default_rng(5), [], changed(way_left)
+    rng, seen, left = np.random.default_rng(5), [], changed(find_direction_left)
     every = np.linspace(-pi, pi, 20_001)
     for _ in range(300):
         ranges = np.stack([rng.uniform(-9.0, 9.0, 12), rng.uniform(0.0, 2.4, 12)], axis=1)

@@ -7,7 +7,7 @@ import pytest
 
 from loose_sets import NOWHERE, laid_out, straight
 from workhold.kernels.seating.columns import Manifolds
-from workhold.kernels.seating.gathering import BESIDE, first_sets, write_beyond, write_each_once
+from workhold.kernels.seating.gathering import BESIDE, write_beyond, write_each_once, write_first_manifolds
 
 STEP = 0.01
 
@@ -23,14 +23,14 @@ def beyond(families: Manifolds, size: float) -> list[np.ndarray]:
 def first_of(configs: np.ndarray, families: Manifolds, asked: list[int]) -> list[int]:
     """The first of some sets that each configuration lies in."""
     out = np.empty(len(configs), np.int64)
-    first_sets(configs, families, np.array(asked, dtype=np.int64), 10.0, 1e-3, out)
+    write_first_manifolds(configs, families, np.array(asked, dtype=np.int64), 10.0, 1e-3, out)
     return out.tolist()
 
 
 def once(families: Manifolds) -> Manifolds:
     """Each set once."""
-    out = Manifolds.room(len(families.rows), len(families.configs))
-    return out.first(write_each_once(families, 1.0, 1e-6, out))
+    out = Manifolds.allocate(len(families.rows), len(families.configs))
+    return out.take_first(write_each_once(families, 1.0, 1e-6, out))
 
 
 def test_ways_off_a_bent_set_begin_where_its_ends_lead():

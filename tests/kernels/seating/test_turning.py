@@ -9,8 +9,16 @@ import pytest
 
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import DEPTH
-from workhold.kernels.seating.tip_in_pocket import value_of, zeros
-from workhold.kernels.seating.turning import HALVES, NONE, ROOT, SHAPE_LENGTH, contact, judged, write_shape
+from workhold.kernels.seating.tip_in_pocket import evaluate_waves, write_zeros
+from workhold.kernels.seating.turning import (
+    HALVES,
+    NONE,
+    ROOT,
+    SHAPE_LENGTH,
+    compute_contact,
+    judge_range,
+    write_shape,
+)
 
 
 def random_shape(random):
@@ -74,7 +82,7 @@ def test_bounds_of_a_contact_enclose_it_over_its_range(within):
         if within:
             there &= on_its_piece(row, thetas, b, k)
         intervals = [(float(v.min()), float(v.max())) for v in (k, rise, wave[0] - k)]
-        told = contact(shape, (low, low + width), *intervals, facing, within)
+        told = compute_contact(shape, (low, low + width), *intervals, facing, within)
         if not there.any():
             continue
         seen += 1
@@ -92,7 +100,7 @@ def test_bounds_of_a_contact_at_one_orientation_are_as_good_as_exact():
     for _ in range(200):
         _, shape = random_shape(random)
         theta, k, facing = random.uniform(-4.0, 4.0), random.uniform(-30.0, 30.0), random.choice([-1.0, 1.0])
-        told = contact(shape, (theta, theta), (k, k), (0.0, 0.0), (0.0, 0.0), facing, False)
+        told = compute_contact(shape, (theta, theta), (k, k), (0.0, 0.0), (0.0, 0.0), facing, False)
         if told[0] and abs(told[5][0]) < 10.0:
             seen += 1
             assert told[1] and all(high - low < 1e-7 * (1.0 + abs(high)) for low, high in told[2:])
@@ -108,14 +116,14 @@ def test_zeros_of_waves_are_those_of_their_polynomial():
         a0, a1, b1, a2, b2 = waves
         every = np.roots([(a2 - 1j * b2) / 2, (a1 - 1j * b1) / 2, a0, (a1 + 1j * b1) / 2, (a2 + 1j * b2) / 2])
         angles = np.sort(np.angle(every[np.abs(np.abs(every) - 1.0) < 1e-9]))
-        count = zeros(waves, -pi, pi, stack, found)
+        count = write_zeros(waves, -pi, pi, stack, found)
         assert np.sort(found[:count, 0]) == pytest.approx(angles, abs=1e-9) and not found[:count, 1].any()
         seen += count
     assert seen > 300
     # One that only touches 0, at 1, is in doubt.
-    count = zeros((1.0, -cos(1.0), -sin(1.0), 0.0, 0.0), -pi, pi, stack, found)
+    count = write_zeros((1.0, -cos(1.0), -sin(1.0), 0.0, 0.0), -pi, pi, stack, found)
     assert count and found[:count, 1].all() and found[:count, 0] == pytest.approx(1.0, abs=1e-6)
-    assert value_of((1.0, 2.0, 3.0, 4.0, 5.0), 0.0) == (7.0, 13.0)
+    assert evaluate_waves((1.0, 2.0, 3.0, 4.0, 5.0), 0.0) == (7.0, 13.0)
 
 
 def test_what_is_told_of_a_range_keeps_its_roots():
@@ -126,7 +134,7 @@ def test_what_is_told_of_a_range_keeps_its_roots():
         low, high = np.sort(random.uniform(-1.0, 1.0, 2))
         middle = (low + high) / 2.0
         value, slope = (middle - r) * (middle - q), (2.0 * low - r - q, 2.0 * high - r - q)
-        verdict, rest = judged((low, high), middle, (value - 1e-15, value + 1e-15), slope)
+        verdict, rest = judge_range((low, high), middle, (value - 1e-15, value + 1e-15), slope)
         inside = [root for root in (r, q) if low <= root <= high]
         assert verdict != NONE if inside else verdict != ROOT
         assert all(rest[0] <= root <= rest[1] for root in inside)
@@ -134,4 +142,4 @@ def test_what_is_told_of_a_range_keeps_its_roots():
         assert len(inside) < 2 or verdict == HALVES
         verdicts.add(verdict)
     assert verdicts >= {NONE, HALVES}
-    assert judged((1.0, 1.0 + 1e-15), 1.0, (-1e-16, 1e-16), (1.0, 1.0))[0] == ROOT
+    assert judge_range((1.0, 1.0 + 1e-15), 1.0, (-1e-16, 1e-16), (1.0, 1.0))[0] == ROOT

@@ -12,7 +12,7 @@ from lesson_page import BRACKET, EXAMPLES, STATIC, LessonPage
 
 import workhold
 from workhold.kernels.base.tables import CURVE_REALS
-from workhold.kernels.chord.evaluation import chord_state, write_curve
+from workhold.kernels.chord.evaluation import compute_chord_state, write_curve
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def state_of(lesson: dict[str, Any], pair: int, theta: float) -> tuple[float, ..
     a, b = (np.array([*lesson["features"][k], 0.0, 0.0]) for k in (tail, head))
     curve = np.zeros(CURVE_REALS)
     write_curve(curve, a, b, length, branch, shift)
-    return tuple(chord_state(a, b, curve, -theta, cos(theta), -sin(theta)))
+    return tuple(compute_chord_state(a, b, curve, -theta, cos(theta), -sin(theta)))
 
 
 def pegs_of(lesson: dict[str, Any], pair: int) -> list[list[float]]:
@@ -61,11 +61,11 @@ def test_the_peg_stands_on_the_locus(shown: LessonPage, name: str) -> None:
     for share in np.linspace(0.0, 1.0, 23):
         found = shown.put("one-peg", low + share * (high - low))
         segment, point = segments[found["face"]], found["point"]
-        normal = segment.normal(segment.parameter(tuple(point)))
+        normal = segment.compute_normal(segment.find_parameter(tuple(point)))
         assert np.allclose(found["normal"], normal, atol=1e-9)
         radius = lesson["toolkit"]["peg_radius"]
         contact = np.array(point) - radius * np.array(normal)
-        assert np.allclose(contact, segment.at(segment.parameter(tuple(point))), atol=1e-9)
+        assert np.allclose(contact, segment.compute_point(segment.find_parameter(tuple(point))), atol=1e-9)
         words = f"x {point[0]:.2f}, y {point[1]:.2f} mm and touches face {found['face']}"
         assert words in shown.words("one-peg").replace("−", "-")
 

@@ -49,18 +49,18 @@ TURNED = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 def cross(a: Any, b: Any) -> Any:
-    """The cross product of vectors in the last axis."""
+    """Return the cross products (...) of vectors (..., 2)."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def rotation(theta: Any) -> Any:
-    """Rotation matrices (..., 2, 2) of angles."""
+def make_rotation(theta: Any) -> Any:
+    """Return rotation matrices (..., 2, 2) for angles (...) in radians."""
     c, s = np.cos(theta), np.sin(theta)
     return np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
 
 
 class Outline:
-    """The outline as rows, one for each segment; material on the left."""
+    """The part's outline as arrays with one entry for each segment; material on the left of each."""
 
     def __init__(self, loops: list[list[list[float]]]) -> None:
         rows, self.loop = [], []
@@ -83,14 +83,14 @@ class Outline:
         self.c[~self.arc] = 0.0
         self.a0 = np.arctan2(*(self.a - self.c).T[::-1])
         self.normal_of_line = np.stack([self.t[:, 1], -self.t[:, 0]], -1)
-        self.face = self.faces(len(loops))
+        self.face = self.number_faces(len(loops))
         self.whole = np.array([self.is_whole(f) for f in self.face])
-        low, high = self.box()
+        low, high = self.compute_box()
         self.middle = (low + high) / 2
-        self.diameter = self.widest()
+        self.diameter = self.measure_diameter()
 
     def continues(self, i: int, j: int) -> bool:
-        """Whether segment j continues the line or circle of segment i."""
+        """Return whether segment j continues the line or circle of segment i."""
         if self.arc[i] != self.arc[j]:
             return False
         if self.arc[i]:
@@ -99,8 +99,8 @@ class Outline:
         off = abs(cross(self.t[i], self.a[j] - self.a[i]))
         return bool(np.abs(self.t[i] - self.t[j]).sum() < 1e-9 and off < 1e-7)
 
-    def faces(self, loops: int) -> Any:
-        """For each segment the smallest number among those that it is one face with."""
+    def number_faces(self, loops: int) -> Any:
+        """Return (S,), for each segment, the smallest number of the segments that form one face with it."""
         face = np.arange(len(self.a))
         for number in range(loops):
             here = [k for k, one in enumerate(self.loop) if one == number]
@@ -111,45 +111,50 @@ class Outline:
         return face
 
     def is_whole(self, face: int) -> bool:
-        """Returns whether a face is a whole circle."""
+        """Return whether a face, by its number, is a whole circle."""
         of = self.face == face
         return bool(self.arc[face] and np.abs(self.sweep[of]).sum() > 2 * pi - 1e-9)
 
-    def directed(self, k: Any, angle: Any) -> Any:
-        """Whether a direction from an arc's centre meets the arc."""
+    def has_direction(self, k: Any, angle: Any) -> Any:
+        """Return whether a direction in radians from the centre of arc k meets the arc; numbers or arrays."""
         return ((angle - self.a0[k]) * self.sign[k]) % (2 * pi) <= abs(self.sweep[k])
 
-    def on_arc(self, k: Any, angle: Any) -> Any:
-        """The point of an arc's circle in a direction."""
+    def compute_arc_point(self, k: Any, angle: Any) -> Any:
+        """Return the point (..., 2) of the circle of arc k in a direction in radians."""
         return self.c[k] + self.r[k] * np.stack([np.cos(angle), np.sin(angle)], -1)
 
-    def box(self) -> tuple[Any, Any]:
-        """Corners of the bounding box."""
+    def compute_box(self) -> tuple[Any, Any]:
+        """Return the lower left and the upper right corner (2,) of the bounding box."""
         points = [*self.a]
         for k in np.flatnonzero(self.arc):
-            points += [self.on_arc(k, a) for a in np.arange(4) * pi / 2 if self.directed(k, a)]
+            points += [
+                self.compute_arc_point(k, a) for a in np.arange(4) * pi / 2 if self.has_direction(k, a)
+            ]
         return np.min(points, axis=0), np.max(points, axis=0)
 
-    def widest(self) -> float:
-        """The largest distance between two points of the outline."""
+    def measure_diameter(self) -> float:
+        """Return the largest distance in mm between two points of the outline."""
         best = max(np.hypot(*(self.a - p).T).max() for p in self.a)
         arcs = np.flatnonzero(self.arc)
         for k in arcs:
             for p in [*self.a, *self.c[arcs]]:
                 v = self.c[k] - p
-                if np.hypot(*v) > 1e-12 and self.directed(k, np.arctan2(v[1], v[0])):
+                if np.hypot(*v) > 1e-12 and self.has_direction(k, np.arctan2(v[1], v[0])):
                     far = self.c[k] + v / np.hypot(*v) * self.r[k]
                     if any(np.array_equal(p, self.a[j]) for j in range(len(self.a))):
                         best = max(best, np.hypot(*(far - p)))
             for j in arcs:
                 v = self.c[k] - self.c[j]
                 angles = [np.arctan2(v[1], v[0])] if np.hypot(*v) > 1e-12 else np.linspace(0, 2 * pi, 721)
-                if any(self.directed(k, a) and self.directed(j, a + pi) for a in angles):
+                if any(self.has_direction(k, a) and self.has_direction(j, a + pi) for a in angles):
                     best = max(best, np.hypot(*v) + self.r[k] + self.r[j])
         return float(best)
 
-    def measured(self, q: Any) -> tuple[Any, Any]:
-        """Distances (M, S) of points from the segments, and of each foot from the segment's nearer end."""
+    def measure_distances(self, q: Any) -> tuple[Any, Any]:
+        """Return distances (M, S) of points (M, 2) from segments, and positions (M, S) of their feet.
+
+        A position is the distance along the segment from its nearer end, negative beyond it, in mm.
+        """
         v = q[:, None] - self.a
         along = (v * self.t).sum(-1)
         inside = np.clip(along, 0, self.length)
@@ -164,14 +169,14 @@ class Outline:
         past = np.where(on, np.minimum(angle, sweep - angle), -np.minimum(angle - sweep, 2 * pi - angle))
         return distance, np.where(self.arc, self.r * past, np.minimum(along, self.length - along))
 
-    def normals(self, q: Any, k: Any) -> Any:
-        """Outward unit normals (M, 2) of segments k at the feet of points."""
+    def compute_normals(self, q: Any, k: Any) -> Any:
+        """Return the outward unit normals (M, 2) of segments k (M,) at the feet of points (M, 2)."""
         v = (q - self.c[k]) * self.sign[k][:, None]
         size = np.hypot(*v.T)[:, None]
         return np.where(self.arc[k][:, None], v / np.where(size == 0, 1, size), self.normal_of_line[k])
 
-    def inside(self, q: Any) -> Any:
-        """Whether points (M, 2) lie in the material, by the crossings of two rays."""
+    def contains(self, q: Any) -> Any:
+        """Return whether (M,) points (M, 2) lie in the material, by the crossings of two rays."""
         verdicts = []
         for angle in (0.7354, 2.4131):
             u = np.array([np.cos(angle), np.sin(angle)])
@@ -193,8 +198,12 @@ class Outline:
             verdicts.append(count % 2 == 1)
         return verdicts[0] & verdicts[1]
 
-    def hits(self, p: Any, u: Any, r: float) -> list[tuple[float, int]]:
-        """Where a disc of radius r, moved along p + s u, touches one segment and enters none: (s, segment)."""
+    def find_hits(self, p: Any, u: Any, r: float) -> list[tuple[float, int]]:
+        """Return (s, segment) of places p + s u at which a
+        disc of radius r touches the segment and enters none.
+
+        ``p`` is the disc's centre at s = 0, ``u`` a unit vector.
+        """
         found = []
         turn = cross(u, self.t)
         for k in np.flatnonzero(~self.arc & (np.abs(turn) > 1e-12)):
@@ -211,18 +220,20 @@ class Outline:
             return []
         s, which = (np.array(x) for x in zip(*found, strict=True))
         q = p + s[:, None] * u
-        distance, past = self.measured(q)
+        distance, past = self.measure_distances(q)
         row = np.arange(len(q))
         good = (
             (distance.min(1) > r - 1e-9)
             & (past[row, which] > EDGE)
             & (np.abs(distance[row, which] - r) < 1e-9)
         )
-        good &= ~self.inside(q)
+        good &= ~self.contains(q)
         return [(float(a), int(b)) for a, b in zip(s[good], which[good], strict=True)]
 
-    def rotations(self) -> list[float]:
-        """Angles of all rotations of the outline onto itself, 0 first."""
+    def find_rotations(self) -> list[float]:
+        """Return the angles in radians of all rotations of the
+        outline onto itself, ascending from 0; sets ``pivot``.
+        """
         marks = {f: (self.c[f], self.c[f]) if self.whole[f] else None for f in set(self.face.tolist())}
         rows = []
         for f, whole in marks.items():
@@ -236,13 +247,13 @@ class Outline:
         self.pivot = data[joints, :2].mean(0)
         found = []
         for order in range(1, len(rows) + 1):
-            if all(self.carried(data, 2 * pi * k / order) for k in (1,)):
+            if all(self.carries_faces_onto_faces(data, 2 * pi * k / order) for k in (1,)):
                 found += [2 * pi * k / order for k in range(order)]
         return sorted({round(a, 12) for a in found}) if np.ptp(data[:, :4]) > 1e-9 or len(rows) > 2 else [0.0]
 
-    def carried(self, rows: Any, angle: float) -> bool:
-        """Whether a rotation about the pivot carries the faces onto faces."""
-        R = rotation(angle)
+    def carries_faces_onto_faces(self, rows: Any, angle: float) -> bool:
+        """Return whether a rotation by an angle in radians about the pivot carries each face onto a face."""
+        R = make_rotation(angle)
         image = rows.copy()
         for at in (slice(0, 2), slice(2, 4)):
             image[:, at] = (rows[:, at] - self.pivot) @ R.T + self.pivot
@@ -251,7 +262,7 @@ class Outline:
 
 
 class Bench:
-    """One file: what is asked, and fixtures of one type as arrays."""
+    """The request of one file: toolkit, part and options."""
 
     def __init__(self, content: dict[str, Any]) -> None:
         self.kit = content["toolkit"]
@@ -267,8 +278,10 @@ class Bench:
         self.origin_free = self.kind in ("vise", "opening-vise", "flat-jaw")
         self.pairs = self.kit.get("clamps") == 2
 
-    def roles(self, fixture: dict[str, Any]) -> list[str]:
-        """What the pegs must be, in order: jaws, locators, and directions of clamps."""
+    def list_roles(self, fixture: dict[str, Any]) -> list[str]:
+        """Return the required role of each peg of a fixture, in order:
+        "left", "right", "jaw", "locator", or a clamp's direction.
+        """
         if self.kind in ("vise", "opening-vise"):
             return {"I": ["left"] * 2 + ["right"] * 2, "II": ["left"] * 3 + ["right"]}[fixture["type"]]
         if self.kind == "flat-jaw":
@@ -276,15 +289,17 @@ class Bench:
         ways = fixture["directions"] if self.pairs else [fixture["direction"]]
         return ["locator"] * (1 if self.has_wall else 3) + list(ways)
 
-    def type_names(self) -> set[str]:
-        """The types that this kind of toolkit has."""
+    def list_type_names(self) -> set[str]:
+        """Return the names of the types of fixtures that this kind of toolkit has."""
         if self.kind in ("vise", "opening-vise"):
             return {"I", "II"}
         name = {"flat-jaw": "flat", "edge": "edge", "translating-clamp": "clamp"}[self.kind]
         return {name + "2" * self.pairs}
 
-    def pushes(self, roles: list[str]) -> Any:
-        """The directions in which pegs of some roles push as the toolkit clamps; zero for what stands still."""
+    def list_push_directions(self, roles: list[str]) -> Any:
+        """Return the directions (P, 2) in which pegs of these roles
+        push as the toolkit clamps; zero for those that stand still.
+        """
         sign = -1.0 if self.kind == "opening-vise" else 1.0
         known = {
             "left": (sign, 0.0),
@@ -295,20 +310,22 @@ class Bench:
         }
         return np.array([known[role] for role in roles])
 
-    def radii(self, roles: list[str]) -> Any:
-        """The radius of each peg."""
+    def list_peg_radii(self, roles: list[str]) -> Any:
+        """Return the radius (P,) in mm of the peg of each role."""
         return np.array([self.tip if role in DIRECTIONS else self.rho for role in roles])
 
-    def unit(self, q: Any, n: Any) -> Any:
-        """Wrenches of contacts."""
+    def compute_wrenches(self, q: Any, n: Any) -> Any:
+        """Return wrenches (..., 3) of unit forces along
+        normals n at points q, moments divided by ``scale``.
+        """
         return np.concatenate([n, (cross(q - self.outline.middle, n) / self.scale)[..., None]], -1)
 
 
 # ---- the form of the file ----------------------------------------------------------------------------------
 
 
-def form_faults(content: Any) -> list[str]:
-    """What is wrong with keys and types; nothing else is looked at where there is anything."""
+def find_set_form_faults(content: Any) -> list[str]:
+    """Return a list of what is wrong with the file's keys and types; empty where nothing is."""
     if not isinstance(content, dict):
         return ["the file is no JSON object"]
     faults = [f"the key {key} is missing" for key in HEAD if key not in content]
@@ -332,27 +349,29 @@ def form_faults(content: Any) -> list[str]:
         values = content[key].values()
         if any(type(value) is not int or value < 0 for value in values):
             faults.append(f"{key} are no whole numbers from 0")
-    finite = all_finite({key: content[key] for key in ("workpiece", "toolkit", "options", "fixtures")})
+    finite = are_all_finite({key: content[key] for key in ("workpiece", "toolkit", "options", "fixtures")})
     if not finite:
         faults.append("a number is not finite")
     return faults
 
 
-def all_finite(value: Any) -> bool:
-    """Whether all numbers within are finite."""
+def are_all_finite(value: Any) -> bool:
+    """Return whether every float in nested lists and dicts is finite."""
     if isinstance(value, dict):
-        return all(map(all_finite, value.values()))
+        return all(map(are_all_finite, value.values()))
     if isinstance(value, list):
-        return all(map(all_finite, value))
+        return all(map(are_all_finite, value))
     return not isinstance(value, float) or isfinite(value)
 
 
-def fixture_form_faults(bench: Bench, fixture: Any) -> list[str]:
-    """What is wrong with the keys of a fixture."""
+def find_form_faults(bench: Bench, fixture: Any) -> list[str]:
+    """Return a list of what is wrong with the keys and
+    types of one fixture; it names only the first fault.
+    """
     try:
-        if fixture["type"] not in bench.type_names():
+        if fixture["type"] not in bench.list_type_names():
             return [f"the type {fixture['type']!r} is none of this toolkit"]
-        roles = bench.roles(fixture)
+        roles = bench.list_roles(fixture)
         if len(fixture["pegs"]) != len(roles):
             return ["the number of pegs"]
         for peg, role in zip(fixture["pegs"], roles, strict=True):
@@ -391,66 +410,70 @@ class Batch:
 
     def __init__(self, bench: Bench, fixtures: Fixtures) -> None:
         self.bench, self.fixtures = bench, fixtures
-        self.roles = bench.roles(fixtures[0])
+        self.roles = bench.list_roles(fixtures[0])
         self.xy = np.array([[(p["x"], p["y"]) for p in f["pegs"]] for f in fixtures], float)
         pose = np.array([[f["pose"][key] for key in ("theta_deg", "x", "y")] for f in fixtures], float)
         self.theta, self.shift = np.radians(pose[:, 0]), pose[:, 1:]
         self.segment = np.array([[p["segment"] for p in f["pegs"]] for f in fixtures])
-        self.R = rotation(self.theta)
+        self.R = make_rotation(self.theta)
         self.q = np.einsum("nji,nmj->nmi", self.R, self.xy - self.shift[:, None])
         self.faults: list[list[str]] = [[] for _ in fixtures]
         self.marginal = np.zeros(len(fixtures), bool)
-        self.push = np.einsum("nji,mj->nmi", self.R, bench.pushes(self.roles))
+        self.push = np.einsum("nji,mj->nmi", self.R, bench.list_push_directions(self.roles))
 
     def blame(self, wrong: Any, words: str) -> None:
-        """Notes a fault of the fixtures in a mask."""
+        """Add a fault to each fixture that a mask (N,) selects."""
         for n in np.flatnonzero(wrong):
             self.faults[n].append(words)
 
     def judge(self) -> None:
-        """Judges all of it."""
+        """Check every rule, and collect the faults in ``faults`` and ``marginal``."""
         bench = self.bench
         theta = np.array([f["pose"]["theta_deg"] for f in self.fixtures])
         self.blame((theta < 0) | (theta >= 360), "theta_deg lies outside [0, 360)")
-        self.contacts()
-        walls = self.wall() if bench.has_wall else np.zeros((len(self.q), 0, 3))
-        self.w = np.concatenate([walls, bench.unit(self.q, self.n)], 1)
-        {"vise": self.jaws, "opening-vise": self.jaws, "flat-jaw": self.flat_jaw}.get(
-            bench.kind, self.plate
+        self.check_contacts()
+        walls = self.check_wall() if bench.has_wall else np.zeros((len(self.q), 0, 3))
+        self.w = np.concatenate([walls, bench.compute_wrenches(self.q, self.n)], 1)
+        {"vise": self.check_jaws, "opening-vise": self.check_jaws, "flat-jaw": self.check_flat_jaw}.get(
+            bench.kind, self.check_plate
         )()
-        self.closing()
-        self.figures()
+        self.check_closure()
+        self.check_figures()
 
-    def contacts(self) -> None:
-        """Rules 1 and 2: every peg touches its face within its ends, and none enters the part."""
+    def check_contacts(self) -> None:
+        """Check rules 1 and 2: each peg touches its face between
+        the ends, and none enters the part; set ``n``, the normals.
+        """
         outline, self.n = self.bench.outline, np.zeros_like(self.q)
-        for m, radius in enumerate(self.bench.radii(self.roles)):
+        for m, radius in enumerate(self.bench.list_peg_radii(self.roles)):
             q, name = self.q[:, m], f"peg {m + 1}"
-            distance, past = outline.measured(q)
+            distance, past = outline.measure_distances(q)
             same = outline.face[self.segment[:, m]][:, None] == outline.face
             k, row = np.where(same, distance, inf).argmin(1), np.arange(len(q))
             self.blame(np.abs(distance[row, k] - radius) > TOL, f"{name} does not touch its face")
             self.blame(outline.face[self.segment[:, m]] != self.segment[:, m], f"{name} names no face")
             self.blame((past[row, k] < -EDGE) & ~outline.whole[k], f"{name} is past the end of its face")
             self.blame(
-                (distance.min(1) < radius - TOL) | (outline.inside(q) & (distance.min(1) > TOL)),
+                (distance.min(1) < radius - TOL) | (outline.contains(q) & (distance.min(1) > TOL)),
                 f"{name} enters the part",
             )
             others = np.where(same, inf, distance)
             second = (others < radius + EDGE) & (np.abs(past) > 1e-3)
             self.marginal |= ((past[row, k] < EDGE) & ~outline.whole[k]) | second.any(1)
-            self.n[:, m] = outline.normals(q, k)
+            self.n[:, m] = outline.compute_normals(q, k)
 
-    def wall(self) -> Any:
-        """The part lies flush on the wall between the points named; the wrenches (N, 2, 3) of those."""
+    def check_wall(self) -> Any:
+        """Check that the part lies flush on the wall between the
+        stated points; return these contacts' wrenches (N, 2, 3).
+        """
         outline, ends = self.bench.outline, []
         lowest = np.einsum("nij,sj->nsi", self.R, outline.a) + self.shift[:, None]
         points = [lowest]
         down = np.einsum("nji,j->ni", self.R, np.array([0.0, -1.0]))
         angle = np.arctan2(down[:, 1], down[:, 0])
         for k in np.flatnonzero(outline.arc):
-            p = np.einsum("nij,nj->ni", self.R, outline.on_arc(k, angle)) + self.shift
-            points.append(np.where(outline.directed(k, angle)[:, None], p, lowest[:, 0])[:, None])
+            p = np.einsum("nij,nj->ni", self.R, outline.compute_arc_point(k, angle)) + self.shift
+            points.append(np.where(outline.has_direction(k, angle)[:, None], p, lowest[:, 0])[:, None])
         low = np.concatenate(points, 1)
         self.blame(low[..., 1].min(1) < -TOL, "the part enters the wall")
         on = np.abs(low[..., 1]) < EDGE
@@ -461,24 +484,24 @@ class Batch:
             said = np.array([f["wall"][key] for f in self.fixtures], float)
             self.blame((np.abs(said[:, 0] - x) > EDGE) | (np.abs(said[:, 1]) > TOL), f"the wall's {key!r}")
             q = np.einsum("nji,nj->ni", self.R, said - self.shift)
-            ends.append(self.bench.unit(q, down))
-        radii = self.bench.radii(self.roles)
+            ends.append(self.bench.compute_wrenches(q, down))
+        radii = self.bench.list_peg_radii(self.roles)
         self.blame((self.xy[..., 1] < radii - TOL).any(1), "a peg enters the wall")
         self.marginal |= (self.xy[..., 1] < radii + EDGE).any(1)
         return np.stack(ends, 1)
 
-    def numbers(self, key: str, members: list[int]) -> Any:
-        """Columns or rows (N, M) of some pegs."""
+    def read_numbers(self, key: str, members: list[int]) -> Any:
+        """Return the columns or rows (N, M), by ``key``, of the pegs with these indices."""
         return np.array([[f["pegs"][m][key] for m in members] for f in self.fixtures])
 
-    def jaws(self) -> None:
-        """Rule 3 of a vise: holes, columns, rows, the gap and the opening."""
+    def check_jaws(self) -> None:
+        """Check rule 3 of a vise: holes, columns, rows, the gap and the opening."""
         kit, pitch, columns = self.bench.kit, self.bench.pitch, self.bench.kit["columns"]
         sides = {s: [m for m, role in enumerate(self.roles) if role == s] for s in ("left", "right")}
         S = np.array([f["jaw_separation"] for f in self.fixtures], float)
         rows = []
         for side, members in sides.items():
-            i, j = self.numbers("column", members), self.numbers("row", members)
+            i, j = self.read_numbers("column", members), self.read_numbers("row", members)
             start = 0.0 if side == "left" else ((columns - 1) * pitch[0] + S)[:, None]
             lift = 0.0 if side == "left" else kit["row_offset"]
             off = np.abs(self.xy[:, members, 0] - start - i * pitch[0])
@@ -491,7 +514,7 @@ class Batch:
                 near = i.max(1) != columns - 1 if side == "left" else i.min(1) != 0
                 self.blame(near, f"the pegs of the {side} jaw could stand nearer to the opening")
         j = np.concatenate(rows, 1)
-        self.rows_within(j)
+        self.check_rows(j)
         gap = self.xy[:, sides["right"], 0].min(1) - self.xy[:, sides["left"], 0].max(1)
         self.blame(gap < kit["min_gap"] - TOL, "the jaws are too near to each other")
         self.marginal |= gap < kit["min_gap"] + EDGE
@@ -501,12 +524,14 @@ class Batch:
             self.marginal |= kit["max_opening"] - EDGE < S
 
     def refuse_shared(self, i: Any, j: Any) -> None:
-        """Blames fixtures with two pegs in one hole."""
+        """Blame fixtures with two pegs in one hole; columns i and rows j are (N, M)."""
         for a, b in combinations(range(i.shape[1]), 2):
             self.blame((i[:, a] == i[:, b]) & (j[:, a] == j[:, b]), "two pegs stand in one hole")
 
-    def rows_within(self, j: Any) -> None:
-        """Blames rows that do not exist, and pegs that are not shifted to where the format has them."""
+    def check_rows(self, j: Any) -> None:
+        """Blame rows (N, M) that do not exist, and fixtures that
+        are not shifted to the lowest row as the format requires.
+        """
         most = self.bench.kit["rows"]
         self.blame(j.min(1) < 0, "a row below 0")
         if most is None or self.bench.kind == "translating-clamp":
@@ -514,10 +539,10 @@ class Batch:
         if most is not None:
             self.blame(j.max(1) >= most, "a row that there is not")
 
-    def flat_jaw(self) -> None:
-        """Rules 2 and 3 of the flat jaw: holes, columns, rows, the opening."""
+    def check_flat_jaw(self) -> None:
+        """Check rules 2 and 3 of the flat jaw: holes, columns, rows, the opening."""
         kit, pitch = self.bench.kit, self.bench.pitch
-        i, j = self.numbers("column", [0, 1]), self.numbers("row", [0, 1])
+        i, j = self.read_numbers("column", [0, 1]), self.read_numbers("row", [0, 1])
         S = np.array([f["jaw_separation"] for f in self.fixtures], float)
         off = np.maximum(
             np.abs(self.xy[..., 0] - i * pitch[0]), np.abs(self.xy[..., 1] - S[:, None] - j * pitch[1])
@@ -538,12 +563,14 @@ class Batch:
             self.blame(back, "the pegs are moved back farther than needed")
             self.marginal |= np.abs((kit["max_opening"] - S) % pitch[1]) < EDGE
 
-    def plate(self) -> None:
-        """Rules of plate and fence: holes, the clamps' lines and bodies, clearances, columns and rows."""
+    def check_plate(self) -> None:
+        """Check the rules of plate and fence: holes, the
+        clamps' lines and bodies, clearances, columns and rows.
+        """
         bench, kit, pitch, base = self.bench, self.bench.kit, self.bench.pitch, self.bench.base
         stops = [m for m, role in enumerate(self.roles) if role == "locator"]
         clamps = [m for m, role in enumerate(self.roles) if role in DIRECTIONS]
-        i, j = self.numbers("column", stops), self.numbers("row", stops)
+        i, j = self.read_numbers("column", stops), self.read_numbers("row", stops)
         off = np.abs(self.xy[:, stops] - base - np.stack([i, j], -1) * pitch).max((1, 2))
         self.blame(off > TOL, "a locator is not in its hole")
         self.refuse_shared(i, j)
@@ -551,7 +578,7 @@ class Batch:
         for m in clamps:
             role, tip = self.roles[m], self.xy[:, m]
             d, axis = np.array(DIRECTIONS[role]), 1 if role[1] == "x" else 0
-            line = self.numbers("row" if axis else "column", [m])
+            line = self.read_numbers("row" if axis else "column", [m])
             self.blame(
                 np.abs(tip[:, axis] - base[axis] - line[:, 0] * pitch[axis]) > TOL, "a clamp is off its line"
             )
@@ -566,51 +593,57 @@ class Batch:
                 self.blame((way < low - TOL) | (way > high + TOL), "a clamp's stroke")
                 self.marginal |= (np.abs(way - low) < EDGE) | (np.abs(way - high) < EDGE)
                 i, j = np.hstack([i, hole[:, :1]]), np.hstack([j, hole[:, 1:]])
-                self.capsules(tip, end)
+                self.check_clamp_bodies(tip, end)
             elif any(f["pegs"][m].get("hole") is not None for f in self.fixtures):
                 self.blame(np.ones(len(tip), bool), "a hole of a clamp that has no body")
             bodies.append((tip, end))
             for s in stops:
-                room = from_piece(self.xy[:, s], tip, end) - bench.rho - bench.tip
+                room = measure_from_piece(self.xy[:, s], tip, end) - bench.rho - bench.tip
                 self.blame(room < -TOL, "a clamp meets a locator")
                 self.marginal |= np.abs(room) < EDGE
         if len(bodies) == 2:
-            room = between(*bodies) - 2 * bench.tip
+            room = measure_gaps(*bodies) - 2 * bench.tip
             self.blame(room < -TOL, "the clamps meet each other")
             self.marginal |= np.abs(room) < EDGE
         self.blame(i.min(1) != 0, "the lowest column is not 0")
-        self.rows_within(j)
+        self.check_rows(j)
         if kit["columns"] is not None:
             self.blame(i.max(1) >= kit["columns"], "a column that the plate does not have")
-        asked = {tuple(sorted(d)) if self.bench.pairs else d for d in map(as_key, kit["directions"])}
+        asked = {tuple(sorted(d)) if self.bench.pairs else d for d in map(to_key, kit["directions"])}
         self.blame([not self.is_asked(f, asked) for f in self.fixtures], "a direction that was not asked for")
 
     def is_asked(self, f: dict[str, Any], asked: set[Any]) -> bool:
-        """Whether the directions of a fixture are asked for."""
+        """Return whether the file asks for the directions of a
+        fixture; ``asked`` are its directions or sorted pairs.
+        """
         if not self.bench.pairs:
             return f["direction"] in asked
         ways = [tuple(sorted(f["directions"])), tuple(sorted(TURNED[d] for d in f["directions"]))]
         ordered = f["directions"] == sorted(f["directions"], key=list(DIRECTIONS).index)
         return ordered and (ways[0] in asked or (not self.bench.has_wall and ways[1] in asked))
 
-    def capsules(self, tip: Any, end: Any) -> None:
-        """The clamps' bodies stay out of the part: looked at in steps of a hundredth of a pitch, and finer."""
+    def check_clamp_bodies(self, tip: Any, end: Any) -> None:
+        """Check that clamps' bodies from tips (N, 2) to holes
+        (N, 2) stay out of the part, at 399 points along each.
+        """
         away = end - tip
         size = np.hypot(*away.T)
         steps = np.linspace(0, 1, 400)[1:]
         for n in np.flatnonzero(size > 1e-3):
             p = tip[n] + steps[:, None] * away[n]
             q = (p - self.shift[n]) @ self.R[n]
-            room = self.bench.outline.measured(q)[0].min(1) - self.bench.tip
-            wrong = (room < -EDGE).any() or self.bench.outline.inside(q[[-1]]).any()
+            room = self.bench.outline.measure_distances(q)[0].min(1) - self.bench.tip
+            wrong = (room < -EDGE).any() or self.bench.outline.contains(q[[-1]]).any()
             if wrong:
                 self.faults[n].append("a clamp's body enters the part")
             self.marginal[n] |= bool((np.abs(room[8:]) < EDGE).any())
 
-    def closing(self) -> None:
-        """Rules 4 and 5: closure, clamping, and the forces as written."""
+    def check_closure(self) -> None:
+        """Check rules 4 and 5: closure, clamping, and the stated
+        forces; set ``margin``, ``force`` and ``working``.
+        """
         if self.bench.pairs:
-            self.closing_by_two()
+            self.check_closure_by_two()
             return
         w, N = self.w, len(self.w)
         minors = [(-1) ** k * np.linalg.det(np.delete(w, k, 1)) for k in range(4)]
@@ -631,13 +664,17 @@ class Batch:
         said = np.array([[p["force"] for p in f["pegs"]] for f in self.fixtures], float)
         if self.bench.has_wall:
             said = np.hstack([np.array([f["wall"]["forces"] for f in self.fixtures], float), said])
-        wrong = np.abs(said - self.force) > self.relative()[:, None] * np.maximum(1, np.abs(self.force))
+        wrong = np.abs(said - self.force) > self.bound_relative_errors()[:, None] * np.maximum(
+            1, np.abs(self.force)
+        )
         self.blame(wrong.any(1), "a force")
         self.margin, self.spans = lam.min(1), np.zeros((N, 0))
         self.working = self.force
 
-    def closing_by_two(self) -> None:
-        """Rules 3 and 4 of two clamps: closure, neither holds alone, the forces and their ratio."""
+    def check_closure_by_two(self) -> None:
+        """Check rules 3 and 4 of two clamps: closure, neither
+        holds alone, the stated forces and their ratio.
+        """
         w, N = self.w, len(self.w)
         A = np.swapaxes(w[:, :3], 1, 2)
         det = np.linalg.det(A)
@@ -659,7 +696,7 @@ class Batch:
             low = np.where(two > 0, -one / two, 0.0).max(1).clip(0)
             high = np.where(two < 0, -one / two, inf).min(1)
         self.blame(~(low < high), "no closure")
-        self.margin = np.array([margin_of(x) for x in w])
+        self.margin = np.array([compute_margin(x) for x in w])
         self.marginal |= self.margin < EDGE
         first, last = np.arctan(low), np.arctan(high)
         self.freedom = np.degrees(last - first)
@@ -670,7 +707,7 @@ class Batch:
         said = np.array([[p["force"] for p in f["pegs"]] for f in self.fixtures], float)
         if self.bench.has_wall:
             said = np.concatenate([np.array([f["wall"]["forces"] for f in self.fixtures], float), said], 1)
-        slack = self.relative()[:, None, None] * np.maximum(1, np.abs(force))
+        slack = self.bound_relative_errors()[:, None, None] * np.maximum(1, np.abs(force))
         self.blame((np.abs(said - force) > slack).any((1, 2)), "a force")
         for n, f in enumerate(self.fixtures):
             ends = [f["ratio"][0], inf if f["ratio"][1] is None else f["ratio"][1]]
@@ -679,24 +716,26 @@ class Batch:
                 self.faults[n].append("the ratio of the clamps' forces")
         self.working = (force[..., 0] + t[:, None] * force[..., 1]) / (1 + t)[:, None]
 
-    def figures(self) -> None:
-        """The figures of quality as written."""
+    def check_figures(self) -> None:
+        """Check the stated figures of quality."""
         known = {
             "closure_margin": self.margin,
             "clamp_amplification": self.working.max(1),
-            "wrench_radius": nearest_facet(self.w),
-            "location_error": self.location_error(),
+            "wrench_radius": measure_nearest_facet(self.w),
+            "location_error": self.compute_location_errors(),
         }
         if self.bench.pairs:
             known["clamp_freedom"] = self.freedom
-        loose = self.relative()
+        loose = self.bound_relative_errors()
         for key, value in known.items():
             said = np.array([f["quality"][key] for f in self.fixtures], float)
             slack = 1e-4 if key == "clamp_freedom" else loose * np.maximum(1, np.abs(value))
             self.blame(np.isfinite(value) & (np.abs(said - value) > slack), f"the {key.replace('_', ' ')}")
 
-    def inverse(self) -> Any:
-        """Inverses (N, M, M) of the matrices by which contacts follow the part and what moves; NaN for none."""
+    def invert_contact_matrices(self) -> Any:
+        """Return the inverses (N, M, M) of the contact matrices,
+        M 3 with two clamps and else 4; NaN where singular.
+        """
         count = 3 if self.bench.pairs else 4
         A = np.zeros((len(self.w), count, count))
         A[..., :3] = self.w[:, :count]
@@ -709,25 +748,30 @@ class Batch:
         inverse[good] = np.linalg.inv(A[good])
         return inverse
 
-    def relative(self) -> Any:
-        """How far forces may be off, as a share: rounded coordinates count by the condition of the contacts.
+    def bound_relative_errors(self) -> Any:
+        """Return the relative tolerance (N,) of forces and figures, larger for badly conditioned contacts.
 
-        Where a rule is only just kept, arcs that are one face to 1e-7 mm may lean by more.
+        For marginal fixtures it is a thousand times larger, as arcs that are one face to 1e-7 mm may differ
+        in direction.
         """
-        size = np.nan_to_num(np.abs(self.inverse()).max((1, 2)), nan=1e9)
+        size = np.nan_to_num(np.abs(self.invert_contact_matrices()).max((1, 2)), nan=1e9)
         if self.bench.pairs:
             size = size + 1 / np.abs((self.n * self.push).sum(-1)[:, -2:]).clip(1e-9).min(1)
         return np.where(self.marginal, 1e3, 1.0) * (FIGURE_TOL + 2e-10 * size)
 
-    def location_error(self) -> Any:
-        """Largest movement of a point of the silhouette over all corners of the tolerance box."""
+    def compute_location_errors(self) -> Any:
+        """Return the location errors (N,) in mm: the largest movement
+        of a point of the outline over all corners of the tolerances.
+
+        NaN where the contact matrix is singular.
+        """
         bench, outline = self.bench, self.bench.outline
-        inverse = self.inverse()
+        inverse = self.invert_contact_matrices()
         count = inverse.shape[1]
         walls = len(self.w[0]) - len(self.roles)
         touched = self.segment[:, : count - walls]
         if walls:
-            touched = np.hstack([self.wall_faces(), touched])
+            touched = np.hstack([self.find_wall_faces(), touched])
         first = (touched[:, :, None] == touched[:, None]).argmax(-1)
         tol, best = self.bench.tolerance, np.zeros(len(inverse))
         outer = np.array(outline.loop) == 0
@@ -746,55 +790,64 @@ class Batch:
                 c = outline.c[k] - outline.middle
                 m = np.stack([t[:, 0] - phi * c[1], t[:, 1] + phi * c[0]], -1)
                 e = np.stack([m[:, 1], -m[:, 0]], -1) * np.sign(phi)[:, None]
-                there = outline.directed(k, np.arctan2(e[:, 1], e[:, 0]))
+                there = outline.has_direction(k, np.arctan2(e[:, 1], e[:, 0]))
                 best = np.fmax(best, np.where(there, np.hypot(*m.T) + np.abs(phi) * outline.r[k], 0.0))
         return np.where(np.isnan(inverse).any((1, 2)), np.nan, best)
 
-    def wall_faces(self) -> Any:
-        """The face (N, 2) at either end of what lies on a wall; a corner of two faces has a number of its own."""
+    def find_wall_faces(self) -> Any:
+        """Return the number (N, 2) of the face at each end of the
+        contact with the wall; -1 and -2 for corners of two faces.
+        """
         outline, found = self.bench.outline, []
         down = np.einsum("nji,j->ni", self.R, np.array([0.0, -1.0]))
         for end, key in enumerate(("from", "to")):
             k = np.array([f["wall"]["segments"][end] for f in self.fixtures])
             at = np.array([f["wall"][key] for f in self.fixtures], float)
-            past = outline.measured(np.einsum("nji,nj->ni", self.R, at - self.shift))[1][np.arange(len(k)), k]
+            past = outline.measure_distances(np.einsum("nji,nj->ni", self.R, at - self.shift))[1][
+                np.arange(len(k)), k
+            ]
             along = np.abs((outline.t[k] * down).sum(1)) < 1e-9
             alone = np.where(outline.arc[k], (past > EDGE) | outline.whole[k], along)
             found.append(np.where(alone, outline.face[k], -1 - end))
         return np.stack(found, 1)
 
-    def places(self) -> Any:
-        """For each peg what names a fixture, in the part's frame (N, P, 6).
+    def compute_places(self) -> Any:
+        """Return (N, P, 6), for each peg what identifies a fixture, in the part's frame.
 
-        Its place, the direction it is pushed in, and the axis of the lattice, which half a turn leaves as it is.
+        Columns: its place, its push direction, and the lattice's axis at double angle, so that half a turn
+        leaves it unchanged; all in mm.
         """
         axis = np.stack([np.cos(-2 * self.theta), np.sin(-2 * self.theta)], -1)[:, None]
         axes = np.broadcast_to(axis, self.q.shape)
         return np.concatenate([self.q, self.push * self.bench.scale, axes * self.bench.scale], -1)
 
 
-def as_key(direction: Any) -> Any:
-    """A direction, or a pair of them, as a key of a set."""
+def to_key(direction: Any) -> Any:
+    """Return a direction, or a pair as a tuple, as a member for a set."""
     return tuple(direction) if isinstance(direction, list) else direction
 
 
-def from_piece(p: Any, a: Any, b: Any) -> Any:
-    """Distances of points from straight pieces ab."""
+def measure_from_piece(p: Any, a: Any, b: Any) -> Any:
+    """Return distances (N,) of points p (N, 2) from straight pieces a b, (N, 2) each."""
     along = b - a
     size = (along**2).sum(1)
     at = np.clip(((p - a) * along).sum(1) / np.where(size == 0, 1, size), 0, 1)
     return np.hypot(*(p - a - at[:, None] * along).T)
 
 
-def between(one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
-    """Distances between pieces along x or y."""
+def measure_gaps(one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
+    """Return distances (N,) between pairs of straight pieces
+    along x or y, each given by its ends (N, 2), (N, 2).
+    """
     low = [np.minimum(*ends) for ends in (one, other)]
     high = [np.maximum(*ends) for ends in (one, other)]
     return np.hypot(*np.maximum(0, np.maximum(low[0] - high[1], low[1] - high[0])).T)
 
 
-def margin_of(w: Any) -> float:
-    """The largest least share of five contacts in a null vector."""
+def compute_margin(w: Any) -> float:
+    """Return the largest possible least entry of a null
+    vector of sum 1 of five wrenches (5, 3); -1.0 without one.
+    """
     null = np.linalg.svd(w.T)[2][3:].T
     s = null.sum(0)
     if np.hypot(*s) < 1e-12:
@@ -804,8 +857,10 @@ def margin_of(w: Any) -> float:
     return max([float((a + b * x).min()) for x in at] or [float(a.min())])
 
 
-def nearest_facet(w: Any) -> Any:
-    """Distances (N,) of the origin from the nearest facet of the convex hull of wrenches (N, P, 3)."""
+def measure_nearest_facet(w: Any) -> Any:
+    """Return distances (N,) of the origin from the nearest facet
+    of the convex hull of wrenches (N, P, 3); inf without facets.
+    """
     best = np.full(len(w), inf)
     for three in combinations(range(w.shape[1]), 3):
         p = w[:, list(three)]
@@ -823,7 +878,7 @@ def nearest_facet(w: Any) -> Any:
 
 
 class Listed:
-    """All fixtures by where their pegs are on the part, to look up whether one is listed."""
+    """The listed fixtures, indexed by where their pegs are on the part, to look up whether one is listed."""
 
     def __init__(self, bench: Bench, places: list[Any]) -> None:
         self.places, self.pivot = places, bench.outline.pivot
@@ -832,7 +887,9 @@ class Listed:
         self.sorted = self.key[self.order, 0] if len(places) else np.zeros(0)
 
     def find(self, place: Any, tol: float = 1e-5) -> list[int]:
-        """The numbers of the fixtures that are this one."""
+        """Return the indices, ascending, of the listed
+        fixtures with the same place (P, 6) within ``tol`` mm.
+        """
         x, y = place.sum(0)[:2]
         low, high = np.searchsorted(self.sorted, [x - 5 * tol, x + 5 * tol])
         found = []
@@ -844,15 +901,17 @@ class Listed:
                     found.append(int(n))
         return sorted(found)
 
-    def turned(self, place: Any, angle: float) -> Any:
-        """The place after a rotation of the part onto itself."""
-        R = rotation(angle)
+    def rotate_place(self, place: Any, angle: float) -> Any:
+        """Return the place (P, 6) of a fixture after the
+        part is rotated onto itself by an angle in radians.
+        """
+        R = make_rotation(angle)
         moved = (place[:, :2] - self.pivot) @ R.T + self.pivot
         return np.concatenate([moved, place[:, 2:4] @ R.T, place[:, 4:] @ (R @ R).T], 1)
 
 
-def order_key(f: dict[str, Any]) -> Any:
-    """What the fixtures of a set are sorted by."""
+def make_order_key(f: dict[str, Any]) -> Any:
+    """Return the sort key by which the fixtures of a set must be ordered."""
     pegs, pose = f["pegs"], f["pose"]
     return (
         f["type"],
@@ -863,8 +922,8 @@ def order_key(f: dict[str, Any]) -> Any:
     )
 
 
-def account_faults(content: dict[str, Any]) -> list[str]:
-    """What does not fit in counts, statistics and the account of the search."""
+def find_account_faults(content: dict[str, Any]) -> list[str]:
+    """Return a list of what is inconsistent in counts, statistics, order and the account of the search."""
     fixtures, proof, faults = content["fixtures"], content["proof"], []
     for name, count in content["counts"].items():
         listed = sum(f["type"] == name for f in fixtures)
@@ -888,13 +947,13 @@ def account_faults(content: dict[str, Any]) -> list[str]:
         content["toolkit"].get("clamps") != 2
     ):
         faults.append("fewer contacts examined than fixtures listed")
-    if [*content["fixtures"]] != sorted(fixtures, key=order_key):
+    if [*content["fixtures"]] != sorted(fixtures, key=make_order_key):
         faults.append("the fixtures are not in order")
     return faults
 
 
-def sums_faults(content: dict[str, Any], text: str, manifest: dict[str, Any]) -> list[str]:
-    """What does not fit the manifest."""
+def find_manifest_faults(content: dict[str, Any], text: str, manifest: dict[str, Any]) -> list[str]:
+    """Return a list of what differs from the manifest: checksums and counts."""
     known = {one["name"]: one for one in manifest["sets"]}
     if content["set"] not in known:
         return [f"the manifest has no set {content['set']!r}"]
@@ -913,7 +972,7 @@ def sums_faults(content: dict[str, Any], text: str, manifest: dict[str, Any]) ->
 
 
 class Finder:
-    """Finds fixtures from random starts, by Newton's method on the contacts of what sets the pose."""
+    """A search for fixtures from random starts, by Newton's method on the contacts that fix the pose."""
 
     def __init__(self, bench: Bench, seed: int) -> None:
         self.bench, self.outline, self.random = bench, bench.outline, np.random.default_rng(seed)
@@ -924,8 +983,10 @@ class Finder:
         grid = product(range(-most[0], most[0] + 1), range(-most[1], most[1] + 1))
         self.offsets = np.array([o for o in grid if o != (0, 0)], float).reshape(-1, 2)
 
-    def on_locus(self, count: int) -> tuple[Any, Any]:
-        """Random places of a peg on the part: centres and segments."""
+    def sample_locus(self, count: int) -> tuple[Any, Any]:
+        """Return the centres (M, 2) of pegs at random places on the
+        part, and the segments (M,) touched; M is at most ``count``.
+        """
         outline, rho = self.outline, self.bench.rho
         size = np.where(outline.arc, np.abs(outline.sweep) * outline.r, outline.length)
         k = self.random.choice(
@@ -936,23 +997,36 @@ class Finder:
         angle = outline.a0[k] + at * outline.sweep[k]
         round_ = outline.c[k] + outline.r[k][:, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
         p = np.where(outline.arc[k][:, None], round_, line)
-        n = outline.normals(np.where(outline.arc[k][:, None], round_, line), k)
+        n = outline.compute_normals(np.where(outline.arc[k][:, None], round_, line), k)
         q = p + rho * n
-        good = (outline.measured(q)[0].min(1) > rho - 1e-9) & ~outline.inside(q)
+        good = (outline.measure_distances(q)[0].min(1) > rho - 1e-9) & ~outline.contains(q)
         return q[good], k[good]
 
-    def near_holes(self, q: Any, theta: Any, offsets: Any) -> tuple[Any, Any]:
-        """Of each start one random hole near the locus: its offset, and the segment next to it."""
-        p = q[:, None] + np.einsum("nji,hj->nhi", rotation(theta), offsets * self.bench.pitch)
-        distance, _ = self.outline.measured(p.reshape(-1, 2))
+    def choose_near_holes(self, q: Any, theta: Any, offsets: Any) -> tuple[Any, Any]:
+        """Return, for each start, the offset (N, 2) of one random
+        hole near the locus, and the segment (N,) nearest to it.
+
+        ``q`` (N, 2) are places of first pegs, ``theta`` (N,) find_candidate_orientations in radians, ``offsets`` (H, 2) in
+        columns and rows.
+        """
+        p = q[:, None] + np.einsum("nji,hj->nhi", make_rotation(theta), offsets * self.bench.pitch)
+        distance, _ = self.outline.measure_distances(p.reshape(-1, 2))
         distance = distance.reshape(*p.shape[:2], -1)
         room = np.abs(distance.min(-1) - self.bench.rho)
         weight = np.exp(-((room / (0.25 * self.bench.pitch.min())) ** 2)) + 1e-9
         pick = (weight.cumsum(1) > (self.random.random(len(q)) * weight.sum(1))[:, None]).argmax(1)
         return offsets[pick], distance[np.arange(len(q)), pick].argmin(-1)
 
-    def refined(self, unknown: Any, holes: Any, rights: Any, segments: Any) -> Any:
-        """Newton's method: unknown (N, 3 or 4) are theta, the first peg's place, and the opening."""
+    def refine_unknowns(self, unknown: Any, holes: Any, rights: Any, segments: Any) -> Any:
+        """Return the unknowns after Newton's method, and whether (N,) each converged.
+
+        Parameters
+        ----------
+        unknown : (N, 3 or 4) orientation in radians, the first peg's place, and the opening, in mm.
+        holes : (N, M, 2) offsets in columns and rows.
+        rights : (N, M) 1 for pegs that move with the opening, else 0.
+        segments : (N, M) touched by each peg.
+        """
         rho, pitch, outline = self.bench.rho, self.bench.pitch, self.outline
         moves = unknown.shape[1] == 4
         for _ in range(12):
@@ -960,17 +1034,19 @@ class Finder:
             away = holes * pitch
             if moves:
                 away = away + rights[..., None] * np.stack([unknown[:, 3], 0 * theta], -1)[:, None]
-            q = unknown[:, None, 1:3] + np.einsum("nji,nmj->nmi", rotation(theta), away)
+            q = unknown[:, None, 1:3] + np.einsum("nji,nmj->nmi", make_rotation(theta), away)
             flatq, k = q.reshape(-1, 2), segments.reshape(-1)
-            n = outline.normals(flatq, k)
+            n = outline.compute_normals(flatq, k)
             v = flatq - outline.c[k]
             round_ = outline.sign[k] * (np.hypot(*v.T) - outline.r[k])
             gap = np.where(outline.arc[k], round_, ((flatq - outline.a[k]) * n).sum(1)) - rho
             n, gap = n.reshape(q.shape), gap.reshape(q.shape[:2])
-            spin = np.einsum("nji,nmj->nmi", rotation(theta), np.stack([away[..., 1], -away[..., 0]], -1))
+            spin = np.einsum(
+                "nji,nmj->nmi", make_rotation(theta), np.stack([away[..., 1], -away[..., 0]], -1)
+            )
             J = [(n * spin).sum(-1), n[..., 0], n[..., 1]]
             if moves:
-                u = np.einsum("nji,j->ni", rotation(theta), np.array([1.0, 0.0]))
+                u = np.einsum("nji,j->ni", make_rotation(theta), np.array([1.0, 0.0]))
                 J.append(rights * (n * u[:, None]).sum(-1))
             matrix = np.stack(J, -1)
             singular = np.abs(np.linalg.det(matrix)) < 1e-9
@@ -979,29 +1055,35 @@ class Finder:
             unknown = unknown - np.clip(step, -5, 5) * ~singular[:, None]
         return unknown, (np.abs(gap).max(1) < 1e-10) & ~singular
 
-    def found(self, count: int) -> Fixtures:
-        """Fixtures in the form of the file, as far as judging them needs it."""
+    def find_fixtures(self, count: int) -> Fixtures:
+        """Return fixtures found from ``count`` random starts,
+        with those keys of the file that are needed to judge them.
+
+        Empty for toolkits with a wall.
+        """
         if self.bench.has_wall or not len(self.offsets):
             return []
-        q, k = self.on_locus(count)
+        q, k = self.sample_locus(count)
         theta = self.random.random(len(q)) * 2 * pi
         if self.bench.kind == "translating-clamp":
-            return self.seats(q, k, theta)
-        return [*self.in_jaws(q, k, theta, "I"), *self.in_jaws(q, k, theta, "II")]
+            return self.find_plate_fixtures(q, k, theta)
+        return [*self.find_vise_fixtures(q, k, theta, "I"), *self.find_vise_fixtures(q, k, theta, "II")]
 
-    def in_jaws(self, q: Any, k: Any, theta: Any, kind: str) -> Fixtures:
-        """Fixtures of a vise."""
+    def find_vise_fixtures(self, q: Any, k: Any, theta: Any, kind: str) -> Fixtures:
+        """Return fixtures of a vise of type ``kind``, from first
+        pegs q (N, 2) on segments k (N,) at orientations theta (N,).
+        """
         bench, N = self.bench, len(q)
         zero = np.zeros((N, 2))
         columns = np.abs(self.offsets[:, 0]) < bench.kit["columns"]
-        two, k2 = self.near_holes(q, theta, self.offsets[columns])
+        two, k2 = self.choose_near_holes(q, theta, self.offsets[columns])
         lift = bench.kit["row_offset"] / bench.pitch[1]
         span = int((self.outline.diameter + 2 * bench.rho) / bench.pitch[1]) + 1
         row = self.random.integers(-span, span + 1, N) + lift
         S, k3, good = np.zeros(N), np.zeros(N, int), np.zeros(N, bool)
         for n in range(N):
-            R = rotation(theta[n])
-            hits = self.outline.hits(
+            R = make_rotation(theta[n])
+            hits = self.outline.find_hits(
                 q[n] + R.T @ np.array([0.0, row[n] * bench.pitch[1]]), R.T @ np.array([1.0, 0.0]), bench.rho
             )
             hits = [hit for hit in hits if hit[0] > bench.kit["min_gap"] * 0.5]
@@ -1011,28 +1093,32 @@ class Finder:
         right = np.stack([np.zeros(N), row], -1)
         if kind == "I":
             there = q + np.einsum(
-                "nji,nj->ni", rotation(theta), right * bench.pitch + np.stack([S, 0 * S], -1)
+                "nji,nj->ni", make_rotation(theta), right * bench.pitch + np.stack([S, 0 * S], -1)
             )
-            four, k4 = self.near_holes(there, theta, self.offsets[columns])
+            four, k4 = self.choose_near_holes(there, theta, self.offsets[columns])
             holes = np.stack([zero, two, right, right + four], 1)
             rights = np.tile([0.0, 0.0, 1.0, 1.0], (N, 1))
             segments = np.stack([k, k2, k3, k4], 1)
         else:
-            three, k4 = self.near_holes(q, theta, self.offsets[columns])
+            three, k4 = self.choose_near_holes(q, theta, self.offsets[columns])
             holes = np.stack([zero, two, three, right], 1)
             rights = np.tile([0.0, 0.0, 0.0, 1.0], (N, 1))
             segments = np.stack([k, k2, k4, k3], 1)
         start = np.column_stack([theta, q, S])[good]
-        end, converged = self.refined(start, holes[good], rights[good], segments[good])
+        end, converged = self.refine_unknowns(start, holes[good], rights[good], segments[good])
         made = []
         for x, h, s in zip(end[converged], holes[good][converged], segments[good][converged], strict=True):
-            made.append(self.vise_fixture(kind, x, h, s, lift))
+            made.append(self.make_vise_fixture(kind, x, h, s, lift))
         return [one for one in made if one is not None]
 
-    def vise_fixture(
+    def make_vise_fixture(
         self, kind: str, x: Any, holes: Any, segments: Any, lift: float
     ) -> dict[str, Any] | None:
-        """A fixture of a vise, standing in the columns and rows of the format; None where it does not fit."""
+        """Return a fixture of a vise in the columns and rows
+        that the format requires; None where it does not fit.
+
+        ``x`` is (theta, first peg's place, opening), ``lift`` the row offset in rows.
+        """
         kit, pitch, left = self.bench.kit, self.bench.pitch, 2 if kind == "I" else 3
         i = np.rint(holes[:, 0]).astype(int)
         j = np.rint(holes[:, 1] - lift * (np.arange(4) >= left)).astype(int)
@@ -1042,7 +1128,7 @@ class Finder:
         if i.min() < 0 or i.max() >= c or (kit["rows"] is not None and j.max() >= kit["rows"]):
             return None
         first = np.array([i[0], j[0]]) * pitch
-        R = rotation(x[0])
+        R = make_rotation(x[0])
         pose = first - R @ x[1:3]
         S = x[3] + first[0] + (holes[left, 0] - i[left]) * pitch[0] - (c - 1) * pitch[0]
         if kit["max_opening"] is not None and kit["max_opening"] - EDGE < S:
@@ -1057,29 +1143,31 @@ class Finder:
             pegs.append(
                 {**name, "column": int(i[m]), "row": int(j[m]), "x": at[0], "y": at[1], "segment": face}
             )
-        return {"type": kind, "pegs": pegs, "pose": self.pose(x[0], pose), "jaw_separation": S}
+        return {"type": kind, "pegs": pegs, "pose": self.make_pose_entry(x[0], pose), "jaw_separation": S}
 
-    def pose(self, theta: float, shift: Any) -> dict[str, float]:
-        """A pose as it is written."""
+    def make_pose_entry(self, theta: float, shift: Any) -> dict[str, float]:
+        """Return a pose in the form of the file, from an orientation in radians and a shift in mm."""
         return {"theta_deg": degrees(theta) % 360, "x": float(shift[0]), "y": float(shift[1])}
 
-    def seats(self, q: Any, k: Any, theta: Any) -> Fixtures:
-        """Fixtures of a plate: of each pose that three locators set, every clamp."""
-        two, k2 = self.near_holes(q, theta, self.offsets)
-        three, k3 = self.near_holes(q, theta, self.offsets)
+    def find_plate_fixtures(self, q: Any, k: Any, theta: Any) -> Fixtures:
+        """Return fixtures of a plate: every choice of clamps at each pose that three locators fix."""
+        two, k2 = self.choose_near_holes(q, theta, self.offsets)
+        three, k3 = self.choose_near_holes(q, theta, self.offsets)
         holes = np.stack([np.zeros_like(two), two, three], 1)
         segments = np.stack([k, k2, k3], 1)
-        end, good = self.refined(np.column_stack([theta, q]), holes, np.zeros(holes.shape[:2]), segments)
+        end, good = self.refine_unknowns(
+            np.column_stack([theta, q]), holes, np.zeros(holes.shape[:2]), segments
+        )
         made: Fixtures = []
         for x, h, s in zip(end[good], holes[good], segments[good], strict=True):
             if len({tuple(o) for o in h}) == 3:
-                made += self.clamped(x, h, s)
+                made += self.list_clampings(x, h, s)
         return made
 
-    def clamped(self, x: Any, holes: Any, segments: Any) -> Fixtures:
-        """Every choice of clamps at one pose, those that do not fit among them."""
+    def list_clampings(self, x: Any, holes: Any, segments: Any) -> Fixtures:
+        """Return a fixture for each choice of clamps at one pose that fits the plate's columns and rows."""
         bench, kit, pitch = self.bench, self.bench.kit, self.bench.pitch
-        R, made, options = rotation(x[0]), [], []
+        R, made, options = make_rotation(x[0]), [], []
         first = holes[0] * pitch
         shift = first - R @ x[1:3]
         ways = {d for one in kit["directions"] for d in ([one] if isinstance(one, str) else one)}
@@ -1090,20 +1178,20 @@ class Finder:
             for line in range(-span[axis], span[axis] + 1):
                 base = np.zeros(2)
                 base[axis] = line * pitch[axis]
-                for s, seg in self.outline.hits(R.T @ (base - shift), R.T @ np.abs(d), bench.tip):
+                for s, seg in self.outline.find_hits(R.T @ (base - shift), R.T @ np.abs(d), bench.tip):
                     options.append((role, line, base + s * np.abs(d), int(self.outline.face[seg])))
         chosen = combinations(options, 2) if bench.pairs else ((one,) for one in options)
         asked = {tuple(sorted(p)) for p in kit["directions"]} if bench.pairs else set()
         for clamps in chosen:
             if bench.pairs and tuple(sorted(c[0] for c in clamps)) not in asked:
                 continue
-            made.append(self.plate_fixture(clamps, x, holes, segments, shift))
+            made.append(self.make_plate_fixture(clamps, x, holes, segments, shift))
         return [one for one in made if one is not None]
 
-    def plate_fixture(
+    def make_plate_fixture(
         self, clamps: Any, x: Any, holes: Any, segments: Any, shift: Any
     ) -> dict[str, Any] | None:
-        """A fixture of a plate, shifted to column 0 and row 0; None where it does not fit."""
+        """Return a fixture of a plate, shifted to column 0 and row 0; None where the plate is too small."""
         kit, pitch = self.bench.kit, self.bench.pitch
         clamps = sorted(clamps, key=lambda c: (list(DIRECTIONS).index(c[0]), c[1], c[3]))
         i = [*holes[:, 0], *(c[1] for c in clamps if c[0][1] == "y")]
@@ -1126,18 +1214,24 @@ class Finder:
         ways = [c[0] for c in clamps]
         said = {"directions": ways} if self.bench.pairs else {"direction": ways[0]}
         kind = "clamp2" if self.bench.pairs else "clamp"
-        return {"type": kind, **said, "pegs": pegs, "pose": self.pose(x[0], shift - low * pitch)}
+        return {"type": kind, **said, "pegs": pegs, "pose": self.make_pose_entry(x[0], shift - low * pitch)}
 
 
 class WallFinder:
-    """Finds every fixture beside a fence: one orientation for each hull edge, the rest in closed form."""
+    """A search for every fixture beside a fence: one
+    orientation for each hull edge, the rest in closed form.
+    """
 
     def __init__(self, bench: Bench) -> None:
         self.bench, self.outline = bench, bench.outline
         self.clamping = Finder(bench, 0)
 
-    def flush(self) -> list[tuple[float, float, float, float]]:
-        """Orientation and height of the part on each hull edge, and from where to where it touches, its x at 0."""
+    def find_flush_poses(self) -> list[tuple[float, float, float, float]]:
+        """Return (theta, height, x0, x1) of the part on each hull edge, with its origin at x = 0.
+
+        ``theta`` is in radians; ``height`` of the origin above the wall, and the ends of the contact, are in
+        mm.
+        """
         o = self.outline
         arcs = [k for k in np.flatnonzero(o.arc) if o.sign[k] > 0]
         discs = [(*p, 0.0, -1) for p in o.a] + [(*o.c[k], o.r[k], k) for k in arcs]
@@ -1151,10 +1245,12 @@ class WallFinder:
             along = np.arctan2(v[1], v[0]) - np.arcsin((two[2] - one[2]) / size)
             n = np.array([np.sin(along), -np.cos(along)])
             t = np.array([-n[1], n[0]])
-            if any(k >= 0 and not o.directed(k, np.arctan2(n[1], n[0])) for k in (one[3], two[3])):
+            if any(k >= 0 and not o.has_direction(k, np.arctan2(n[1], n[0])) for k in (one[3], two[3])):
                 continue
             heights = [float(n @ p) for p in o.a]
-            heights += [float(n @ o.c[k]) + o.r[k] for k in arcs if o.directed(k, np.arctan2(n[1], n[0]))]
+            heights += [
+                float(n @ o.c[k]) + o.r[k] for k in arcs if o.has_direction(k, np.arctan2(n[1], n[0]))
+            ]
             top = float(n @ np.array(one[:2])) + one[2]
             if max(heights) > top + TOL:
                 continue
@@ -1166,28 +1262,36 @@ class WallFinder:
         return found
 
     def reaches(self, disc: Any, n: Any, top: float) -> bool:
-        """Whether a corner or an arc touches the line of a height."""
-        on = disc[3] < 0 or self.outline.directed(disc[3], np.arctan2(n[1], n[0]))
+        """Return whether a corner or an arc, (x, y, radius,
+        arc's index or -1), touches the line n . q = top.
+        """
+        on = disc[3] < 0 or self.outline.has_direction(disc[3], np.arctan2(n[1], n[0]))
         return bool(on and abs(float(n @ np.array(disc[:2])) + disc[2] - top) < TOL)
 
-    def found(self) -> Fixtures:
-        """Fixtures in the form of the file, as far as judging them needs it; those that do not fit among them."""
+    def find_fixtures(self) -> Fixtures:
+        """Return all fixtures, with those keys of the file
+        that are needed to judge them; some may break rules.
+        """
         bench, kit, pitch, made = self.bench, self.bench.kit, self.bench.pitch, list[dict[str, Any]]()
         rows = kit["rows"] or int((self.outline.diameter + 2 * bench.rho) / pitch[1]) + 2
-        for theta, top, x0, x1 in self.flush():
-            R = rotation(theta)
+        for theta, top, x0, x1 in self.find_flush_poses():
+            R = make_rotation(theta)
             for row in range(rows):
                 y = bench.base[1] + row * pitch[1]
                 start = np.array([0.0, y - top])
-                for x, segment in self.outline.hits(R.T @ start, R.T @ np.array([1.0, 0.0]), bench.rho):
+                for x, segment in self.outline.find_hits(R.T @ start, R.T @ np.array([1.0, 0.0]), bench.rho):
                     shift = np.array([-x, top])
-                    made += self.with_clamps(
+                    made += self.list_with_clamps(
                         R, theta, shift, (row, int(self.outline.face[segment])), (x0 - x, x1 - x)
                     )
         return made
 
-    def with_clamps(self, R: Any, theta: float, shift: Any, stop: Any, ends: Any) -> Fixtures:
-        """Every choice of clamps beside a locator at x = 0."""
+    def list_with_clamps(self, R: Any, theta: float, shift: Any, stop: Any, ends: Any) -> Fixtures:
+        """Return a fixture for each choice of clamps beside a locator at x = 0.
+
+        ``stop`` is the locator's row and segment, ``ends`` are x in mm of the ends of the contact with the
+        wall.
+        """
         bench, kit, pitch, options = self.bench, self.bench.kit, self.bench.pitch, []
         ways = {d for one in kit["directions"] for d in ([one] if isinstance(one, str) else one)}
         span = ((self.outline.diameter + 2 * bench.rho) / pitch).astype(int) + 2
@@ -1196,7 +1300,7 @@ class WallFinder:
             for line in range(0 if axis else -span[0], span[axis] + 1):
                 base = bench.base * axis
                 base = base + (1 - d) * line * pitch
-                for s, seg in self.outline.hits(R.T @ (base - shift), R.T @ d, bench.tip):
+                for s, seg in self.outline.find_hits(R.T @ (base - shift), R.T @ d, bench.tip):
                     options.append((role, line, base + s * d, int(self.outline.face[seg])))
         asked = {tuple(sorted(p)) for p in kit["directions"]} if bench.pairs else set()
         made = []
@@ -1204,17 +1308,21 @@ class WallFinder:
             if bench.pairs and tuple(sorted(c[0] for c in clamps)) not in asked:
                 continue
             low = min([0, *(c[1] for c in clamps if c[0][1] == "y")])
-            made.append(self.fixture(sorted(clamps, key=self.order), theta, shift, stop, ends, low))
+            made.append(
+                self.make_fixture(sorted(clamps, key=self.make_order_key), theta, shift, stop, ends, low)
+            )
         return [one for one in made if one is not None]
 
-    def order(self, clamp: Any) -> Any:
-        """What two clamps are ordered by."""
+    def make_order_key(self, clamp: Any) -> Any:
+        """Return the sort key of a clamp among the two of a fixture."""
         return list(DIRECTIONS).index(clamp[0]), clamp[1], clamp[3]
 
-    def fixture(
+    def make_fixture(
         self, clamps: Any, theta: float, shift: Any, stop: Any, ends: Any, low: int
     ) -> dict[str, Any] | None:
-        """A fixture shifted to column 0; None where there are too few columns or rows."""
+        """Return a fixture shifted so that column ``low``
+        becomes 0; None where there are too few columns or rows.
+        """
         kit, away = self.bench.kit, -low * self.bench.pitch[0]
         columns = [0, *(c[1] for c in clamps if c[0][1] == "y")]
         rows = [stop[0], *(c[1] for c in clamps if c[0][1] == "x")]
@@ -1234,47 +1342,53 @@ class WallFinder:
         ways = [c[0] for c in clamps]
         said = {"directions": ways} if self.bench.pairs else {"direction": ways[0]}
         kind = "edge2" if self.bench.pairs else "edge"
-        pose = self.clamping.pose(theta, shift + np.array([away, 0.0]))
+        pose = self.clamping.make_pose_entry(theta, shift + np.array([away, 0.0]))
         return {"type": kind, **said, "pegs": pegs, "pose": pose, "wall": wall}
 
 
 class Unlisted(Batch):
-    """Fixtures that this program found: judged by the rules alone, for nothing is written of them."""
+    """Fixtures that this program found, judged by the
+    rules alone, as there are no stated forces and figures.
+    """
 
-    def figures(self) -> None:
-        """Looks at no figures."""
+    def check_figures(self) -> None:
+        """Do nothing, as no figures are stated."""
 
-    def closing(self) -> None:
-        """Rules 4 and 5 without forces as written."""
+    def check_closure(self) -> None:
+        """Check rules 4 and 5 without stated forces."""
         zero = [0.0, 0.0] if self.bench.pairs else 0.0
         for f in self.fixtures:
             for peg in f["pegs"]:
                 peg["force"] = zero
             f["ratio"] = [0.0, None]
-        super().closing()
+        super().check_closure()
         ignored = ("a force", "the ratio of the clamps' forces")
         self.faults = [[words for words in one if words not in ignored] for one in self.faults]
 
 
-def groups(bench: Bench, fixtures: Fixtures) -> dict[Any, list[int]]:
-    """The numbers of the fixtures by the roles of their pegs."""
+def group_by_roles(bench: Bench, fixtures: Fixtures) -> dict[Any, list[int]]:
+    """Return the indices of the fixtures by type and roles of their pegs."""
     out: dict[Any, list[int]] = {}
     for n, f in enumerate(fixtures):
-        out.setdefault((f["type"], *bench.roles(f)), []).append(n)
+        out.setdefault((f["type"], *bench.list_roles(f)), []).append(n)
     return out
 
 
-def own_search_faults(bench: Bench, listed: Listed, starts: int, seed: int) -> tuple[list[str], int]:
-    """Fixtures found here that the list lacks, and how many different ones were found."""
+def find_missing_fixtures(bench: Bench, listed: Listed, starts: int, seed: int) -> tuple[list[str], int]:
+    """Return at most five sentences on fixtures found here
+    but not listed, and how many listed ones were found.
+
+    Nothing is searched where clamps have bodies or holes are blocked.
+    """
     if starts == 0 or (bench.kit.get("travel") is not None) or bench.kit.get("blocked"):
         return [], 0
     faults, seen = [], set()
     fence = bench.kind == "edge"
-    found = WallFinder(bench).found() if fence else Finder(bench, seed).found(starts)
-    for members in groups(bench, found).values():
+    found = WallFinder(bench).find_fixtures() if fence else Finder(bench, seed).find_fixtures(starts)
+    for members in group_by_roles(bench, found).values():
         batch = Unlisted(bench, [found[n] for n in members])
         batch.judge()
-        for n, place in enumerate(batch.places()):
+        for n, place in enumerate(batch.compute_places()):
             if batch.faults[n] or batch.marginal[n] or batch.margin[n] < 1e-5:
                 continue
             where = listed.find(place)
@@ -1295,23 +1409,34 @@ def check(
     seed: int = 1,
     notes: list[str] | None = None,
 ) -> list[str]:
-    """Faults of a file's content, one sentence each; none where it holds. Remarks are added to the notes."""
-    faults = form_faults(content)
+    """Return the faults of a file's content, one sentence each; empty where there are none.
+
+    Parameters
+    ----------
+    text : of the file, for its checksums.
+    manifest : content of the manifest; None to leave checksums out.
+    starts : random starts of the search for missing fixtures; 0 for no search.
+    seed : of the random starts.
+    notes : a list to which remarks are appended; None for none.
+    """
+    faults = find_set_form_faults(content)
     if faults:
         return faults
     bench, fixtures = Bench(content), content["fixtures"]
     for n, fixture in enumerate(fixtures):
-        faults += [f"fixture {n + 1}: {words}" for words in fixture_form_faults(bench, fixture)]
+        faults += [f"fixture {n + 1}: {words}" for words in find_form_faults(bench, fixture)]
     if faults:
         return faults
-    faults = account_faults(content)
-    rotations = bench.outline.rotations()
+    faults = find_account_faults(content)
+    rotations = bench.outline.find_rotations()
     places: list[Any] = [None] * len(fixtures)
     marginal = np.zeros(len(fixtures), bool)
-    for members in groups(bench, fixtures).values():
+    for members in group_by_roles(bench, fixtures).values():
         batch = Batch(bench, [fixtures[n] for n in members])
         batch.judge()
-        for n, words, place, edge in zip(members, batch.faults, batch.places(), batch.marginal, strict=True):
+        for n, words, place, edge in zip(
+            members, batch.faults, batch.compute_places(), batch.marginal, strict=True
+        ):
             places[n], marginal[n] = place, edge
             faults += [f"fixture {n + 1}: {one}" for one in dict.fromkeys(words)]
     listed = Listed(bench, places)
@@ -1319,26 +1444,26 @@ def check(
     for n, place in enumerate(places):
         faults += [f"fixture {m + 1} is fixture {n + 1} again" for m in listed.find(place) if m > n]
         for angle in rotations[1:]:
-            images = listed.find(listed.turned(place, angle), 1e-4)
+            images = listed.find(listed.rotate_place(place, angle), 1e-4)
             if not images and not marginal[n]:
                 faults.append(f"fixture {n + 1} is listed without its image under a rotation of the part")
             for image in images:
-                parent[root(parent, image)] = root(parent, n)
+                parent[find_root(parent, image)] = find_root(parent, n)
     for name, count in content["distinct"].items():
-        sets = {root(parent, n) for n, f in enumerate(fixtures) if f["type"] == name}
+        sets = {find_root(parent, n) for n, f in enumerate(fixtures) if f["type"] == name}
         if len(sets) != count and not marginal.any():
             faults.append(f"distinct says {count} of type {name}, there are {len(sets)}")
-    missing, met = own_search_faults(bench, listed, starts, seed)
+    missing, met = find_missing_fixtures(bench, listed, starts, seed)
     faults += missing
     if notes is not None and fixtures:
         how = "in closed form" if bench.kind == "edge" else f"from {starts} random starts"
         by_itself = f"a search {how} met {met} of the {len(fixtures)} fixtures by itself"
         notes.append(by_itself if met else "nothing was searched for: completeness rests on the manifest")
-    return faults + (sums_faults(content, text, manifest) if manifest else [])
+    return faults + (find_manifest_faults(content, text, manifest) if manifest else [])
 
 
-def root(parent: list[int], n: int) -> int:
-    """The representative of a set."""
+def find_root(parent: list[int], n: int) -> int:
+    """Return the representative of the set of n in a union-find forest; shortens paths in ``parent``."""
     while parent[n] != n:
         parent[n] = parent[parent[n]]
         n = parent[n]
@@ -1346,7 +1471,9 @@ def root(parent: list[int], n: int) -> int:
 
 
 def main() -> int:
-    """Reads the words of the command line and says what is wrong."""
+    """Check the file named on the command line, write its
+    faults, and return the exit code: 0, or 2 with faults.
+    """
     words = argparse.ArgumentParser(description="Checks one file of the benchmark set.")
     words.add_argument("file")
     words.add_argument("--manifest", help="the manifest, whose checksums then count")

@@ -21,7 +21,7 @@ from ezdxf.math import fit_points_to_cad_cv
 from workhold.conventions import SAME_POINT, TILT
 from workhold.errors import InputError
 from workhold.files.outline.chain import list_arc_bulges
-from workhold.geometry.rational import Pieces, point_at, split_ellipse, split_spline
+from workhold.geometry.rational import Pieces, compute_point, split_ellipse, split_spline
 from workhold.limits import MOST_LENGTH
 
 __all__ = ["REFUSED", "SHAPES", "RawChain"]
@@ -48,8 +48,11 @@ REFUSED |= dict.fromkeys(SURFACES, "a 3D surface")
 class RawChain:
     """N + 1 points (x, y, z) and N bulges, in drawing units.
 
-    ``curved`` has the segments that are curves, by their numbers, and ``heights`` the z of what else makes
-    these.
+    Parameters
+    ----------
+    numbered : whether labels number its segments.
+    curved : curves of segments that are neither lines nor arcs, by their index.
+    heights : z of further points that define such curves, which must be level too.
     """
 
     points: Sequence[Point3]
@@ -73,7 +76,10 @@ def is_seen_from_below(entity: Any) -> bool:
 def place_chain_in_layout(
     entity: Any, points: Sequence[Point3], bulges: Sequence[float], numbered: bool = False
 ) -> RawChain:
-    """Return a chain in OCS as a chain in the layout's or block's coordinates."""
+    """Return a chain, given in an entity's OCS, in the coordinates of its layout or block.
+
+    Raises InputError when the entity is tilted.
+    """
     if is_seen_from_below(entity):
         points = [(-x, y, -z) for x, y, z in points]
         bulges = [-b for b in bulges]
@@ -81,12 +87,12 @@ def place_chain_in_layout(
 
 
 def read_line(entity: Any) -> RawChain:
-    """Return a LINE; its ends are never in OCS."""
+    """Return the chain of a LINE; its ends are never in OCS."""
     return RawChain([tuple(entity.dxf.start), tuple(entity.dxf.end)], [0.0])
 
 
 def read_circle(entity: Any) -> RawChain:
-    """Return a CIRCLE, as two halves."""
+    """Return the chain of a CIRCLE, two half circles."""
     x, y, z = entity.dxf.center
     radius = read_radius(entity)
     right, left = (x + radius, y, z), (x - radius, y, z)
@@ -94,7 +100,9 @@ def read_circle(entity: Any) -> RawChain:
 
 
 def read_arc(entity: Any) -> RawChain:
-    """Return an ARC, counter-clockwise in its OCS; equal angles, or a full turn between them, make a circle."""
+    """Return the chain of an ARC, counter-clockwise in its OCS;
+    equal angles, or a full turn between them, make a circle.
+    """
     start, end = float(entity.dxf.start_angle), float(entity.dxf.end_angle)
     sweep = radians((end - start) % 360.0)
     if min(sweep, tau - sweep) < 1e-9:
@@ -111,7 +119,10 @@ def read_arc(entity: Any) -> RawChain:
 
 
 def read_radius(entity: Any) -> float:
-    """Return the radius in drawing units; refuse a negative one (zero gives a chain of zero length, dropped later)."""
+    """Return the radius in drawing units; raise InputError for a negative one or NaN.
+
+    A radius of zero is allowed: it gives a chain of zero length, which is dropped later.
+    """
     radius = float(entity.dxf.radius)
     if not radius >= 0:
         raise InputError(f"has the radius {radius:g}: correct it.")
@@ -119,16 +130,17 @@ def read_radius(entity: Any) -> float:
 
 
 def read_lwpolyline(entity: Any) -> RawChain:
+    """Return the chain of an LWPOLYLINE, with its bulges."""
     height = float(entity.dxf.elevation)
     rows = [((float(x), float(y), height), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
     return place_chain_in_layout(entity, *collect_polyline_points(rows, bool(entity.closed)), numbered=True)
 
 
 def read_polyline(entity: Any) -> RawChain:
-    """Return an old-style POLYLINE: flat ones with bulges, 3D ones as lines (refused later unless they lie
-    flat).
+    """Return the chain of an old-style POLYLINE: flat ones with bulges, 3D ones as lines.
 
-    Refuses meshes and polylines smoothed into splines.
+    3D ones that are not level are refused later. Raises InputError for meshes and polylines smoothed into
+    splines.
     """
     if entity.is_poly_face_mesh or entity.is_polygon_mesh:
         raise InputError("is a 3D mesh, which has no outline: draw the part flat, with lines and arcs.")
@@ -150,7 +162,10 @@ def read_polyline(entity: Any) -> RawChain:
 def collect_polyline_points(
     rows: Sequence[tuple[Point3, float]], closed: bool
 ) -> tuple[list[Point3], list[float]]:
-    """Return the points and bulges of a polyline; the bulge of an open polyline's last vertex means nothing."""
+    """Return the points and bulges of a polyline from rows (point, bulge).
+
+    A closed one repeats its first point at the end; an open one drops the bulge of its last vertex.
+    """
     points, bulges = [point for point, _ in rows], [bulge for _, bulge in rows]
     if closed and points:
         points.append(points[0])
@@ -158,9 +173,10 @@ def collect_polyline_points(
 
 
 def read_spline(entity: Any) -> RawChain:
-    """Return a SPLINE by its control points, or else through its fit points; its numbers are never in OCS.
+    """Return the chain of a SPLINE by its control points,
+    or else through its fit points; these are never in OCS.
 
-    Refuses one whose numbers do not agree.
+    Raises InputError where the counts of control points, knots and weights do not agree.
     """
     control = [tuple(map(float, point)) for point in entity.control_points]
     if not control:
@@ -173,11 +189,11 @@ def read_spline(entity: Any) -> RawChain:
 
 
 def read_spline_through_fit_points(entity: Any) -> RawChain:
-    """Return a SPLINE of fit points alone, as CAD programs draw it.
+    """Return the chain of a SPLINE that has only fit points, as CAD programs draw it.
 
-    It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its
-    ends it has the tangents given, or else no curvature; where it is closed, it is periodic. Refuses fewer
-    than two different points, and numbers that are none.
+    It is the cubic spline with continuous curvature through them whose parameter grows by the chord lengths.
+    At its ends it has the tangents given, or else no curvature; where it is closed, it is periodic. Raises
+    InputError for fewer than two different points, and for coordinates that are not finite.
     """
     every = [(float(x), float(y), float(z)) for x, y, z in entity.fit_points]
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for point in every for value in point):
@@ -205,9 +221,9 @@ def read_spline_through_fit_points(entity: Any) -> RawChain:
 
 
 def read_ellipse(entity: Any) -> RawChain:
-    """Return an ELLIPSE or a part of one; its numbers are never in OCS.
+    """Return the chain of an ELLIPSE or a part of one; its coordinates are never in OCS.
 
-    Refuses axes that are not those of an ellipse.
+    Raises InputError for an axis of zero length.
     """
     is_seen_from_below(entity)
     center, major = entity.dxf.center, entity.dxf.major_axis
@@ -223,7 +239,8 @@ def read_ellipse(entity: Any) -> RawChain:
 
 
 def make_curve_chain(pieces: Pieces, heights: Sequence[float]) -> RawChain:
-    ends = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
+    """Return the chain of one segment that is a curve; ``heights`` are the z of the points that define it."""
+    ends = compute_point(pieces, 0.0), compute_point(pieces, float(len(pieces)))
     return RawChain([(x, y, heights[0]) for x, y in ends], [0.0], curved={0: pieces}, heights=heights)
 
 

@@ -1,6 +1,6 @@
 """DXF drawings, from bytes to chains in mm.
 
-The library ezdxf reads the file; the geometry is ours, exact and without Béziers.
+The library ezdxf reads the file; the geometry is computed here, exactly and without approximation by Béziers.
 
 Glossary
 --------
@@ -61,22 +61,23 @@ def read_dxf(
     fit: float | None = None,
     budget: Budget | None = None,
 ) -> Drawing:
-    """Read the outline entities of a DXF file's model space.
+    """Return the drawing, in mm, of the outline entities of a DXF file's model space.
 
     Parameters
     ----------
     path : the file, which ezdxf opens by itself.
+    content : its bytes.
     unit : overrides the file's unit.
     usual_unit : the unit of a file that does not say.
     layers : layers to read; all visible ones when None.
-    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
+    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
         ``Drawing``.
-    budget : what reading the file may still take; None is that of a file of these bytes.
+    budget : work and time that may still be spent on the file; None is that of a file of these bytes.
 
     Raises
     ------
     InputError
-        For files that are no DXF or damaged, unknown units, unknown layers, and entities that are refused.
+        For files that are not DXF or damaged, unknown units, unknown layers, and entities that are refused.
     """
     refuse_other_formats(content)
     budget = budget or Budget(LIMITS["dxf"], len(content))
@@ -100,8 +101,12 @@ def read_document(
     fit: float | None = None,
     budget: Budget | None = None,
 ) -> Drawing:
-    """Read the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`."""
-    known = scale_of(code, unit, usual_unit)
+    """Return the drawing, in mm, of the model space of a document of ezdxf; see :func:`read_dxf`.
+
+    ``code`` is the document's ``$INSUNITS``. Raises UnitAskedError when neither it nor an argument gives a
+    unit.
+    """
+    known = choose_scale(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
     try:
         walk = DxfWalk(document, layers, fit, budget or Budget(LIMITS["dxf"]))
@@ -127,7 +132,7 @@ def read_document(
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuse what is plainly no DXF, or cut short, before ezdxf tries its best with it."""
+    """Raise InputError for bytes that are no DXF, or cut short, before ezdxf tries to repair them."""
     if content[:4] == b"AC10" or content[:2] == b"MC":
         raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
     if content.startswith(BINARY):
@@ -139,7 +144,10 @@ def refuse_other_formats(content: bytes) -> None:
 
 
 def open_document(path: Path) -> tuple[Any, list[str]]:
-    """Return the ezdxf document, with a remark when the file had to be repaired; refuse one beyond repair."""
+    """Return the ezdxf document, and a list with a remark if the file had to be repaired.
+
+    Raises InputError for a file beyond repair.
+    """
     from ezdxf import recover
     from ezdxf.filemanagement import readfile
 
@@ -156,7 +164,7 @@ def open_document(path: Path) -> tuple[Any, list[str]]:
 
 
 def make_damage_error(error: Exception) -> InputError:
-    """Return the refusal of a file that the library cannot read."""
+    """Return an InputError for a file that the library cannot read, with the library's error in it."""
     reason = "it has no model space" if isinstance(error, KeyError) else shorten_to_one_line(error)
     return InputError(f"the DXF file is damaged ({reason}): open it in a CAD program and export it again.")
 
@@ -172,7 +180,11 @@ MOST_TAGS = 15
 
 
 def refuse_crowded(content: bytes, budget: Budget) -> None:
-    """Refuse a file with more in it than a drawing may have, before the library takes long to read it."""
+    """Raise OverBudgetError for a file with more entities than
+    the budget allows, before the library reads it for long.
+
+    The budget itself is not spent.
+    """
     most = budget.limits.most_elements
     if most is None or len(content) <= FEW_BYTES:
         return
@@ -183,13 +195,15 @@ def refuse_crowded(content: bytes, budget: Budget) -> None:
 
 
 def shorten_to_one_line(error: Exception) -> str:
-    """Return an error's text without line breaks, not too long, and without a full stop."""
+    """Return an error's text on one line, cut to 120 characters and without a full stop."""
     text = " ".join(str(error).split()) or type(error).__name__
     return text[:120].rstrip(".")
 
 
 def read_unit_code(document: Any, content: bytes) -> int | str:
-    """Return the $INSUNITS of a document; 0 for none."""
+    """Return the ``$INSUNITS`` of a document: a whole
+    number, text if it is not one, 0 where the file has none.
+    """
     if written := INSUNITS_WRITTEN.search(content):
         # Of a number that is none the library's repair takes the digits with which it begins.
         return normalize_unit_code(written[1].decode("ascii", "replace").strip())
@@ -198,15 +212,21 @@ def read_unit_code(document: Any, content: bytes) -> int | str:
 
 
 def normalize_unit_code(value: Any) -> int | str:
-    """Return an $INSUNITS as a whole number, or as it is written if it is not a whole number."""
+    """Return a value of ``$INSUNITS`` as an int, or as text if it is not a whole number."""
     number = read_number(value)
     return int(number) if isfinite(number) and number == int(number) else str(value)
 
 
-def scale_of(code: int | str, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
-    """Return the millimetres per drawing unit, and a remark when the user's unit is not the file's $INSUNITS.
+def choose_scale(code: int | str, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
+    """Return the millimetres per drawing unit, and a list with a remark when a user's unit is not the file's.
 
     None when neither the file nor the user gives a unit.
+
+    Parameters
+    ----------
+    code : the file's ``$INSUNITS``.
+    unit : overrides the file's unit.
+    usual_unit : used where the file has none.
     """
     name, scale = INSUNITS.get(code, ("", None)) if isinstance(code, int) else ("", None)
     asked = unit if unit is not None or scale is not None else usual_unit

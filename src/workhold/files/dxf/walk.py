@@ -1,9 +1,9 @@
-"""Walking through a DXF layout and the blocks inserted in it, collecting chains.
+"""The walk through a DXF layout and the blocks inserted in it, which collects chains.
 
 Glossary
 --------
 effective layer : an entity's layer, or the INSERT's when the entity stands on layer 0 of a block.
-nest : where a walk stands: the placement, layer and name of the INSERTs around it.
+nest : position of the walk: the placement, layer and names of the INSERTs around it.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ BY_LAYER = 256
 
 @frozen
 class BlockNesting:
-    """Where the walk stands.
+    """The INSERTs around the entity that the walk visits.
 
     Parameters
     ----------
-    placement : block or model space coordinates to mm.
+    placement : transformation of block or model space coordinates to mm.
     layer : effective layer of the innermost INSERT; None in model space.
     frozen : whether an INSERT around stands on a hidden layer.
     suffix : `` of INSERT 41`` and so on, for labels.
-    blocks : names of the blocks around.
+    blocks : names of the blocks around, in small letters, the outermost first.
     """
 
     placement: Placement
@@ -50,7 +50,14 @@ class BlockNesting:
 
 
 class DxfWalk:
-    """Collects the chains of a document's entities, and what was left out."""
+    """A walk that collects the chains of a document's entities, and counts what was left out.
+
+    Parameters
+    ----------
+    layers : names of the layers to read, in any mixture of capitals; all visible ones when None.
+    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place.
+    budget : spent for every entity and vertex.
+    """
 
     def __init__(
         self, document: Any, layers: Sequence[str] | None, fit: float | None, budget: Budget
@@ -78,14 +85,17 @@ class DxfWalk:
         }
 
     def visit_all(self, entities: Iterable[Any], nest: BlockNesting) -> None:
+        """Visit all entities in turn."""
         for entity in entities:
             self.visit(entity, nest)
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Collect one entity, or notes why it was left out."""
+        """Collect the chain of one entity, or visit the
+        block that it inserts, or count why it was left out.
+        """
         self.budget.spend()
         kind = entity.dxftype()
-        label = f"{kind} {name_of(entity)}{nest.suffix}"
+        label = f"{kind} {label_entity(entity)}{nest.suffix}"
         try:
             layer = self.find_effective_layer(entity, nest)
             if kind == "INSERT":
@@ -95,7 +105,7 @@ class DxfWalk:
                     self.add(entity, kind, nest.placement, label)
                     labels = self.chains[-1].labels
                     self.layers.update(dict.fromkeys(labels, layer))
-                    if look := look_of(entity):
+                    if look := get_look(entity):
                         self.looks.update(dict.fromkeys(labels, look))
             elif self.wanted is None or layer.casefold() in self.wanted:
                 self.ignored[kind] += 1
@@ -105,13 +115,15 @@ class DxfWalk:
             raise InputError(f"{label} is damaged ({error}): delete it or draw it again.") from error
 
     def find_effective_layer(self, entity: Any, nest: BlockNesting) -> str:
-        """Return the layer an entity counts as being on."""
+        """Return the entity's layer, or the INSERT's around it for layer 0."""
         # Entities of kinds that the library does not know have no layer it could tell.
         layer = str(entity.dxf.get("layer", "0")) if entity.dxf.is_supported("layer") else "0"
         return nest.layer if layer == "0" and nest.layer is not None else layer
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
-        """Return whether an outline entity is on a chosen layer, or visible when none were chosen."""
+        """Return whether an entity is to be read: on a chosen
+        layer, or visible when none were chosen; count hidden ones.
+        """
         key = layer.casefold()
         self.names.setdefault(key, layer)
         if self.wanted is not None and key not in self.wanted:
@@ -123,7 +135,7 @@ class DxfWalk:
         return True
 
     def add(self, entity: Any, kind: str, placement: Placement, label: str) -> None:
-        """Add an entity's chain.
+        """Append an entity's chain in mm to ``chains``.
 
         Raises
         ------
@@ -131,7 +143,7 @@ class DxfWalk:
             For kinds that are refused, and entities out of the plane.
         """
         if kind in REFUSED:
-            x, y = placement(place_of(entity))
+            x, y = placement(find_entity_point(entity))
             raise InputError(
                 f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: "
                 f"convert it to lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
@@ -152,7 +164,9 @@ class DxfWalk:
         self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
-        """Refuse entities that are not level, or lie at another height than those before."""
+        """Raise InputError unless all z of an entity agree
+        with each other and with those of the entities before.
+        """
         for z in (*(z for _, _, z in raw.points), *raw.heights):
             height = placement.height_scale * z + placement.height
             if self.level is None:
@@ -167,7 +181,7 @@ class DxfWalk:
     def visit_insert(self, insert: Any, nest: BlockNesting, layer: str, label: str) -> None:
         """Visit the entities of an inserted block, once for every place of an array.
 
-        Refuses tilted or crushed blocks, and blocks that contain themselves.
+        Raises InputError for tilted blocks, a scale of zero, and blocks that contain themselves.
         """
         key = layer.casefold()
         name = str(insert.dxf.name)
@@ -194,7 +208,7 @@ class DxfWalk:
             nest,
             layer=layer,
             frozen=nest.frozen or key in self.hidden_layers,
-            suffix=f" of INSERT {name_of(insert)}{nest.suffix}",
+            suffix=f" of INSERT {label_entity(insert)}{nest.suffix}",
             blocks=(*nest.blocks, name.casefold()),
         )
         for single in insert.multi_insert() if rows * columns > 1 else [insert]:
@@ -205,8 +219,8 @@ class DxfWalk:
                 self.visit_all(block, evolve(inner, placement=placement))
 
     def count_inserted_entities(self, name: str, block: Any, depth: int = 0) -> int:
-        """Return how many entities are visited at least where a block is inserted; inserts double it from one
-        to the next.
+        """Return a lower bound of the number of entities visited for
+        one insertion of a block, those of inner blocks included.
         """
         key = name.casefold()
         if key in self.sizes or depth > (self.budget.limits.deepest or 0):
@@ -227,7 +241,7 @@ class DxfWalk:
         return size
 
     def refuse_missing_layers(self) -> None:
-        """Refuse chosen layers on which there is no outline entity."""
+        """Raise InputError for a chosen layer without outline entities, and for an empty choice."""
         missing = [name for key, name in (self.wanted or {}).items() if key not in self.names]
         if missing:
             have = list_first_items(sorted(self.names.values())) or "none"
@@ -236,7 +250,7 @@ class DxfWalk:
             raise InputError(f"no layer was chosen: name one, or leave {LAYERS} out.")
 
     def list_remarks(self) -> list[str]:
-        """Return what was left out, one sentence for each reason."""
+        """Return sentences on what was left out, one for each reason."""
         remarks = []
         if self.ignored:
             kinds = [f"{count} {shorten_name(kind)}" for kind, count in sorted(self.ignored.items())]
@@ -269,30 +283,32 @@ LONGEST_NAME, MOST_NAMED = 80, 10
 
 
 def shorten_name(name: str) -> str:
-    """Return a name as a file gives it, in few letters and fit to be shown."""
+    """Return a name from a file, shortened and without unprintable characters."""
     return shorten_middle(make_printable(name), LONGEST_NAME)
 
 
 def list_first_words(words: Sequence[str]) -> str:
-    """Return the first of some words with commas between them, and how many more there are."""
+    """Return the first ``MOST_NAMED`` words joined by commas, with "and N more" for the rest."""
     more = len(words) - MOST_NAMED
     return ", ".join(words[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
-def name_of(entity: Any) -> str:
-    """Return the handle of an entity, in few letters: labels repeat it for every segment."""
+def label_entity(entity: Any) -> str:
+    """Return the handle of an entity, shortened in the middle: labels repeat it for every segment."""
     return shorten_middle(str(entity.dxf.handle), 20)
 
 
-def look_of(entity: Any) -> str:
-    """Return the colour and the kind of line of an entity; empty where it has those of its layer."""
+def get_look(entity: Any) -> str:
+    """Return the colour and the line type of an entity as one text; "" where both are those of its layer."""
     color = entity.dxf.get("true_color", entity.dxf.get("color", BY_LAYER))
     kind = str(entity.dxf.get("linetype", "BYLAYER")).casefold()
     return "" if color == BY_LAYER and kind == "bylayer" else f"{color} {kind}"
 
 
 def count_vertices(entity: Any) -> int:
-    """Return how many vertices, control points and fit points an entity has."""
+    """Return the number of vertices of a polyline, or of control
+    points and fit points of a spline; 0 for other kinds.
+    """
     kind = entity.dxftype()
     if kind == "LWPOLYLINE":
         return len(entity)
@@ -302,7 +318,7 @@ def count_vertices(entity: Any) -> int:
 
 
 def apply_with_label(label: str, function: Callable[[Any], T], entity: Any) -> T:
-    """Apply a function to an entity; its complaints begin with the entity's label."""
+    """Return ``function(entity)``; the message of its InputError gets the label in front."""
     try:
         return function(entity)
     except InputError as error:
@@ -310,12 +326,13 @@ def apply_with_label(label: str, function: Callable[[Any], T], entity: Any) -> T
 
 
 def label_segment(label: str, k: int) -> str:
-    """Return the label of segment k of a polyline: its number stands right after the handle."""
+    """Return the label of segment k (from 0) of a polyline, with the number right after the handle."""
     kind, handle, *rest = label.split(" ", 2)
     return " ".join([kind, handle, f"segment {k}", *rest])
 
 
 def make_block_placement(insert: Any) -> Placement:
+    """Return the transformation from a block's coordinates to those around its INSERT."""
     matrix = insert.matrix44()
     ax, ay, _ = matrix.transform_direction((1, 0, 0))
     cx, cy, _ = matrix.transform_direction((0, 1, 0))
@@ -324,8 +341,8 @@ def make_block_placement(insert: Any) -> Placement:
     return Placement(ax, ay, cx, cy, ex, ey, zz, ez)
 
 
-def place_of(entity: Any) -> tuple[float, float]:
-    """Return some point of an entity, in its own coordinates; the origin where it has none."""
+def find_entity_point(entity: Any) -> tuple[float, float]:
+    """Return (x, y) of some point of an entity, in its own coordinates; the origin where it has none."""
     for name in ("center", "start", "vtx0", "start_location"):
         if entity.dxf.is_supported(name) and entity.dxf.hasattr(name):
             point = entity.dxf.get(name)

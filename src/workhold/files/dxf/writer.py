@@ -1,4 +1,4 @@
-"""DXF drawings that are written: a set-up for a CAM system, and the jaw plates to drill.
+"""Writing of DXF drawings: a set-up for a CAM system, and the jaw plates to drill.
 
 A set-up shows the part in its pose, pegs, holes and plates on layers of their own. The geometry is exact, in
 millimetres in the vise frame, whose origin is the left jaw's hole L-A1, or hole A1 of a plate. Lines and arcs
@@ -27,8 +27,8 @@ from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.dowels import JawPlate, place_plates_in_drawing
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
-from workhold.model.setup import PartZero, part_zero
-from workhold.model.shown import MOST_HOLES, Shown, shown
+from workhold.model.setup import PartZero, choose_part_zero
+from workhold.model.shown import MOST_HOLES, ShownSetUp, find_shown
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
@@ -71,30 +71,30 @@ def make_setup_dxf(
 
     Parameters
     ----------
-    zero : part zero; that of :func:`part_zero` without a wish if None.
-    clearance : how far the cutter is to keep off the pegs' bodies, in mm.
+    zero : part zero; that of :func:`choose_part_zero` without a wish if None.
+    clearance : distance that the cutter must keep from the pegs' bodies, in mm.
     """
     with make_drawing(list_layer_colours(toolkit)) as document:
-        space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
+        space, seen = document.modelspace(), find_shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
         for wall in seen.walls:
             space.add_lwpolyline(
                 wall.bar.corners, close=True, dxfattribs={"layer": name_plate_layer(wall.carrier)}
             )
-        add_part(space, workpiece.placed(fixture.pose))
+        add_part(space, workpiece.apply_pose(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
         add_travel(space, seen)
-        add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
+        add_zero(space, fixture.pose, (zero or choose_part_zero(workpiece)).point, AXIS * seen.pitch)
         return write_drawing_bytes(document)
 
 
 @contextmanager
 def make_drawing(layers: Mapping[str, int]) -> Iterator[Drawing]:
-    """Yield a new drawing in mm with layers of some colours, into which ezdxf writes no time and no random
-    numbers.
+    """Yield a new ezdxf drawing in mm with layers of the given colours; it must be written inside the block.
 
-    That holds while the block runs.
+    Within the block ezdxf writes no times and no random numbers, so that the same content gives the same
+    bytes.
     """
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
@@ -120,7 +120,7 @@ def write_drawing_bytes(document: Drawing) -> bytes:
 
 
 def name_plate_layer(carrier: Carrier) -> str:
-    """Return the layer that a carrier's plate is on.
+    """Return the name of the layer for a carrier's plate or body.
 
     >>> from workhold import Vise
     >>> [name_plate_layer(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
@@ -132,16 +132,17 @@ def name_plate_layer(carrier: Carrier) -> str:
 
 
 def name_peg_layer(carrier: Carrier) -> str:
-    """Return the layer that a carrier's pegs are on: of a clamp that of its body."""
+    """Return the name of the layer for a carrier's pegs; for a clamp that of its body."""
     return f"{carrier.peg}s".upper() if carrier.has_lattice else name_plate_layer(carrier)
 
 
 def name_setting_layer(mover: Carrier) -> str:
+    """Return the name of the layer for the length by which a moving carrier is set."""
     return "OPENING" if mover.has_lattice else f"{name_plate_layer(mover)}_SETTING"
 
 
 def list_layer_colours(toolkit: Toolkit) -> dict[str, int]:
-    """Return the layers of a toolkit's set-ups, and their colours.
+    """Return the AutoCAD colour number of each layer of a toolkit's set-ups, by layer name.
 
     >>> from workhold import Plate
     >>> print(*list_layer_colours(Plate(pitch=20, peg_radius=5)))
@@ -161,6 +162,7 @@ def list_layer_colours(toolkit: Toolkit) -> dict[str, int]:
 
 
 def add_part(space: Modelspace, part: Workpiece) -> None:
+    """Add the outline of a part, which is in its pose, on the layer PART."""
     number = 0
     for loop in part.loops:
         face = next(face for face in part.faces if number in face.segments)
@@ -171,7 +173,11 @@ def add_part(space: Modelspace, part: Workpiece) -> None:
             space.add_lwpolyline(loop.tolist(), format="xyb", close=True, dxfattribs={"layer": "PART"})
 
 
-def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
+def add_pegs(space: Modelspace, seen: ShownSetUp, clearance: float) -> None:
+    """Add all pegs, the circles around them that the cutter must not enter, and the names of their holes.
+
+    ``clearance`` in mm is the distance of those circles from the pegs' bodies.
+    """
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
@@ -187,7 +193,10 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
             add_text(space, peg.hole, (peg.x, peg.y), seen)
 
 
-def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
+def add_clamps(space: Modelspace, seen: ShownSetUp, clearance: float) -> None:
+    """Add each clamp's tip, body and an arrow behind it,
+    what the cutter must not enter, and the name of its hole.
+    """
     for clamp in seen.clamps:
         layer = {"layer": name_plate_layer(clamp.carrier)}
         radius, tip = clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
@@ -196,17 +205,17 @@ def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
         else:
             space.add_point(tip, layer)
         if clamp.hole is not None and radius > 0:
-            add_outline(space, clamp.outline(), name_plate_layer(clamp.carrier))
+            add_outline(space, clamp.make_outline(), name_plate_layer(clamp.carrier))
         if radius + clearance > 0:
-            add_outline(space, clamp.outline(clearance), "KEEP_OUT")
+            add_outline(space, clamp.make_outline(clearance), "KEEP_OUT")
         head, half = radius + ARROW_HEAD * clamp.pitch, HALF_HEAD * clamp.pitch
         for away, aside in ((radius + clamp.pitch, 0.0), (head, half), (head, -half)):
-            space.add_line(clamp.behind(radius), clamp.behind(away, aside), layer)
+            space.add_line(clamp.compute_point_behind(radius), clamp.compute_point_behind(away, aside), layer)
         add_text(space, clamp.tip.hole, clamp.back, seen)
 
 
 def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> None:
-    """Add a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
+    """Add a closed outline on a layer: one full circle, or segments as a polyline with bulges."""
     first = outline[0]
     if isinstance(first, Arc) and first.is_full:
         space.add_circle(first.center, first.radius, {"layer": layer})
@@ -216,17 +225,19 @@ def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> No
     space.add_lwpolyline(points, format="xyb", close=True, dxfattribs={"layer": layer})
 
 
-def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
+def add_text(space: Modelspace, words: str, at: Point, seen: ShownSetUp) -> None:
+    """Add words centred at a point (x, y), on the layer TEXT."""
     text = space.add_text(words, height=TEXT_HEIGHT * seen.pitch, dxfattribs={"layer": "TEXT"})
     text.set_placement(at, align=TextEntityAlignment.MIDDLE_CENTER)
 
 
-def add_carriers(space: Modelspace, seen: Shown) -> None:
+def add_carriers(space: Modelspace, seen: ShownSetUp) -> None:
+    """Add each carrier's plate, its holes, and the names of its columns and rows."""
     for each in seen.carriers:
         carrier, plate = each.carrier, each.plate
         space.add_lwpolyline(plate.corners, close=True, dxfattribs={"layer": name_plate_layer(carrier)})
         half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
-        holes = each.holes(MOST_HOLES)
+        holes = each.list_holes(MOST_HOLES)
         for hole in holes:
             radius = carrier.peg_radius or POINT_HOLE * min(carrier.pitch)
             space.add_circle(hole.center, radius, {"layer": "HOLES_USED" if hole.used else "HOLES"})
@@ -241,10 +252,11 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
                 add_text(space, str(row + 1), (beside, y), seen)
 
 
-def add_travel(space: Modelspace, seen: Shown) -> None:
-    """Add each length to set, with the axes that it is measured between.
+def add_travel(space: Modelspace, seen: ShownSetUp) -> None:
+    """Add each length to set as a dimension, with the axes that it is measured between.
 
-    A length is drawn outside the plates; of two along the same way the second is farther out.
+    Lengths are drawn outside the plates; of several in the same direction each is farther out than the one
+    before.
     """
     for number, measured in enumerate(seen.measured):
         setting, layer = measured.setting, {"layer": name_setting_layer(measured.setting.carrier)}
@@ -264,7 +276,10 @@ def add_travel(space: Modelspace, seen: Shown) -> None:
 
 
 def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:
-    """Add the part's zero point with its x axis, of the length given, and a y axis half as long."""
+    """Add the part's zero point with its x axis, ``length`` mm long, and a y axis half as long.
+
+    ``zero`` is in the part's frame.
+    """
     layer, (x, y) = {"layer": "PART_ZERO"}, zero
     space.add_point(pose.apply(x, y), layer)
     for end in (pose.apply(x + length, y), pose.apply(x, y + length / 2)):
@@ -282,6 +297,7 @@ def make_plates_dxf(plates: Sequence[JawPlate]) -> bytes:
         space = document.modelspace()
 
         def write(words: str, height: float, at: Point, align: TextEntityAlignment) -> None:
+            """Add words with an alignment at a point (x, y), ``height`` mm tall."""
             space.add_text(words, height=height, dxfattribs={"layer": "TEXT"}).set_placement(at, align=align)
 
         for plate, right in zip(plates, place_plates_in_drawing(plates), strict=True):

@@ -1,12 +1,12 @@
-"""Chains, the pieces a drawing is made of before they are joined into loops, and the maps that place them.
+"""Chains, the pieces of a drawing before they are joined into loops, and the maps that place them.
 
 Glossary
 --------
 chain : a run of lines and arcs drawn as one entity: N segments through N + 1 points.
-label : what a message calls one segment, such as ``ARC 30 of INSERT 41``.
+label : name of one segment for messages, such as ``ARC 30 of INSERT 41``.
 closed chain : its last point is its first.
 bulge : tan of a quarter of an arc's sweep, positive counter-clockwise, 0 for a line.
-drawing : what a file held: chains in mm, and remarks for the user.
+drawing : content of a file: chains in mm, and remarks for the user.
 placement : the plane affine map that puts a block or a group in its drawing.
 """
 
@@ -72,7 +72,7 @@ class Placement:
 
     @property
     def determinant(self) -> float:
-        """Factor on areas; negative for a mirror image."""
+        """Factor on areas; negative for a map that mirrors."""
         return self.a * self.d - self.b * self.c
 
     @property
@@ -83,6 +83,7 @@ class Placement:
 
     @property
     def keeps_circles(self) -> bool:
+        """Whether the image of a circle is a circle."""
         first, second = hypot(self.a, self.b), hypot(self.c, self.d)
         slack = CIRCULAR * max(first, second)
         return abs(first - second) <= slack and abs(self.a * self.c + self.b * self.d) <= slack * max(
@@ -90,7 +91,7 @@ class Placement:
         )
 
     def map_bulges(self, bulges: Sequence[float]) -> tuple[float, ...]:
-        """Return the bulges of the image of a chain: a mirror image turns every arc's sense."""
+        """Return the bulges of a chain's image: with the other sign where the map mirrors."""
         return tuple(-b if b else 0.0 for b in bulges) if self.determinant < 0 else tuple(bulges)
 
 
@@ -106,7 +107,7 @@ class Chain:
     ----------
     points : N + 1 points (x, y) in mm.
     bulges : N bulges.
-    labels : N names for messages.
+    labels : N names of the segments for messages.
     """
 
     points: tuple[Point, ...]
@@ -130,6 +131,7 @@ class Chain:
         return [make_segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
 
     def reverse(self) -> Chain:
+        """Return the chain run from its end to its start."""
         return Chain(
             self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1]
         )
@@ -137,15 +139,15 @@ class Chain:
 
 @frozen
 class CurveReading:
-    """How a curve was read.
+    """The lines and arcs that stand for a curve.
 
     Parameters
     ----------
-    place : where it begins, in mm.
+    place : point at which the curve begins, in mm.
     departure : bound of the distance between it and its lines and arcs, in mm.
-    is_disguise : whether it is lines and arcs but for a hair, see ``geometry.curve_fit``.
+    is_disguise : whether it is lines and arcs almost exactly, see ``geometry.curve_fit``.
     pieces : the curve itself, in mm.
-    arcs : how many lines and arcs stand for it.
+    arcs : number of lines and arcs that stand for it.
     """
 
     place: Point
@@ -157,17 +159,17 @@ class CurveReading:
 
 @frozen
 class Drawing:
-    """What a drawing file held.
+    """The content of a drawing file.
 
     Parameters
     ----------
     chains : open and closed chains, in mm.
-    remarks : what the user should know, one sentence each.
-    curves : how the curves among them were read, by their labels.
-    layers : the layers that segments are on, by their labels; nothing for files without layers.
+    remarks : sentences for the user.
+    curves : readings of the curves among them, by their labels.
+    layers : the layers that segments are on, by their labels; empty for files without layers.
     solids : all of a STEP file, the largest first.
-    looks : the colour and the kind of line that segments are drawn with, by their labels; nothing where that is
-        not said.
+    looks : the colour and line type that segments are drawn with, by their labels; without those for which
+        the file does not say it.
     """
 
     chains: tuple[Chain, ...]
@@ -179,10 +181,10 @@ class Drawing:
 
 
 def list_arc_bulges(sweep: float) -> list[float]:
-    """Return the bulges of an arc of a sweep in radians (signed): one, or two halves when it is nearly a full
-    circle.
+    """Return the bulges of an arc of a signed sweep in radians:
+    one, or two halves when it is nearly a full circle.
 
-    Two, because a single bulge near a full circle fixes the centre badly.
+    Two, because a single bulge near a full circle determines the centre badly.
     """
     if abs(sweep) == pi:
         return [copysign(1.0, sweep)]
@@ -190,12 +192,12 @@ def list_arc_bulges(sweep: float) -> list[float]:
 
 
 def compute_moved_bulge(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
-    """Return the bulge of an arc whose ends have been moved a little, its centre staying as near its place as
-    it can.
+    """Return the bulge of an arc whose ends have been moved a
+    little, so that its centre stays as near its place as it can.
 
-    The new centre is the foot of the old one on the perpendicular bisector of the new chord. So centre and
-    radius change by no more than the order of the movement, times centre distance over chord, which no choice
-    can avoid.
+    ``start``, ``end`` and ``bulge`` are the arc's before. The new centre is the foot of the old one on the
+    perpendicular bisector of the new chord. So centre and radius change by no more than the order of the
+    movement, times centre distance over chord, which no choice can avoid.
     """
     if bulge == 0.0:
         return 0.0
@@ -220,15 +222,16 @@ def compute_moved_bulge(start: Point, end: Point, bulge: float, new_start: Point
 
 
 def list_first_items(items: Sequence[str]) -> str:
-    """Return the first ten items, and how many more there are."""
+    """Return the first ten items joined by semicolons, and "and N more" for the rest."""
     more = len(items) - NAMED
     return "; ".join(items[:NAMED]) + (f"; and {more} more" if more > 0 else "")
 
 
 def drop_zero_lengths(chains: Iterable[Chain]) -> Drawing:
-    """Drop entities and polyline segments of zero length (below 1e-7 mm), with remarks.
+    """Return a drawing of the chains without entities and segments of zero length (below 1e-7 mm).
 
-    Refuses coordinates or bulges that are not finite, or so large that the unit must be wrong.
+    Its remarks name what was dropped. Raises InputError for coordinates or bulges that are not finite, or so
+    large that the unit must be wrong.
     """
     kept: list[Chain] = []
     empty: list[str] = []
@@ -258,7 +261,9 @@ def drop_zero_lengths(chains: Iterable[Chain]) -> Drawing:
 
 
 def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
-    """Refuse a place in mm or a bulge of a labelled segment that is not finite or absurdly large."""
+    """Raise InputError for coordinates in mm or a bulge
+    of a segment that are not finite or absurdly large.
+    """
     if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
         raise InputError(
             f"{label} has a coordinate, radius or bulge that is not a finite number: correct it."
@@ -296,8 +301,10 @@ def strip_segment_number(label: str) -> str:
 
 
 def format_point(point: Point) -> str:
+    """Return a point as "(x, y)"."""
     return f"({point[0]:.6g}, {point[1]:.6g})"
 
 
 def format_count(count: int, one: str, many: str) -> str:
+    """Return a count with its noun, in the singular (``one``) or the plural (``many``)."""
     return f"{count} {one if count == 1 else many}"

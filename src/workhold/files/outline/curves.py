@@ -1,12 +1,13 @@
-"""Curves of a drawing as lines and arcs, and what to say about it.
+"""Replacement of a drawing's curves by lines and arcs, and remarks about it.
 
 Glossary
 --------
 curve : a segment of a drawing that is drawn as a spline, an ellipse or a Bézier curve.
-disguise : a curve that is a line or an arc but for a hair, see ``geometry.curve_fit``; others are true
+disguise : a curve that is a line or an arc almost exactly, see ``geometry.curve_fit``; others are true
     curves.
-fit : how far lines and arcs may be from a true curve that they stand for, in mm; None where true curves are
-    refused.
+fit : largest distance in mm of lines and arcs from a true curve that they stand for; None where true curves
+    are refused.
+departure : largest distance in mm of lines and arcs from the curve or the chords that they stand for.
 """
 
 from __future__ import annotations
@@ -28,11 +29,11 @@ from workhold.files.outline.chain import (
     list_first_items,
     refuse_numbers,
 )
-from workhold.files.outline.joining import Loop
+from workhold.files.outline.joining import JoinedLoop
 from workhold.files.questions import FIT, LAYERS
 from workhold.geometry.curve_fit import FittedCurve, fit_curve
 from workhold.geometry.merged_runs import ChordedArcs, describe_chords, find_chorded_arcs, merge_chords
-from workhold.geometry.rational import Pieces, join_pieces, mapped, split_arc
+from workhold.geometry.rational import Pieces, join_pieces, split_arc, transform_pieces
 
 __all__ = [
     "CurveReader",
@@ -52,7 +53,9 @@ MOST_PIECES = 20_000
 
 
 def check_fit(fit: float | None) -> float | None:
-    """Return a fit that can be used; refuse what is no length, or too small a one."""
+    """Return the fit (largest distance in mm of arcs from a
+    curve); raise InputError below ``LEAST_FIT``. None passes.
+    """
     if fit is not None and not (isfinite(fit) and fit >= LEAST_FIT):
         raise InputError(
             f"The fit {fit:g} is not usable: give a length of {LEAST_FIT:g} mm or more, such as 0.01."
@@ -61,9 +64,10 @@ def check_fit(fit: float | None) -> float | None:
 
 
 class CurveReader:
-    """Turns the curves of one drawing into lines and arcs, and keeps how each was read, by its label.
+    """A converter of the curves of one drawing into lines
+    and arcs, which keeps the reading of each by its label.
 
-    What reading the file may still take is left in ``budget``; None is no limit.
+    ``budget`` limits the time; None is no limit.
     """
 
     def __init__(self, fit: float | None, budget: Budget | None = None) -> None:
@@ -80,11 +84,15 @@ class CurveReader:
         curved: Mapping[int, Pieces],
         placement: Placement,
     ) -> Chain | None:
-        """Return the chain of placed segments; None where nothing is left of it.
+        """Return the chain of N placed segments in mm; None where nothing is left of it.
 
-        Points, bulges and labels are of N segments, in the coordinates they are drawn in. ``curved`` has
-        those that are curves, by their numbers; their bulges mean nothing. The placement is the map to mm;
-        arcs that it makes elliptical are curves. Refuses more curves than a drawing has.
+        Consecutive curves are fitted as one. Raises InputError for more curves than a drawing has.
+
+        Parameters
+        ----------
+        points, bulges, labels : N + 1, N and N, in the coordinates they are drawn in.
+        curved : pieces of the segments that are curves, by their index; their bulges are ignored.
+        placement : the map to mm; arcs that it makes elliptical become curves.
         """
         bent = dict(curved)
         if not placement.keeps_circles:
@@ -108,7 +116,7 @@ class CurveReader:
                 out_labels.append(labels[k])
                 k += 1
                 continue
-            run = mapped(join_pieces([bent[j] for j in range(k, last)]), matrix)
+            run = transform_pieces(join_pieces([bent[j] for j in range(k, last)]), matrix)
             read = self.read(run, labels[k])
             if read is not None:
                 if not out_bulges:
@@ -122,7 +130,7 @@ class CurveReader:
         return Chain(tuple(out_points), tuple(out_bulges), tuple(out_labels))
 
     def read(self, pieces: Pieces, label: str) -> FittedCurve | None:
-        """Return the lines and arcs for a curve in mm; None for a curve of no length.
+        """Return the lines and arcs for a curve in mm, and keep its reading; None for a curve of no length.
 
         Raises
         ------
@@ -146,6 +154,7 @@ class CurveReader:
 
 
 def select_readings(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
+    """Return the readings of those labels that are curves."""
     return {label: found[label] for label in labels if label in found}
 
 
@@ -156,10 +165,18 @@ def refuse_true_curves(
     layered: bool,
     budget: Budget | None = None,
 ) -> None:
-    """Refuse an outline with curves that are no lines or arcs, unless a fit is given.
+    """Raise InputError for an outline with curves that are
+    not lines or arcs even nearly, unless a fit is given.
 
-    Names the first curves, and a fit that would do. ``layered`` says whether the file has layers to choose.
-    ``budget`` is what reading the file may still take; None is no limit.
+    The message names the first curves, and a fit that would do.
+
+    Parameters
+    ----------
+    labels : of the outline's segments.
+    found : readings of the drawing's curves.
+    fit : largest distance in mm of lines and arcs from curves; None allows none.
+    layered : whether the file has layers to choose.
+    budget : limits the time; None is no limit.
     """
     true = {label: one for label, one in select_readings(labels, found).items() if not one.is_disguise}
     if fit is not None or not true:
@@ -187,21 +204,29 @@ def refuse_true_curves(
 
 
 def refit_curve(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
-    """Return how many lines and arcs stand for a curve with another fit, and their departure."""
+    """Return the number of lines and arcs that stand for a
+    curve within ``fit`` mm, and their largest distance in mm.
+    """
     fitted = fit_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
 
 
 def merge_short_chords(
-    loops: Sequence[Loop],
+    loops: Sequence[JoinedLoop],
     found: Mapping[str, CurveReading],
     fit: float | None,
     budget: Budget | None = None,
-) -> tuple[tuple[Loop, ...], float, list[str]]:
-    """Return the loops with one line or arc for each chain of short ones, the departure in mm, and remarks.
+) -> tuple[tuple[JoinedLoop, ...], float, list[str]]:
+    """Return the loops with one line or arc for each chain
+    of short chords, the largest distance in mm, and remarks.
 
-    The biarcs of true curves stay as they are. What reading the file may still take is left in ``budget``;
-    None is no limit.
+    Lines and arcs that stand for curves of the drawing are not merged.
+
+    Parameters
+    ----------
+    found : readings of the drawing's curves.
+    fit : largest distance in mm of the new segments from the chords; ``DISGUISE`` if None or less than that.
+    budget : limits the time; None is no limit.
     """
     interrupt = (budget or Budget(UNLIMITED)).check_time
     out, away, merged = [], 0.0, 0
@@ -232,7 +257,15 @@ def merge_short_chords(
 
 
 def describe_curve_fit(labels: Iterable[str], found: Mapping[str, CurveReading]) -> tuple[float, list[str]]:
-    """Return the largest departure of the curves among an outline's segments in mm, and what to say of them."""
+    """Return the largest distance in mm of lines and arcs from the curves that they replace, and remarks.
+
+    The distance is 0 for an outline without curves.
+
+    Parameters
+    ----------
+    labels : of the outline's segments.
+    found : readings of the drawing's curves.
+    """
     read = select_readings(labels, found)
     remarks = []
     for is_disguise in (True, False):
@@ -253,7 +286,9 @@ def describe_curve_fit(labels: Iterable[str], found: Mapping[str, CurveReading])
 
 
 def describe_departure(departure: float) -> list[str]:
-    """Return what to say of an outline that is so far, in mm, from what was drawn."""
+    """Return a remark on an outline that is this far, in mm,
+    from what was drawn; [] where that is too little to matter.
+    """
     if departure < READING:
         return []
     return [

@@ -1,7 +1,7 @@
-"""What to say and to ask where a drawing leaves its outline open.
+"""Messages and questions for drawings whose outline is not clear.
 
-A drawing may not say in which unit it is, and is then shown by its size. Its pieces may not close. The
-outlines of several of its layers may not go together, and then the layers to read instead are named.
+A drawing may not give its unit; then its size in each unit is shown. Its pieces may not close. The outlines
+of several of its layers may not go together, and then the layers to read instead are named.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from attrs import evolve
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Chain, Drawing, format_count, format_point, list_first_items
-from workhold.files.outline.joining import Stray, join
+from workhold.files.outline.joining import OpenChain, join
 from workhold.files.outline.nesting import DrawnPart
 from workhold.files.questions import JOIN_TOLERANCE, LAYERS, PART_NUMBER, UNIT, UnitAskedError
-from workhold.geometry.loop import loop_segments
-from workhold.geometry.segment import Point, box_around
+from workhold.geometry.loop import make_loop_segments
+from workhold.geometry.segment import Point, compute_box_around
 from workhold.limits import MOST_RADIUS
 from workhold.units import INCH, PIXELS
 
@@ -36,16 +36,16 @@ __all__ = [
 
 
 def measure_size(chains: Sequence[Chain]) -> tuple[float, float] | None:
-    """Return the width and height in mm of the smallest upright rectangle around chains; None without any."""
+    """Return the width and height in mm of the bounding box of chains; None where they have no segments."""
     segments = [segment for chain in chains for segment in chain.segments]
     if not segments:
         return None
-    x0, y0, x1, y1 = box_around(segments)
+    x0, y0, x1, y1 = compute_box_around(segments)
     return x1 - x0, y1 - y0
 
 
 def has_sound_numbers(chain: Chain) -> bool:
-    """Return whether all of a chain's numbers are such as a drawing in any unit may have."""
+    """Return whether all numbers of a chain are as small as those of a drawing in any unit."""
     return all(abs(value) <= MOST_RADIUS for value in chain.bulges) and all(
         abs(x) <= MOST_RADIUS and abs(y) <= MOST_RADIUS for x, y in chain.points
     )
@@ -54,11 +54,14 @@ def has_sound_numbers(chain: Chain) -> bool:
 def make_unit_question(
     lacking: str, chains: Sequence[Chain], pixels: float | None = None, in_pixels: bool = False
 ) -> UnitAskedError:
-    """Return the question for the unit of a drawing that lacks it, with what it would be in each.
+    """Return the error that asks for the unit of a drawing, with the drawing's size in each.
 
-    ``lacking`` is what is not known, up to the colon. Chains are what is drawn, a unit of the drawing for a
-    mm; nothing where that cannot be read. ``pixels`` is how many pixels one unit of the drawing is, None
-    where drawings have none; ``in_pixels`` says whether the drawing says that it is in pixels.
+    Parameters
+    ----------
+    lacking : what is not known, up to the colon.
+    chains : all that is drawn, with a unit of the drawing taken for a mm; empty where that cannot be read.
+    pixels : pixels in one unit of the drawing; None for files without pixels.
+    in_pixels : whether the drawing says that it is in pixels.
     """
     size = measure_size(chains) if all(map(has_sound_numbers, chains)) else None
     shown = of_pixels = ""
@@ -90,10 +93,15 @@ MOST_JOINED, MOST_GAP, MOST_GAPS = 500, 0.02, 20
 ENDS_NAMED = 4
 
 
-def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> NoReturn:
-    """Raise the error for a drawing without any closed outline.
+def refuse_nothing_closed(strays: Sequence[OpenChain], remarks: Sequence[str]) -> NoReturn:
+    """Raise InputError for a drawing without any closed outline.
 
     It names open ends and how far each is from the nearest other one.
+
+    Parameters
+    ----------
+    strays : all runs of chains, which do not close.
+    remarks : on the drawing, for a message where there are no chains.
     """
     if not strays:
         hint = f" ({' '.join(remarks)})" if remarks else ""
@@ -101,10 +109,12 @@ def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> No
     raise InputError(f"no outline is closed: {open_ends(strays)}")
 
 
-def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
-    """Refuse to take a hole for the part when the outline around it is nearly closed, but not quite."""
+def refuse_open_outline(part: DrawnPart, strays: Sequence[OpenChain]) -> None:
+    """Raise InputError where a part is likely a hole, because
+    an outline around it is nearly closed, but not quite.
+    """
     for stray in strays:
-        box = box_around(stray.chain.segments)
+        box = compute_box_around(stray.chain.segments)
         gap, size = dist(stray.chain.points[0], stray.chain.points[-1]), dist(box[:2], box[2:])
         if surrounds_box(box, part.bounds) and gap < NEARLY_CLOSED * size:
             raise InputError(
@@ -119,8 +129,10 @@ def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
         )
 
 
-def find_gap_around_part(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
-    """Return the smallest gap with which open pieces make an outline around a part; None without one."""
+def find_gap_around_part(part: DrawnPart, strays: Sequence[OpenChain]) -> float | None:
+    """Return the smallest gap in mm whose closing makes open
+    pieces an outline around a part; None where no gap does.
+    """
     chains = [stray.chain for stray in strays]
     if not 1 < len(chains) <= MOST_JOINED:
         return None
@@ -134,18 +146,25 @@ def find_gap_around_part(part: DrawnPart, strays: Sequence[Stray]) -> float | No
         except InputError:
             continue
         loops = () if joined.junctions else joined.loops
-        if any(surrounds_box(box_around(loop_segments(loop.vertices)), part.bounds) for loop in loops):
+        if any(
+            surrounds_box(compute_box_around(make_loop_segments(loop.vertices)), part.bounds)
+            for loop in loops
+        ):
             return gap
     return None
 
 
 def surrounds_box(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Return whether a bounding box reaches out of another one on every side."""
+    """Return whether the bounding box a reaches out of the box b on every side."""
     return a[0] < b[0] and a[1] < b[1] and a[2] > b[2] and a[3] > b[3]
 
 
-def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
-    """Return the nearest open ends, how far apart they are, and the remedy; a gap that is enough, if known."""
+def open_ends(strays: Sequence[OpenChain], enough: float | None = None) -> str:
+    """Return a text on the open ends nearest to each other, their
+    distances, and the join tolerance that would close them.
+
+    ``enough`` is the gap in mm that has to be closed, where that is known.
+    """
     ends: list[tuple[Point, str]] = []
     for stray in strays:
         ends += [(stray.chain.points[0], stray.first), (stray.chain.points[-1], stray.last)]
@@ -169,8 +188,8 @@ def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
     return f"{'; '.join(words)}{more}; close the drawing, or {larger}."
 
 
-def describe_strays(strays: Sequence[Stray]) -> list[str]:
-    """Return what to say about strays when a closed outline remains."""
+def describe_strays(strays: Sequence[OpenChain]) -> list[str]:
+    """Return a sentence on open runs of chains that were left out beside a closed outline; [] without any."""
     if not strays:
         return []
     places = list_first_items(
@@ -194,10 +213,11 @@ MOST_LAYERS = 12
 def name_layers_in_error(
     error: InputError, drawing: Drawing, usable: Callable[[Drawing], bool]
 ) -> InputError:
-    """Return what is wrong with an outline, the layers that are named in it, and a choice of layers that is
-    usable.
+    """Return an error with the layers of the segments it names,
+    and a choice of layers with which a part can be read.
 
-    ``usable`` says whether a part can be read of a drawing.
+    The error itself is returned where its segments are not on several layers. ``usable`` returns whether a
+    part can be read from a drawing.
     """
     said = str(error)
     # The name of a segment may begin like that of another one.

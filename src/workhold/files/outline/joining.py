@@ -1,4 +1,4 @@
-"""Joining loose chains end to end into closed loops.
+"""Joining of loose chains end to end into closed loops.
 
 Ends that agree to 1e-9 mm are joined first, so that a generous tolerance cannot swallow small features. Only
 the ends left over are joined across gaps, nearest first. Ends that lie close together are found in about
@@ -6,7 +6,9 @@ linear time.
 
 Glossary
 --------
-end : end 2 i of a set of chains is the first point of chain i, end 2 i + 1 its last.
+end : ends are numbered; end 2 i of a set of chains is the first point of chain i, end 2 i + 1 its last.
+node : a point at which ends lie, numbered.
+partner : partner[end] is the end joined to an end, or -1.
 gap : a distance between two ends that are joined all the same, at most the join tolerance.
 junction : a point where three or more ends meet, so that nobody can say how the outline goes on.
 stray : a run of chains that does not close.
@@ -37,17 +39,17 @@ from workhold.files.outline.chain import (
 from workhold.files.questions import JOIN_TOLERANCE
 from workhold.geometry.segment import Point
 
-__all__ = ["Joined", "Junction", "Loop", "Stray", "close_pairs", "group_by_pairs", "join"]
+__all__ = ["JoinedChains", "Junction", "JoinedLoop", "OpenChain", "close_pairs", "group_by_pairs", "join"]
 
 # More distinct points than this within one tolerance: the tolerance is larger than the drawing's details.
 CROWD = 64
 
 
 def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
-    """Return the pairs (P, 2) of points (N, 2) at most a tolerance apart, in mm.
+    """Return the pairs (P, 2) of indices of points (N, 2) at most a tolerance apart, in mm, each pair sorted.
 
-    Points that are exactly equal are paired in a row, first to second, second to third; distinct points in
-    all pairs. Refuses so many points within the tolerance that it cannot be meant.
+    Distinct points are paired each with each. Of exactly equal points, each is paired with the next, and only
+    the first with other points. Raises InputError for too many points within the tolerance of each other.
     """
     if len(points) < 2:
         return np.empty((0, 2), dtype=np.int64)
@@ -62,10 +64,11 @@ def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int
 
 
 def find_near_pairs(points: NDArray[np.float64], tolerance: float) -> list[NDArray[np.int64]]:
-    """Return the index pairs of distinct points at most a tolerance apart; a pair may come twice.
+    """Return arrays (P, 2) of index pairs of distinct points
+    (N, 2) at most a tolerance apart; a pair may come twice.
 
-    Vertical strips two tolerances wide, laid twice with an offset of one, put every close pair in a common
-    strip.
+    Vertical strips two tolerances wide, laid twice with an offset of one tolerance, put every close pair in a
+    common strip.
     """
     pairs = []
     for offset in (0.0, 0.5):
@@ -89,10 +92,13 @@ def find_near_pairs(points: NDArray[np.float64], tolerance: float) -> list[NDArr
 
 
 def group_by_pairs(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return (count,) groups of items of which pairs belong together; each is named by its smallest item."""
+    """Return for each of ``count`` items the smallest item
+    of its group; pairs (P, 2) of items belong to one group.
+    """
     parent = list(range(count))
 
     def root(item: int) -> int:
+        """Return the smallest item known of an item's group."""
         while parent[item] != item:
             parent[item] = parent[parent[item]]
             item = parent[item]
@@ -110,14 +116,15 @@ LOOP_OVER_GAP = 3.0
 
 
 @frozen
-class Loop:
+class JoinedLoop:
     """A closed run of segments.
 
     Parameters
     ----------
     vertices : (N, 3) array of x, y in mm and bulge.
-    labels : N names for messages.
-    nest : the number of the nest that it is an outline of, from 1; 0 for others, see ``outline.shared_lines``.
+    labels : N names of the segments for messages.
+    nest : the number of the nest that it is an outline of, from 1; 0 for others, see
+        ``outline.shared_lines``.
     """
 
     vertices: NDArray[np.float64]
@@ -126,8 +133,14 @@ class Loop:
 
 
 @frozen
-class Stray:
-    """A run of chains that does not close; ``chain`` is the whole of it."""
+class OpenChain:
+    """A run of chains that does not close.
+
+    Parameters
+    ----------
+    chain : the whole run as one chain.
+    first, last : names of its first and last entity.
+    """
 
     chain: Chain
     first: str
@@ -150,6 +163,7 @@ class Junction:
     within: str = ""
 
     def __str__(self) -> str:
+        """Return the number of ends that meet, the point and the segments in words."""
         names = list_first_items(self.labels)
         return f"{len(self.labels)} ends meet{self.within} at {format_point(self.point)} ({names})"
 
@@ -163,32 +177,32 @@ class Junction:
 
 
 @frozen
-class Joined:
+class JoinedChains:
     """Loops, what stayed open, and remarks on gaps closed and entities dropped.
 
     Parameters
     ----------
     junctions : points where an outline could go on in more than one way.
-    tangled : the chains that hang together with a junction, which are in no loop and no stray.
+    tangled : the chains connected to a junction, which are in no loop and no stray.
     """
 
-    loops: tuple[Loop, ...]
-    strays: tuple[Stray, ...]
+    loops: tuple[JoinedLoop, ...]
+    strays: tuple[OpenChain, ...]
     remarks: tuple[str, ...]
     junctions: tuple[Junction, ...] = ()
     tangled: tuple[Chain, ...] = ()
 
 
-def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None) -> Joined:
-    """Join chains in mm, without segments of zero length, end to end across gaps up to a tolerance.
+def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None) -> JoinedChains:
+    """Join chains in mm, without segments of zero length, end to end across gaps up to a tolerance in mm.
 
-    ``budget`` is what reading the file may still take; None is no limit. Refuses so many ends within the
-    tolerance that it cannot be meant.
+    ``budget`` is spent; None is no limit. Raises InputError for too many ends within the tolerance of each
+    other.
     """
     budget = budget or Budget(UNLIMITED)
     open_chains = [c for c in chains if not c.closed]
     loops = [make_closed_loop(c) for c in chains if c.closed]
-    node = end_nodes(open_chains)
+    node = number_end_points(open_chains)
     open_chains, node, repeated = drop_repeated_chains(open_chains, node, budget)
     partner, junctions = join_ends(open_chains, node, tolerance)
     is_tangled = find_chains_connected_to(node, partner, [end for _, ends in junctions for end in ends])
@@ -204,7 +218,7 @@ def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None
             if len(whole.bulges) > 2 or any(whole.bulges):
                 loops.append(make_closed_loop(whole))
         else:
-            strays.append(Stray(whole, members[0].entity, members[-1].entity))
+            strays.append(OpenChain(whole, members[0].entity, members[-1].entity))
     loops, repeated_loops = drop_repeated_loops(loops)
     repeated += repeated_loops
     remarks = []
@@ -218,13 +232,21 @@ def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None
         remarks.append(f"Closed {format_count(len(gaps), 'gap', 'gaps')} between ends: {places}.")
     tangled = tuple(chain for chain, tangles in zip(open_chains, is_tangled, strict=True) if tangles)
     met = tuple(junction for junction, _ in junctions)
-    return Joined(tuple(loops), tuple(strays), tuple(remarks), met, tangled)
+    return JoinedChains(tuple(loops), tuple(strays), tuple(remarks), met, tangled)
 
 
 def find_chains_connected_to(
     node: NDArray[np.int64], partner: Sequence[int], ends: Sequence[int]
 ) -> list[bool]:
-    """Return which chains are connected, through common ends, to a chain with one of these ends."""
+    """Return for each chain whether it is connected to one
+    of some ends, through common points and joined ends.
+
+    Parameters
+    ----------
+    node : (2 N,) the point at which each end lies; end 2 i is the first point of chain i, 2 i + 1 its last.
+    partner : the end joined to each end, or -1.
+    ends : indices of ends.
+    """
     count = len(node) // 2
     if not ends:
         return [False] * count
@@ -236,13 +258,18 @@ def find_chains_connected_to(
     return [int(one) in tangled for one in name]
 
 
-def make_closed_loop(chain: Chain) -> Loop:
+def make_closed_loop(chain: Chain) -> JoinedLoop:
+    """Return a closed chain as a loop."""
     rows = [(x, y, bulge) for (x, y), bulge in zip(chain.points[:-1], chain.bulges, strict=True)]
-    return Loop(np.array(rows, dtype=np.float64), chain.labels)
+    return JoinedLoop(np.array(rows, dtype=np.float64), chain.labels)
 
 
-def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
-    """Return (2 N,) numbers of the points at which the ends of N chains lie; ends within 1e-9 mm share one."""
+def number_end_points(chains: Sequence[Chain]) -> NDArray[np.int64]:
+    """Return (2 N,) the node (numbered point) of each end of N chains; ends within 1e-9 mm share one.
+
+    Ends are numbered 2 i and 2 i + 1 for the first and last point of chain i; a node's number is its smallest
+    end.
+    """
     ends = np.array([p for c in chains for p in (c.points[0], c.points[-1])], dtype=np.float64).reshape(-1, 2)
     return group_by_pairs(len(ends), close_pairs(ends, SAME_POINT))
 
@@ -250,7 +277,11 @@ def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
 def drop_repeated_chains(
     chains: Sequence[Chain], node: NDArray[np.int64], budget: Budget
 ) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
-    """Keep one of chains that were drawn twice; also the kept ones' nodes, and the others' names."""
+    """Return the chains without those drawn twice, the nodes
+    (2 N,) of the kept ones' ends, and phrases on the dropped.
+
+    ``node`` is from :func:`number_end_points`; ``budget`` is spent.
+    """
     between: defaultdict[tuple[int, int, int], list[int]] = defaultdict(list)
     kept: list[int] = []
     repeated: list[str] = []
@@ -273,7 +304,9 @@ def drop_repeated_chains(
 
 
 def run_alike(a: Chain, b: Chain) -> bool:
-    """Return whether two chains run through the same points and arcs, in either direction."""
+    """Return whether two chains with as many segments run
+    through the same points and arcs, in either direction.
+    """
     return any(
         all(dist(p, q) <= SAME_POINT for p, q in zip(a.points, c.points, strict=True))
         and all(abs(p - q) <= SAME_POINT for p, q in zip(a.bulges, c.bulges, strict=True))
@@ -281,9 +314,9 @@ def run_alike(a: Chain, b: Chain) -> bool:
     )
 
 
-def drop_repeated_loops(loops: Iterable[Loop]) -> tuple[list[Loop], list[str]]:
-    """Keep one of loops that were drawn twice (same vertices and arcs); also the names of those left out."""
-    kept: dict[object, Loop] = {}
+def drop_repeated_loops(loops: Iterable[JoinedLoop]) -> tuple[list[JoinedLoop], list[str]]:
+    """Return the loops without those drawn twice (same vertices and arcs), and phrases on the dropped."""
+    kept: dict[object, JoinedLoop] = {}
     repeated = []
     for loop in loops:
         xy, bulges = np.round(loop.vertices[:, :2], 6) + 0.0, np.round(np.abs(loop.vertices[:, 2]), 6)
@@ -302,7 +335,10 @@ def drop_repeated_loops(loops: Iterable[Loop]) -> tuple[list[Loop], list[str]]:
 
 
 def compute_arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return (N, 2) middle points of the segments of a loop: half a chord times the bulge to the chord's right."""
+    """Return the middle points (N, 2) of the segments of a loop (N, 3).
+
+    An arc's middle is half a chord times the bulge to the right of the chord's middle.
+    """
     start, end = vertices[:, :2], np.roll(vertices[:, :2], -1, axis=0)
     chord = end - start
     right = np.column_stack((chord[:, 1], -chord[:, 0]))
@@ -313,7 +349,16 @@ def compute_arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 def join_ends(
     chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float
 ) -> tuple[list[int], list[tuple[Junction, Sequence[int]]]]:
-    """Return the end that every end is joined to, or -1, and the junctions with their ends."""
+    """Return for each end the end joined to it, or -1, and
+    the junctions (three ends or more), each with its ends.
+
+    Ends are numbered 2 i and 2 i + 1 for the first and last point of chain i.
+
+    Parameters
+    ----------
+    node : point of each end, see :func:`number_end_points`.
+    tolerance : largest gap to close, in mm.
+    """
     partner = [-1] * len(node)
     junctions = list[tuple[Junction, Sequence[int]]]()
     at_node: defaultdict[int, list[int]] = defaultdict(list)
@@ -332,13 +377,20 @@ def join_ends(
 def close_gaps(
     chains: Sequence[Chain], partner: list[int], loose: Sequence[int], tolerance: float
 ) -> list[tuple[Junction, Sequence[int]]]:
-    """Join open ends across gaps, nearest first, writing into ``partner``.
+    """Join open ends across gaps, nearest first: ``partner[i]`` becomes the end joined to end i.
 
-    Returns the junctions where a third end lies within the tolerance of a gap's ends; refuses very many.
+    Return the junctions, each with its ends, where a third end lies within the tolerance of a joined one.
+    Raises InputError for too many ends within the tolerance.
+
+    Parameters
+    ----------
+    partner : the end joined to each end, or -1; changed in place.
+    loose : the ends to join. Ends are numbered 2 i and 2 i + 1 for the first and last point of chain i.
+    tolerance : largest gap in mm.
     """
     if not loose or tolerance <= 0:
         return []
-    points = np.array([end_point(chains, end) for end in loose])
+    points = np.array([get_end_point(chains, end) for end in loose])
     pairs = close_pairs(points, tolerance)
     if not len(pairs):
         return []
@@ -361,24 +413,35 @@ def close_gaps(
 
 
 def measure_chain_length(chain: Chain) -> float:
-    """Return a chain's length in mm, arcs counted a little short (chord to the middle point, twice)."""
+    """Return a chain's length in mm, with two chords in place of each arc, so a little short."""
     return sum(
         hypot(q[0] - p[0], q[1] - p[1]) * hypot(1.0, bulge)
         for p, q, bulge in zip(chain.points, chain.points[1:], chain.bulges, strict=False)
     )
 
 
-def end_point(chains: Sequence[Chain], end: int) -> Point:
+def get_end_point(chains: Sequence[Chain], end: int) -> Point:
+    """Return the point of an end; ends 2 i and 2 i + 1 are the first and last point of chain i."""
     return chains[end // 2].points[-(end % 2)]
 
 
 def make_junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
+    """Return the junction of some ends, at the first one's
+    point; ``within`` says in words how far apart they are.
+
+    Ends 2 i and 2 i + 1 are the first and last point of chain i.
+    """
     names = tuple(chains[end // 2].labels[-(end % 2)] for end in ends)
-    return Junction(end_point(chains, ends[0]), names, within)
+    return Junction(get_end_point(chains, ends[0]), names, within)
 
 
 def list_joined_runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, bool]], bool]]:
-    """Yield the runs of joined chains: (chain, whether it is run backwards) in order, and whether the run closes."""
+    """Yield (run, is closed) for each run of joined chains;
+    the run is a list of (chain index, is backwards) in order.
+
+    ``partner[e]`` is the end joined to end e, or -1; ends 2 i and 2 i + 1 are the first and last point of
+    chain i.
+    """
     done = [False] * (len(partner) // 2)
     starts = [end for end, other in enumerate(partner) if other < 0]
     for start in [*starts, *range(0, len(partner), 2)]:
@@ -394,7 +457,11 @@ def list_joined_runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, b
 
 
 def connect_chains(members: Sequence[Chain], is_closed: bool, gaps: list[tuple[Point, float]]) -> Chain:
-    """Return one chain from chains in running order; ends that differ move to their mean, and each gap is noted."""
+    """Return one chain from chains in running order.
+
+    Ends that differ are moved to their mean, and (point, size in mm) of each such gap is appended to
+    ``gaps``.
+    """
     firsts = [c.points[0] for c in members]
     lasts = [c.points[-1] for c in members]
     for k in range(0 if is_closed else 1, len(members)):

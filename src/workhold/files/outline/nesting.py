@@ -1,9 +1,10 @@
-"""Sorting closed loops into parts: an outer loop, its holes, and the parts inside the holes.
+"""Sorting of closed loops into parts: an outer loop, its holes, and the parts inside the holes.
 
 Glossary
 --------
-depth : how many other loops a loop lies in; even for an outer loop, odd for a hole.
+depth : number of other loops a loop lies in; even for an outer loop, odd for a hole.
 part : an outer loop with the holes directly in it. An island inside a hole is a part of its own.
+nest : outlines that share lines, see ``outline.shared_lines``.
 """
 
 from __future__ import annotations
@@ -17,18 +18,18 @@ from numpy.typing import NDArray
 from workhold.conventions import TOUCHING
 from workhold.errors import InputError, make_printable, shorten_middle
 from workhold.files.budget import UNLIMITED, Budget
-from workhold.files.outline.joining import Loop
+from workhold.files.outline.joining import JoinedLoop
 from workhold.geometry.loop import (
-    Comparisons,
+    ComparisonBudget,
     LoopShape,
     compute_signed_area,
-    loop_segments,
+    make_loop_segments,
     refuse_meeting_loops,
     reverse_vertices,
 )
-from workhold.geometry.segment import Segment, box_around, segment_rows
+from workhold.geometry.segment import Segment, compute_box_around, make_segment_rows
 from workhold.geometry.subdivision import subdivide
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 
 __all__ = ["DrawnPart", "join_loops_as_one_part", "nest_loops", "boxes_meet", "refuse_loops_across"]
 
@@ -50,15 +51,17 @@ class DrawnPart:
     """
 
     number: int
-    loops: tuple[Loop, ...]
+    loops: tuple[JoinedLoop, ...]
     area: float
     bounds: tuple[float, float, float, float]
 
     @property
     def segment_count(self) -> int:
+        """Number of segments of all its loops."""
         return sum(len(loop.labels) for loop in self.loops)
 
     def __str__(self) -> str:
+        """Return the part's number, size, place and holes in words."""
         x0, y0, x1, y1 = self.bounds
         holes = len(self.loops) - 1
         with_holes = f"{holes} hole{'' if holes == 1 else 's'}" if holes else "no holes"
@@ -68,28 +71,30 @@ class DrawnPart:
 
 @frozen
 class MeasuredLoop:
-    """A loop as geometry: its segments counter-clockwise, their kernel rows, area and bounding box."""
+    """A loop as geometry: its segments counter-clockwise, their kernel rows, area in mm² and bounding box."""
 
-    loop: Loop
+    loop: JoinedLoop
     segments: tuple[Segment, ...]
     rows: NDArray[np.float64]
     area: float
     box: tuple[float, float, float, float]
 
     @classmethod
-    def from_loop(cls, loop: Loop) -> MeasuredLoop:
-        segments = loop_segments(loop.vertices)
+    def from_loop(cls, loop: JoinedLoop) -> MeasuredLoop:
+        """Measure a loop that runs either way."""
+        segments = make_loop_segments(loop.vertices)
         area = compute_signed_area(segments)
         if area < 0:
-            segments = loop_segments(reverse_vertices(loop.vertices))
-        return cls(loop, segments, segment_rows(segments), abs(area), box_around(segments))
+            segments = make_loop_segments(reverse_vertices(loop.vertices))
+        return cls(loop, segments, make_segment_rows(segments), abs(area), compute_box_around(segments))
 
 
-def nest_loops(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart, ...]:
-    """Sort loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later.
+def nest_loops(loops: Sequence[JoinedLoop], budget: Budget | None = None) -> tuple[DrawnPart, ...]:
+    """Return the parts that loops make, by decreasing area;
+    each is an outer loop with the holes directly in it.
 
-    Outlines of one nest lie beside each other, though their borders touch. What reading the file may still
-    take is left in ``budget``; None is no limit.
+    Loops that cross are sorted somehow, and refused later. Outlines that share lines (of one nest) are
+    separate parts, although their borders touch. ``budget`` is spent; None is no limit.
     """
     budget = budget or Budget(UNLIMITED)
     rings = sorted(map(MeasuredLoop.from_loop, loops), key=lambda r: -r.area)
@@ -128,17 +133,17 @@ def nest_loops(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[Dra
 
 
 def lies_inside(inner: MeasuredLoop, outer: MeasuredLoop) -> bool:
-    """Return whether a loop lies in another one, which may share lines with it from either side."""
+    """Return whether a loop lies inside another one, also where they share lines."""
     x, y = inner.segments[0].start
-    if outline_distances(np.array([(x, y)]), outer.rows)[0] > TOUCHING:
+    if measure_outline_distances(np.array([(x, y)]), outer.rows)[0] > TOUCHING:
         return bool(is_inside(x, y, outer.rows))
     # It begins on the border of the other: what is farthest from that decides.
     places = np.array([p for one in inner.segments for p in (one.start, one.middle)])
-    farthest = places[int(outline_distances(places, outer.rows).argmax())]
+    farthest = places[int(measure_outline_distances(places, outer.rows).argmax())]
     return bool(is_inside(float(farthest[0]), float(farthest[1]), outer.rows))
 
 
-def join_loops_as_one_part(loops: Sequence[Loop]) -> DrawnPart:
+def join_loops_as_one_part(loops: Sequence[JoinedLoop]) -> DrawnPart:
     """Return the loops of one workpiece as one part, also where it has several outer ones."""
     parts = nest_loops(loops)
     x0, y0, x1, y1 = zip(*(part.bounds for part in parts), strict=True)
@@ -148,14 +153,14 @@ def join_loops_as_one_part(loops: Sequence[Loop]) -> DrawnPart:
 
 
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Budget | None = None) -> None:
-    """Refuse a part that loops of other parts cross or touch: holes that were drawn half outside.
+    """Raise InputError where loops of other parts cross or touch a part, as holes drawn half outside do.
 
-    Another outline may lie along its own, on the other side: neighbours of a nest that share a cut.
+    Another outer loop may lie along the part's own from outside, as neighbours of a nest do that share a cut.
     """
     budget = budget or Budget(UNLIMITED)
-    comparisons = Comparisons("the part")
+    comparisons = ComparisonBudget("the part")
     own = [MeasuredLoop.from_loop(loop) for loop in part.loops]
-    shapes = [LoopShape.of(loop_segments(one.loop.vertices)) for one in own]
+    shapes = [LoopShape.from_segments(make_loop_segments(one.loop.vertices)) for one in own]
     for other in others:
         budget.count_steps()
         if not boxes_meet(part.bounds, other.bounds):
@@ -168,7 +173,7 @@ def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Bu
                 try:
                     refuse_meeting_loops(
                         shape,
-                        LoopShape.of(loop_segments(theirs.loop.vertices)),
+                        LoopShape.from_segments(make_loop_segments(theirs.loop.vertices)),
                         ours.loop.labels.__getitem__,
                         theirs.loop.labels.__getitem__,
                         comparisons,
@@ -180,11 +185,16 @@ def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Bu
 
 
 def touch_from_outside(one: MeasuredLoop, other: MeasuredLoop) -> bool:
-    """Return whether two loops touch each other from outside: no piece of either lies in the other."""
-    carriers = subdivide([*one.segments, *other.segments], comparisons=Comparisons("the part"))
+    """Return whether two loops touch each other only from
+    outside: no piece of either lies inside the other.
+    """
+    carriers = subdivide([*one.segments, *other.segments], comparisons=ComparisonBudget("the part"))
     for carrier in carriers:
-        for low, high in carrier.pieces():
-            (x, y), (nx, ny) = carrier.at((low + high) / 2), carrier.left((low + high) / 2)
+        for low, high in carrier.list_covered_pieces():
+            (x, y), (nx, ny) = (
+                carrier.compute_point((low + high) / 2),
+                carrier.compute_left_normal((low + high) / 2),
+            )
             for side in (-BESIDE, BESIDE):
                 place = x + side * nx, y + side * ny
                 if is_inside(*place, one.rows) and is_inside(*place, other.rows):
@@ -193,12 +203,15 @@ def touch_from_outside(one: MeasuredLoop, other: MeasuredLoop) -> bool:
 
 
 def boxes_meet(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Return whether two bounding boxes meet."""
+    """Return whether two bounding boxes (x0, y0, x1, y1) overlap or touch."""
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
 def choose_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
-    """Return the part of a number, or the largest; refuse a number of no part, and a name."""
+    """Return the part of a number, or the first, which is the largest, for None.
+
+    Raises InputError for a number that no part has, and for a name.
+    """
     if number is None:
         return parts[0]
     if isinstance(number, str):

@@ -1,4 +1,4 @@
-"""Drawn lines and arcs as a map of the plane: the outlines that neighbours share lines with, and doubled lines.
+"""Drawn lines and arcs as a planar map, to find outlines of neighbours that share lines, and doubled lines.
 
 Where three ends or more meet, an outline could go on in more than one way, but together the lines still bound
 regions: the parts of a nest along their common cuts. Lines that lie partly on each other count once.
@@ -11,7 +11,7 @@ edge : a piece of a line or an arc from node to node, on which no other node lie
 half-edge : an edge run one way: number 2 e runs edge e forward, 2 e + 1 backward.
 face : a region that half-edges bound, with the region on their left (doubly connected edge list; de Berg et
     al., "Computational Geometry", chapter 2).
-dangle : an edge with the same region on both sides, such as one that leads nowhere.
+dangle : an edge with the same region on both sides, such as a dead end.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.files.outline.chain import Chain, compute_moved_bulge
-from workhold.files.outline.joining import Loop, close_pairs, group_by_pairs
-from workhold.geometry.loop import Comparisons, compute_signed_area, loop_segments
-from workhold.geometry.segment import Arc, Point, Segment, bounding_box, make_segment_from_bulge
-from workhold.geometry.subdivision import CutCarrier, subdivide
+from workhold.files.outline.joining import JoinedLoop, close_pairs, group_by_pairs
+from workhold.geometry.loop import ComparisonBudget, compute_signed_area, make_loop_segments
+from workhold.geometry.segment import Arc, Point, Segment, compute_bounding_box, make_segment_from_bulge
+from workhold.geometry.subdivision import CutCurve, subdivide
 
-__all__ = ["Cluster", "make_clusters"]
+__all__ = ["CurveCluster", "make_clusters"]
 
 # More lines and arcs are no nest, and pairs of them that come near each other.
 MOST_SEGMENTS, MOST_PAIRS = 20_000, 1_000_000
@@ -39,14 +39,14 @@ NODE = 4e-6
 
 
 @frozen
-class Edge:
+class PlaneEdge:
     """A piece of what was drawn, between two nodes.
 
     Parameters
     ----------
-    first, last : numbers of its nodes.
+    first, last : indices of its nodes.
     bulge : run from the first to the last.
-    owners : numbers of the segments that it is a piece of.
+    owners : indices of the segments that it is a piece of.
     """
 
     first: int
@@ -56,20 +56,20 @@ class Edge:
 
 
 @frozen
-class Cluster:
-    """Lines and arcs that hang together.
+class CurveCluster:
+    """Connected lines and arcs.
 
     Parameters
     ----------
     faces : the closed outlines that they make, each counter-clockwise.
     open : the pieces that bound none.
-    chains : numbers of the chains that they are of.
-    shared : for every line or arc between two faces its label, and its ends.
-    doubled : for every stretch on which two were drawn their labels, and its ends.
+    chains : indices of the chains that they are of.
+    shared : label, start and end of every line or arc between two faces.
+    doubled : both labels, start and end of every stretch on which two were drawn.
     box : (smallest x, smallest y, largest x, largest y) in mm.
     """
 
-    faces: tuple[Loop, ...]
+    faces: tuple[JoinedLoop, ...]
     open: tuple[Chain, ...]
     chains: frozenset[int]
     shared: tuple[tuple[str, Point, Point], ...]
@@ -77,10 +77,11 @@ class Cluster:
     box: tuple[float, float, float, float]
 
 
-def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
-    """Return the lines and arcs of some chains, cut where they meet, by what hangs together; refuse too many.
+def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[CurveCluster]:
+    """Return the connected groups of the lines and arcs of some chains, cut where they meet.
 
-    Ends that are within the tolerance in mm of others, or of a line or an arc, lie on it.
+    Ends that are within the tolerance in mm of others, or of a line or an arc, are taken to lie on it. Raises
+    InputError for too many segments.
     """
     segments, labels, numbers = list[Segment](), list[str](), list[int]()
     for number, chain in enumerate(chains):
@@ -89,7 +90,7 @@ def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
             label for label, p, q in zip(chain.labels, chain.points, chain.points[1:], strict=False) if p != q
         ]
         numbers += [number] * (len(segments) - len(numbers))
-    comparisons = Comparisons("the drawing", MOST_PAIRS)
+    comparisons = ComparisonBudget("the drawing", MOST_PAIRS)
     if len(segments) > MOST_SEGMENTS:
         comparisons.spend(MOST_PAIRS + 1)
     points, edges = make_plane_map(segments, tolerance, comparisons)
@@ -101,18 +102,22 @@ def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
 
 
 def make_plane_map(
-    segments: Sequence[Segment], tolerance: float, comparisons: Comparisons
-) -> tuple[NDArray[np.float64], list[Edge]]:
-    """Return the (N, 2) nodes of some lines and arcs, and the edges between them."""
+    segments: Sequence[Segment], tolerance: float, comparisons: ComparisonBudget
+) -> tuple[NDArray[np.float64], list[PlaneEdge]]:
+    """Return points (N, 2) in mm, and the edges into which
+    segments are cut where they meet, between some of the points.
+
+    Ends within the tolerance in mm of another segment are taken to lie on it. ``comparisons`` is spent.
+    """
     touching = find_ends_on_segments(segments, max(tolerance, NODE), comparisons)
     carriers = subdivide(segments, [(segments[k], point) for k, point in touching], comparisons)
     pieces = [
         (carrier, low, high, find_owners_at(carrier, (low + high) / 2))
         for carrier in carriers
-        for low, high in carrier.pieces()
+        for low, high in carrier.list_covered_pieces()
     ]
     drawn = [end for segment in segments for end in (segment.start, segment.end)]
-    ends = [carrier.at(position) for carrier, low, high, _ in pieces for position in (low, high)]
+    ends = [carrier.compute_point(position) for carrier, low, high, _ in pieces for position in (low, high)]
     places = np.array([*drawn, *ends], dtype=np.float64).reshape(-1, 2)
     # A group is named by its smallest number: what was drawn comes before what was computed.
     pairs = close_pairs(places, NODE)
@@ -123,7 +128,7 @@ def make_plane_map(
     pairs = np.concatenate([pairs, np.array(across, dtype=np.int64).reshape(-1, 2)])
     node = group_by_pairs(len(places), pairs)
     first_end = len(drawn)
-    edges: dict[tuple[int, int], list[tuple[Edge, Point]]] = defaultdict(list)
+    edges: dict[tuple[int, int], list[tuple[PlaneEdge, Point]]] = defaultdict(list)
     for k, (carrier, low, high, owners) in enumerate(pieces):
         one, other = int(node[first_end + 2 * k]), int(node[first_end + 2 * k + 1])
         if one == other:
@@ -135,29 +140,29 @@ def make_plane_map(
             bulge = compute_moved_bulge(start, end, bulge, new[0], new[1])
         if one > other:
             one, other, bulge = other, one, -bulge
-        middle = carrier.at((low + high) / 2)
+        middle = carrier.compute_point((low + high) / 2)
         twins = edges[one, other]
         comparisons.spend(len(twins))
         twin = next((at for at, (_, place) in enumerate(twins) if dist(place, middle) <= tolerance), None)
         if twin is None:
-            twins.append((Edge(one, other, bulge + 0.0, owners), middle))
+            twins.append((PlaneEdge(one, other, bulge + 0.0, owners), middle))
         else:
             kept, place = twins[twin]
-            twins[twin] = Edge(one, other, kept.bulge, (*kept.owners, *owners)), place
+            twins[twin] = PlaneEdge(one, other, kept.bulge, (*kept.owners, *owners)), place
     found = [edge for twins in edges.values() for edge, _ in twins]
     return places, close_gaps(places, found, tolerance)
 
 
 def find_ends_on_segments(
-    segments: Sequence[Segment], tolerance: float, comparisons: Comparisons
+    segments: Sequence[Segment], tolerance: float, comparisons: ComparisonBudget
 ) -> list[tuple[int, Point]]:
-    """Return the ends of segments that lie on another one, away from its ends, to a tolerance: its number and
-    the end.
+    """Return (segment index, end point) for ends that lie on
+    another segment within a tolerance in mm, not at its ends.
     """
     ends = np.unique(
         np.array([end for one in segments for end in (one.start, one.end)]).reshape(-1, 2), axis=0
     )
-    boxes = np.array([bounding_box(one) for one in segments]).reshape(-1, 4)
+    boxes = np.array([compute_bounding_box(one) for one in segments]).reshape(-1, 4)
     boxes += np.array([-tolerance, -tolerance, tolerance, tolerance])
     found = []
     for k, (x0, y0, x1, y1) in enumerate(boxes):
@@ -174,18 +179,19 @@ def find_ends_on_segments(
         comparisons.spend(len(near))
         slack = tolerance if not isinstance(segment, Arc) else tolerance / segment.radius
         for x, y in near.tolist():
-            if abs(segment.parameter((x, y))) < segment.half_extent - slack:
+            if abs(segment.find_parameter((x, y))) < segment.half_extent - slack:
                 found.append((k, (x, y)))
     return found
 
 
 def find_nearest_place(places: NDArray[np.float64], segment: Segment, point: Point) -> int:
-    """Return the number of the place nearest to the foot of a point on a segment."""
-    foot = segment.at(segment.parameter(point))
+    """Return the index of the place (N, 2) nearest to the foot of a point on a segment."""
+    foot = segment.compute_point(segment.find_parameter(point))
     return int(np.hypot(*(places - foot).T).argmin())
 
 
-def find_owners_at(carrier: CutCarrier, position: float) -> tuple[int, ...]:
+def find_owners_at(carrier: CutCurve, position: float) -> tuple[int, ...]:
+    """Return the indices of the segments that cover a position of a line or circle."""
     turns = (0.0, -2 * pi, 2 * pi) if isinstance(carrier.segment, Arc) else (0.0,)
     return tuple(
         owner
@@ -194,13 +200,17 @@ def find_owners_at(carrier: CutCarrier, position: float) -> tuple[int, ...]:
     )
 
 
-def compute_bulge_between(carrier: CutCarrier, low: float, high: float) -> float:
-    """Return the bulge of a carrier's piece, run as its positions grow: counter-clockwise on a circle."""
+def compute_bulge_between(carrier: CutCurve, low: float, high: float) -> float:
+    """Return the bulge of a piece of a line or circle, run
+    as its positions grow: counter-clockwise on a circle.
+    """
     return float(np.tan((high - low) / 4)) if isinstance(carrier.segment, Arc) else 0.0
 
 
-def close_gaps(places: NDArray[np.float64], edges: list[Edge], tolerance: float) -> list[Edge]:
-    """Return the edges, with ends that lead nowhere moved onto the nearest node within a tolerance."""
+def close_gaps(places: NDArray[np.float64], edges: list[PlaneEdge], tolerance: float) -> list[PlaneEdge]:
+    """Return the edges with each dead end moved onto the nearest
+    node within a tolerance in mm, without edges that vanish.
+    """
     degree = count_edges_at_nodes(edges)
     loose = [node for node, count in degree.items() if count == 1]
     nodes = np.array(sorted(degree), dtype=np.int64)
@@ -220,12 +230,12 @@ def close_gaps(places: NDArray[np.float64], edges: list[Edge], tolerance: float)
         if (first, last) != (edge.first, edge.last):
             ends = [tuple(places[node].tolist()) for node in (edge.first, edge.last, first, last)]
             bulge = compute_moved_bulge(ends[0], ends[1], bulge, ends[2], ends[3])
-        out.append(Edge(first, last, bulge, edge.owners))
+        out.append(PlaneEdge(first, last, bulge, edge.owners))
     return out
 
 
-def count_edges_at_nodes(edges: Iterable[Edge]) -> dict[int, int]:
-    """Return how many edges end at each node."""
+def count_edges_at_nodes(edges: Iterable[PlaneEdge]) -> dict[int, int]:
+    """Return the number of edges that end at each node, by node."""
     degree: dict[int, int] = defaultdict(int)
     for edge in edges:
         degree[edge.first] += 1
@@ -233,8 +243,8 @@ def count_edges_at_nodes(edges: Iterable[Edge]) -> dict[int, int]:
     return degree
 
 
-def group_connected_edges(count: int, edges: Sequence[Edge]) -> list[list[int]]:
-    """Return the numbers of the edges that hang together."""
+def group_connected_edges(count: int, edges: Sequence[PlaneEdge]) -> list[list[int]]:
+    """Return the indices of the edges of each connected group; ``count`` is the number of nodes."""
     pairs = np.array([(edge.first, edge.last) for edge in edges], dtype=np.int64).reshape(-1, 2)
     name = group_by_pairs(count, pairs)
     members: dict[int, list[int]] = defaultdict(list)
@@ -243,8 +253,13 @@ def group_connected_edges(count: int, edges: Sequence[Edge]) -> list[list[int]]:
     return list(members.values())
 
 
-def trace_region_borders(points: NDArray[np.float64], edges: Sequence[Edge]) -> list[list[int]]:
-    """Return the half-edges of each region's border, without dangles; also of the region outside, run clockwise."""
+def trace_region_borders(points: NDArray[np.float64], edges: Sequence[PlaneEdge]) -> list[list[int]]:
+    """Return the border of each region that edges bound, as
+    half-edges in running order with the region on the left.
+
+    Half-edge 2 e runs edge e forward, 2 e + 1 backward. Edges with the same region on both sides are left
+    out. The unbounded region outside has borders too, run clockwise.
+    """
     kept = set(range(len(edges)))
     while True:
         kept = drop_loose_ends(edges, kept)
@@ -258,8 +273,8 @@ def trace_region_borders(points: NDArray[np.float64], edges: Sequence[Edge]) -> 
         kept -= dangles
 
 
-def drop_loose_ends(edges: Sequence[Edge], kept: set[int]) -> set[int]:
-    """Return the numbers of the edges that are left when those that lead nowhere are taken away, again and again."""
+def drop_loose_ends(edges: Sequence[PlaneEdge], kept: set[int]) -> set[int]:
+    """Return the indices of the kept edges without dead ends, which are removed until there are none."""
     at: dict[int, set[int]] = defaultdict(set)
     for k in kept:
         at[edges[k].first].add(k)
@@ -277,8 +292,14 @@ def drop_loose_ends(edges: Sequence[Edge], kept: set[int]) -> set[int]:
     return left
 
 
-def trace_closed_walks(points: NDArray[np.float64], edges: Sequence[Edge], kept: set[int]) -> list[list[int]]:
-    """Return the closed walks of half-edges, each followed by the one that turns farthest to the left at its end."""
+def trace_closed_walks(
+    points: NDArray[np.float64], edges: Sequence[PlaneEdge], kept: set[int]
+) -> list[list[int]]:
+    """Return closed walks of half-edges; at its end each
+    is followed by the one that turns farthest to the left.
+
+    Half-edge 2 e runs edge e forward, 2 e + 1 backward; only edges in ``kept`` are walked.
+    """
     leaving: dict[int, list[int]] = defaultdict(list)
     for k in sorted(kept):
         leaving[edges[k].first].append(2 * k)
@@ -303,18 +324,19 @@ def trace_closed_walks(points: NDArray[np.float64], edges: Sequence[Edge], kept:
     return walks
 
 
-def measure_edge_chord(points: NDArray[np.float64], edge: Edge) -> float:
+def measure_edge_chord(points: NDArray[np.float64], edge: PlaneEdge) -> float:
     """Return the distance between the ends of an edge in mm."""
     return float(np.hypot(*(points[edge.last] - points[edge.first])))
 
 
 def compute_edge_direction(
-    points: NDArray[np.float64], edges: Sequence[Edge], half: int, near: float
+    points: NDArray[np.float64], edges: Sequence[PlaneEdge], half: int, near: float
 ) -> float:
-    """Return the direction in radians in which a half-edge crosses the circle of some radius about its first
-    node.
+    """Return the direction in radians, in [0, 2 pi), in
+    which a half-edge crosses a circle about its first node.
 
-    Edges that are tangent at the node differ there by their curvature.
+    The circle has the radius ``near`` in mm: edges that are tangent at the node differ there by their
+    curvature. Half-edge 2 e runs edge e forward, 2 e + 1 backward.
     """
     edge = edges[half // 2]
     start, end = (edge.first, edge.last) if half % 2 == 0 else (edge.last, edge.first)
@@ -333,12 +355,20 @@ def compute_edge_direction(
 
 def make_cluster(
     points: NDArray[np.float64],
-    edges: Sequence[Edge],
+    edges: Sequence[PlaneEdge],
     walks: Sequence[Sequence[int]],
     members: Sequence[int],
     labels: Sequence[str],
     numbers: Sequence[int],
-) -> Cluster:
+) -> CurveCluster:
+    """Return the connected edges ``members`` with the closed outlines that they make.
+
+    Parameters
+    ----------
+    points : (N, 2) nodes.
+    walks : borders of all regions, see :func:`trace_region_borders`.
+    labels, numbers : label and chain index of each segment.
+    """
     own = set(members)
     place = [tuple(row) for row in points.tolist()]
     faces, inner = [], defaultdict[int, int](int)
@@ -348,12 +378,13 @@ def make_cluster(
             continue
         used.update(half // 2 for half in walk)
         loop = make_loop_from_walk(place, edges, walk, labels)
-        if compute_signed_area(loop_segments(loop.vertices)) > 0:
+        if compute_signed_area(make_loop_segments(loop.vertices)) > 0:
             faces.append(loop)
             for half in walk:
                 inner[half // 2] += 1
 
     def ends(k: int) -> tuple[Point, Point]:
+        """Return both nodes of an edge as points."""
         return place[edges[k].first], place[edges[k].last]
 
     shared = tuple((labels[edges[k].owners[0]], *ends(k)) for k in members if inner[k] == 2)
@@ -363,7 +394,7 @@ def make_cluster(
         if len(owners) > 1:
             doubled.append((labels[owners[0]], labels[owners[1]], *ends(k)))
     corners = np.array([place[node] for k in members for node in (edges[k].first, edges[k].last)])
-    return Cluster(
+    return CurveCluster(
         tuple(faces),
         tuple(open_chains(place, [edges[k] for k in members if k not in used], labels)),
         frozenset(numbers[owner] for k in members for owner in edges[k].owners),
@@ -374,19 +405,22 @@ def make_cluster(
 
 
 def make_loop_from_walk(
-    place: Sequence[Point], edges: Sequence[Edge], walk: Sequence[int], labels: Sequence[str]
-) -> Loop:
+    place: Sequence[Point], edges: Sequence[PlaneEdge], walk: Sequence[int], labels: Sequence[str]
+) -> JoinedLoop:
+    """Return a closed walk of half-edges (2 e runs edge e forward, 2 e + 1 backward) as a loop."""
     rows, names = [], []
     for half in walk:
         edge = edges[half // 2]
         start, bulge = (edge.first, edge.bulge) if half % 2 == 0 else (edge.last, -edge.bulge)
         rows.append((*place[start], bulge + 0.0))
         names.append(labels[edge.owners[0]])
-    return Loop(np.array(rows, dtype=np.float64), tuple(names))
+    return JoinedLoop(np.array(rows, dtype=np.float64), tuple(names))
 
 
-def open_chains(place: Sequence[Point], edges: Sequence[Edge], labels: Sequence[str]) -> Iterable[Chain]:
-    """Yield the edges that bound nothing as chains, joined where just two of them meet."""
+def open_chains(place: Sequence[Point], edges: Sequence[PlaneEdge], labels: Sequence[str]) -> Iterable[Chain]:
+    """Yield the given edges as chains, joined where just
+    two of them meet; closed rings among them are left out.
+    """
     at: dict[int, list[int]] = defaultdict(list)
     for k, edge in enumerate(edges):
         at[edge.first].append(k)

@@ -1,11 +1,12 @@
-"""The outlines of a drawing, also of neighbours that share lines, and the spots where none can be told.
+"""The outlines of a drawing, also of neighbours that share lines, and the spots where none can be determined.
 
 Glossary
 --------
 nest : outlines that share lines, as parts do that are cut apart by one common cut.
-bad spot : lines and arcs that hang together and could be an outline in more than one way. What it lies in
-    cannot be read; the rest can.
+bad spot : connected lines and arcs that could be an outline in more than one way. What contains it cannot be
+    read; the rest can.
 frame : a nest with whole parts inside one of its outlines, as a sheet's border with its title block is.
+cluster : connected lines and arcs, see ``outline.plane_map``.
 """
 
 from __future__ import annotations
@@ -28,14 +29,14 @@ from workhold.files.outline.chain import (
     strip_segment_number,
 )
 from workhold.files.outline.diagnostics import surrounds_box
-from workhold.files.outline.joining import Joined, Junction, Loop, Stray, join
+from workhold.files.outline.joining import JoinedChains, JoinedLoop, Junction, OpenChain, join
 from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, boxes_meet, choose_part, nest_loops
-from workhold.files.outline.plane_map import Cluster, make_clusters
+from workhold.files.outline.plane_map import CurveCluster, make_clusters
 from workhold.files.questions import PART_NUMBER
-from workhold.geometry.segment import Arc, Line, Segment, box_around
+from workhold.geometry.segment import Arc, Line, Segment, compute_box_around
 from workhold.kernels.base.distance import is_inside
 
-__all__ = ["BadSpot", "Outlines", "choose_outline", "make_outlines", "describe_bad_spots"]
+__all__ = ["AmbiguousSpot", "DrawnOutlines", "choose_outline", "make_outlines", "describe_bad_spots"]
 
 # mm. Cells no wider are graph paper or letters, and no parts.
 LEAST_CELL = 2.0
@@ -44,15 +45,15 @@ MOST_LARGER = 4.0
 
 
 @frozen
-class BadSpot:
-    """Where an outline could go on in more than one way.
+class AmbiguousSpot:
+    """A bad spot, where an outline could go on in more than one way.
 
     Parameters
     ----------
     junction : the first such point.
-    box : around all that hangs together with it: (smallest x, smallest y, largest x, largest y) in mm.
+    box : around all that is connected with it: (smallest x, smallest y, largest x, largest y) in mm.
     bounds_something : whether it can be the border of anything.
-    layer : that its lines are on, where the drawing has layers and it is one.
+    layer : of its lines, where they are all on one; "" otherwise.
     """
 
     junction: Junction
@@ -61,6 +62,7 @@ class BadSpot:
     layer: str = ""
 
     def __str__(self) -> str:
+        """Return the junction in words, with the layer."""
         return f"{self.junction}{f' on layer {self.layer!r}' if self.layer else ''}"
 
     @property
@@ -70,40 +72,51 @@ class BadSpot:
 
 
 @frozen
-class Outlines:
-    """What a drawing's lines and arcs are.
+class DrawnOutlines:
+    """The outlines that a drawing's lines and arcs make.
 
     Parameters
     ----------
     parts : by decreasing area.
-    strays : what is open.
-    spots : what cannot be told.
-    remarks : what was joined, left out and shared.
+    strays : open runs of chains.
+    spots : bad spots.
+    remarks : sentences on what was joined, left out and shared.
     """
 
     parts: tuple[DrawnPart, ...]
-    strays: tuple[Stray, ...]
-    spots: tuple[BadSpot, ...]
+    strays: tuple[OpenChain, ...]
+    spots: tuple[AmbiguousSpot, ...]
     remarks: tuple[str, ...]
 
 
-def make_outlines(chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget) -> Outlines:
+def make_outlines(
+    chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget
+) -> DrawnOutlines:
     """Return the outlines that chains make, in mm and without segments of zero length.
 
-    Gaps up to the tolerance in mm are closed. The drawing is the one that they are of, for the layers and the
-    looks of lines, and ``budget`` what reading the file may still take. Refuses a tolerance that cannot be
-    meant.
+    Raises InputError for a tolerance with too many ends within it.
+
+    Parameters
+    ----------
+    tolerance : largest gap to close, in mm.
+    drawing : that the chains are from, for the layers and the looks of lines.
+    budget : work and time that may still be spent on the file.
     """
     joined = join(chains, tolerance, budget)
     remarks = list(joined.remarks)
     if joined.strays and not joined.junctions:
         joined = drop_doubled_lines(joined, tolerance, remarks)
     if not joined.junctions:
-        return Outlines(nest_loops(joined.loops, budget), joined.strays, (), tuple(remarks))
+        return DrawnOutlines(nest_loops(joined.loops, budget), joined.strays, (), tuple(remarks))
     return untangle_outlines(joined, tolerance, drawing, budget, remarks)
 
 
-def drop_doubled_lines(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
+def drop_doubled_lines(joined: JoinedChains, tolerance: float, remarks: list[str]) -> JoinedChains:
+    """Return joined chains in which open lines or arcs
+    drawn on each other count once; ``remarks`` is extended.
+
+    Outlines that the remaining lines close are added to the loops.
+    """
     chains = [stray.chain for stray in joined.strays]
     if not run_along_each_other([segment for chain in chains for segment in chain.segments], tolerance):
         return joined
@@ -123,12 +136,16 @@ def drop_doubled_lines(joined: Joined, tolerance: float, remarks: list[str]) -> 
 
 
 def untangle_outlines(
-    joined: Joined, tolerance: float, drawing: Drawing, budget: Budget, remarks: list[str]
-) -> Outlines:
-    """Return the outlines of a drawing with points where one could go on in more than one way."""
-    junctions = JunctionsAt.from_junctions(joined.junctions, drawing.layers)
+    joined: JoinedChains, tolerance: float, drawing: Drawing, budget: Budget, remarks: list[str]
+) -> DrawnOutlines:
+    """Return the outlines of a drawing that has junctions (points where three ends or more meet).
+
+    Outlines that share lines become parts; spots where an outline could go on in more than one way are
+    collected. Arguments are those of :func:`make_outlines`, with the chains joined; ``remarks`` is extended.
+    """
+    junctions = JunctionIndex.from_junctions(joined.junctions, drawing.layers)
     tangled = list(joined.tangled)
-    around = box_around([segment for chain in tangled for segment in chain.segments])
+    around = compute_box_around([segment for chain in tangled for segment in chain.segments])
     near = [loop for loop in joined.loops if boxes_meet(compute_loop_box(loop), around)]
     extra = [*(stray.chain for stray in joined.strays), *map(make_chain_from_loop, near)]
     clusters = [
@@ -138,7 +155,7 @@ def untangle_outlines(
     ]
     clusters.sort(key=lambda one: (one.box[0] - one.box[2]) * (one.box[3] - one.box[1]))
     loops, strays = list(joined.loops), list(joined.strays)
-    spots, nests = list[BadSpot](), list[Cluster]()
+    spots, nests = list[AmbiguousSpot](), list[CurveCluster]()
     known = set[int]()
     for one in clusters:
         known |= one.chains
@@ -165,7 +182,7 @@ def untangle_outlines(
     for k, chain in enumerate(tangled):
         if k not in known:
             # There is too much of it to look at.
-            spots += junctions.find_bad_spots(chain.labels, box_around(chain.segments), True)
+            spots += junctions.find_bad_spots(chain.labels, compute_box_around(chain.segments), True)
     parts = nest_loops(loops, budget)
     frames = {number for number in range(1, len(nests) + 1) if is_frame(number, parts)}
     if frames:
@@ -179,11 +196,11 @@ def untangle_outlines(
             if number in frames
             else describe_shared_lines(one)
         )
-    return Outlines(parts, tuple(strays), tuple(join_bad_spots(spots)), tuple(remarks))
+    return DrawnOutlines(parts, tuple(strays), tuple(join_bad_spots(spots)), tuple(remarks))
 
 
-def try_to_make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
-    """Return what hangs together; nothing where there is too much to look at."""
+def try_to_make_clusters(chains: Sequence[Chain], tolerance: float) -> list[CurveCluster]:
+    """Return the connected groups of lines and arcs; [] where there are too many."""
     try:
         return make_clusters(chains, tolerance)
     except OverBudgetError:
@@ -192,11 +209,13 @@ def try_to_make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Clus
         return []
 
 
-def is_nest(one: Cluster, drawing: Drawing) -> bool:
-    """Return whether lines that hang together are outlines that share some: on one layer, and larger than
-    letters.
+def is_nest(one: CurveCluster, drawing: Drawing) -> bool:
+    """Return whether connected lines are outlines that share
+    some of them, as parts cut apart by common cuts do.
 
-    A shared line that looks like no other line of the outlines is a bend or a marking rather than a cut.
+    They must be on one layer, larger than letters, and not a single outline with open pieces. A shared line
+    that is drawn unlike all other lines of the outlines is a bend or a marking rather than a cut: then the
+    answer is False.
     """
     if not one.faces or (len(one.faces) == 1 and one.open):
         return False
@@ -210,15 +229,19 @@ def is_nest(one: Cluster, drawing: Drawing) -> bool:
     return len(used) == 1 and size > LEAST_CELL
 
 
-def lies_in_material(one: Cluster, loops: Sequence[Loop]) -> bool:
-    """Return whether lines that hang together lie inside a part, where they are holes."""
+def lies_in_material(one: CurveCluster, loops: Sequence[JoinedLoop]) -> bool:
+    """Return whether connected lines lie inside the material of a part, where their outlines are holes."""
     x, y, _ = one.faces[0].vertices[0]
     around = [loop for loop in loops if surrounds_box(compute_loop_box(loop), one.box)]
     return sum(is_inside(float(x), float(y), MeasuredLoop.from_loop(loop).rows) for loop in around) % 2 == 1
 
 
 def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
-    """Return whether whole parts lie in a hole of an outline of a nest."""
+    """Return whether outlines that share lines are a frame, such
+    as a sheet's border: a whole part lies in a hole of one.
+
+    ``number`` is that of the outlines' nest; parts of the same nest do not count.
+    """
     for part in parts:
         if part.loops[0].nest != number:
             continue
@@ -232,14 +255,14 @@ def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
 
 
 @frozen
-class JunctionsAt:
-    """The junctions of a drawing, by the labels of what ends there.
+class JunctionIndex:
+    """The junctions of a drawing, found by the labels of the segments that end there.
 
     Parameters
     ----------
     junctions : in their order.
-    first : number of the first one of each label.
-    layers : of each, where it is one, or nothing.
+    first : index of the first junction of each label.
+    layers : for each junction the layer of its segments; "" where they are on several.
     """
 
     junctions: tuple[Junction, ...]
@@ -247,8 +270,8 @@ class JunctionsAt:
     layers: tuple[str, ...]
 
     @classmethod
-    def from_junctions(cls, junctions: Sequence[Junction], layers: Mapping[str, str]) -> JunctionsAt:
-        """Collect the junctions of a drawing whose segments are on some layers."""
+    def from_junctions(cls, junctions: Sequence[Junction], layers: Mapping[str, str]) -> JunctionIndex:
+        """Make the index; ``layers`` gives the layer of each segment by its label."""
         first = dict[str, int]()
         alone = list[str]()
         for number, junction in enumerate(junctions):
@@ -260,16 +283,26 @@ class JunctionsAt:
 
     def find_bad_spots(
         self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
-    ) -> list[BadSpot]:
+    ) -> list[AmbiguousSpot]:
+        """Return a list with the ambiguous spot at the first
+        junction at which one of some segments ends; [] without one.
+
+        Parameters
+        ----------
+        labels : of the segments.
+        box, bounds_something : see :class:`AmbiguousSpot`.
+        """
         number = min((self.first[label] for label in labels if label in self.first), default=None)
         if number is None:
             return []
-        return [BadSpot(self.junctions[number], box, bounds_something, self.layers[number])]
+        return [AmbiguousSpot(self.junctions[number], box, bounds_something, self.layers[number])]
 
 
-def join_bad_spots(spots: Sequence[BadSpot]) -> list[BadSpot]:
-    """Return the bad spots of one junction as one, in the order of their junctions."""
-    found: dict[int, BadSpot] = {}
+def join_bad_spots(spots: Sequence[AmbiguousSpot]) -> list[AmbiguousSpot]:
+    """Return the ambiguous spots with those of one junction
+    merged, in the order in which their junctions first come.
+    """
+    found: dict[int, AmbiguousSpot] = {}
     for spot in spots:
         known = found.setdefault(id(spot.junction), spot)
         low, high = np.minimum(known.box, spot.box), np.maximum(known.box, spot.box)
@@ -277,11 +310,11 @@ def join_bad_spots(spots: Sequence[BadSpot]) -> list[BadSpot]:
     return list(found.values())
 
 
-def choose_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
-    """Return the part of a number, or the largest that can be told.
+def choose_outline(outlines: DrawnOutlines, number: int | str | None) -> DrawnPart:
+    """Return the part of a number, or for None the largest without an ambiguous spot in its material.
 
-    Refuses where there is none, where a bad spot lies in it, and where something larger that cannot be told
-    may be meant.
+    Raises InputError where there is none, where such a spot lies in the part of that number, and for None
+    where something with such a spot is much larger or around the part, and may be meant.
     """
     parts, spots = outlines.parts, outlines.spots
     if number is not None or not spots:
@@ -305,8 +338,10 @@ def choose_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
     return best
 
 
-def is_spoiled(part: DrawnPart, spot: BadSpot) -> bool:
-    """Return whether a bad spot lies in the material of a part, where it may be the border of a hole."""
+def is_spoiled(part: DrawnPart, spot: AmbiguousSpot) -> bool:
+    """Return whether an ambiguous spot lies in the material
+    of a part, where it may be the border of a hole.
+    """
     if not spot.bounds_something or not boxes_meet(part.bounds, spot.box):
         return False
     x, y = spot.junction.point
@@ -314,8 +349,8 @@ def is_spoiled(part: DrawnPart, spot: BadSpot) -> bool:
     return bool(is_inside(x, y, outer.rows)) and not any(is_inside(x, y, hole.rows) for hole in holes)
 
 
-def describe_bad_spots(outlines: Outlines) -> list[str]:
-    """Return what to say of the bad spots of a drawing of which a part is read all the same."""
+def describe_bad_spots(outlines: DrawnOutlines) -> list[str]:
+    """Return a sentence on the spots where an outline could go on in more than one way; [] without any."""
     if not outlines.spots:
         return []
     places = list_first_items([str(spot) for spot in outlines.spots])
@@ -327,7 +362,8 @@ def describe_bad_spots(outlines: Outlines) -> list[str]:
     return [f"Left out {count} where an outline could go on in more than one way: {places}{cannot}."]
 
 
-def describe_shared_lines(one: Cluster) -> list[str]:
+def describe_shared_lines(one: CurveCluster) -> list[str]:
+    """Return a sentence on the lines that outlines share; [] for fewer than two outlines."""
     if len(one.faces) < 2:
         return []
     places = list_first_items(
@@ -339,24 +375,28 @@ def describe_shared_lines(one: Cluster) -> list[str]:
     ]
 
 
-def find_doubled_places(one: Cluster) -> list[str]:
+def find_doubled_places(one: CurveCluster) -> list[str]:
+    """Return phrases on the lines or arcs that were drawn on each other."""
     return [
         f"{strip_segment_number(label)} and {strip_segment_number(other)} from {format_point(start)} to {format_point(end)}"
         for label, other, start, end in one.doubled
     ]
 
 
-def make_stray(chain: Chain) -> Stray:
-    return Stray(chain, strip_segment_number(chain.labels[0]), strip_segment_number(chain.labels[-1]))
+def make_stray(chain: Chain) -> OpenChain:
+    """Return an open chain with the names of its first and last entity."""
+    return OpenChain(chain, strip_segment_number(chain.labels[0]), strip_segment_number(chain.labels[-1]))
 
 
-def make_chain_from_loop(loop: Loop) -> Chain:
+def make_chain_from_loop(loop: JoinedLoop) -> Chain:
+    """Return a loop as a closed chain."""
     points = [(float(x), float(y)) for x, y in loop.vertices[:, :2]]
     return Chain((*points, points[0]), tuple(loop.vertices[:, 2].tolist()), loop.labels)
 
 
-def compute_loop_box(loop: Loop) -> tuple[float, float, float, float]:
-    return box_around(make_chain_from_loop(loop).segments)
+def compute_loop_box(loop: JoinedLoop) -> tuple[float, float, float, float]:
+    """Return the bounding box (x0, y0, x1, y1) of a loop in mm."""
+    return compute_box_around(make_chain_from_loop(loop).segments)
 
 
 # Radians and mm: lines and circles nearer than this are looked at as one.
@@ -364,7 +404,7 @@ NEAR_ANGLE, NEAR_PLACE = 1e-6, 1e-5
 
 
 def run_along_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
-    """Return whether two of some lines and arcs run along each other for more than a tolerance, in mm."""
+    """Return whether two of some lines and arcs lie on each other for more than a tolerance in mm."""
     lines = [one for one in segments if isinstance(one, Line)]
     if len(lines) > 1 and lines_run_along_each_other(lines, tolerance):
         return True
@@ -377,10 +417,11 @@ def run_along_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
             slack = tolerance / one.radius
             for turn in (-2 * pi, 0.0):
                 spans.append((first + turn + slack, first + turn + 2 * one.half_sweep - slack))
-    return any(any_spans_overlap(spans) for spans in arcs.values())
+    return any(have_overlap(spans) for spans in arcs.values())
 
 
 def lines_run_along_each_other(lines: Sequence[Line], tolerance: float) -> bool:
+    """Return whether two of some lines lie on each other for more than a tolerance in mm."""
     rows = np.array([(*one.start, *one.end) for one in lines])
     rows = rows - np.tile(rows.reshape(-1, 2).mean(axis=0), 2)
     angle = np.arctan2(rows[:, 3] - rows[:, 1], rows[:, 2] - rows[:, 0]) % pi
@@ -391,9 +432,7 @@ def lines_run_along_each_other(lines: Sequence[Line], tolerance: float) -> bool:
         off = c * rows[some, 1] - s * rows[some, 0]
         for same in group_near_values(off, some, NEAR_PLACE):
             along = np.sort(rows[same][:, [0, 2]] * c + rows[same][:, [1, 3]] * s, axis=1)
-            if any_spans_overlap(
-                [(low + tolerance / 2, high - tolerance / 2) for low, high in along.tolist()]
-            ):
+            if have_overlap([(low + tolerance / 2, high - tolerance / 2) for low, high in along.tolist()]):
                 return True
     return False
 
@@ -401,14 +440,20 @@ def lines_run_along_each_other(lines: Sequence[Line], tolerance: float) -> bool:
 def group_near_values(
     values: NDArray[np.float64], numbers: NDArray[np.int64], slack: float
 ) -> list[NDArray[np.int64]]:
-    """Return the numbers in groups of two and more whose values follow each other within a slack."""
+    """Return groups of two and more of the numbers whose
+    values, when sorted, follow each other within a slack.
+
+    Parameters
+    ----------
+    values, numbers : (N,) each; ``numbers`` are what the groups are made of.
+    """
     order = np.argsort(values, kind="stable")
     breaks = np.flatnonzero(np.diff(values[order]) > slack) + 1
     return [numbers[part] for part in np.split(order, breaks) if len(part) > 1]
 
 
-def any_spans_overlap(spans: Sequence[tuple[float, float]]) -> bool:
-    """Return whether one of some spans begins before one that began earlier has ended."""
+def have_overlap(spans: Sequence[tuple[float, float]]) -> bool:
+    """Return whether two of some spans (low, high) overlap; empty ones count as none."""
     reached = -np.inf
     for low, high in sorted(spans):
         if high <= low:

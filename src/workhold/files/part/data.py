@@ -24,9 +24,9 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain, Drawing
 from workhold.files.outline.curves import merge_short_chords
-from workhold.files.outline.joining import Loop
+from workhold.files.outline.joining import JoinedLoop
 from workhold.files.outline.nesting import choose_part, join_loops_as_one_part
-from workhold.files.part.loaded import Loaded, build_workpiece, refuse_large
+from workhold.files.part.loaded import LoadedPart, build_workpiece, refuse_large
 from workhold.files.questions import (
     DRAWING_UNIT,
     FIT,
@@ -36,7 +36,7 @@ from workhold.files.questions import (
     refuse_layers,
 )
 from workhold.files.text import parse_json
-from workhold.model.requirements import number_pairs
+from workhold.model.requirements import to_number_pairs
 from workhold.model.solid import SolidOutline
 from workhold.units import find_unit
 
@@ -46,11 +46,18 @@ if TYPE_CHECKING:
 __all__ = ["ObjectPart", "read_object", "read_json"]
 
 
-def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool) -> Loaded:
-    """Read a workpiece, or the workpiece of a result file.
+def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool) -> LoadedPart:
+    """Return the workpiece of a JSON file, or of a result file.
 
-    For the options see :func:`workhold.files.part.load.read_workpiece`. The shape of a file of workhold's
-    ``own`` needs no check. Refuses choices that do not apply to JSON.
+    Parameters
+    ----------
+    options : see :func:`workhold.files.part.load.read_workpiece`.
+    own : whether the file is one of workhold's built-in parts, whose form needs no check.
+
+    Raises
+    ------
+    InputError
+        For content of another form, and options that do not apply to JSON.
     """
     refuse_layers(options["layers"])
     fit = options["fit"]
@@ -81,7 +88,7 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
         raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
     scale = find_unit(units).millimetres
     refuse_large(sum(map(len, data["loops"])))
-    loops = [Loop(np.array(loop).reshape(-1, 3) * (scale, scale, 1.0), ()) for loop in data["loops"]]
+    loops = [JoinedLoop(np.array(loop).reshape(-1, 3) * (scale, scale, 1.0), ()) for loop in data["loops"]]
     departure = scale * (data.get("departure") or 0.0)
     name = data.get("name") or path.stem
     workpiece = build_workpiece(name, loops, False, departure, solid)
@@ -89,25 +96,27 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     if solid is None and not own:
         # What is checked has no arcs of absurd sizes, which the chords would be compared with.
         budget = Budget(LIMITS["json"], len(content))
-        drawn = [Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]
+        drawn = [JoinedLoop(loop, ("",) * len(loop)) for loop in workpiece.loops]
         merged, away, of_chords = merge_short_chords(drawn, {}, fit, budget)
         if fit is not None:
             workpiece = build_workpiece(name, merged, False, departure + away, None)
         else:
             # Without a fit a file of numbers is read as it is.
             of_chords = [said for said in of_chords if FIT in said]
-    part = (join_loops_as_one_part([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
+    part = (join_loops_as_one_part([JoinedLoop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
     choose_part(part, options["part_number"])
-    return Loaded(workpiece, (*workpiece.remarks, *of_chords), part)
+    return LoadedPart(workpiece, (*workpiece.remarks, *of_chords), part)
 
 
 def read_solid_outline(content: Mapping[str, Any]) -> SolidOutline | None:
-    """Return the solid of a result file's workpiece, None if it has no solid; refuse an incomplete one."""
+    """Return the solid of a result file's workpiece; None
+    if it has none. Raise InputError for an incomplete one.
+    """
     workpiece, solid = content.get("workpiece"), content.get("solid")
     if solid is None or not isinstance(workpiece, dict):
         return None
     try:
-        return SolidOutline.of_entries(solid, workpiece)
+        return SolidOutline.from_entries(solid, workpiece)
     except (TypeError, ValueError, LookupError, AttributeError) as error:
         if isinstance(error, InputError):
             raise
@@ -128,14 +137,14 @@ HELD = ("_obj", "part", "sketch", "_faces")
 
 @frozen
 class ObjectPart:
-    """What an object holds.
+    """The part read from an object of another library.
 
     Parameters
     ----------
     drawing : in mm; of a solid at the height of the pegs, its outline there.
-    name : what to call the part where nobody says.
+    name : default name of the part.
     part_number : of the part to take of the drawing; None where it is taken already, or the largest is meant.
-    layered : whether its layers can be chosen.
+    layered : whether layers of the drawing can be chosen.
     """
 
     drawing: Drawing | HeightDrawing
@@ -154,10 +163,12 @@ def read_object(
     fit: float | None,
     **view: Any,
 ) -> ObjectPart:
-    """Return what an object of another library holds.
+    """Return the drawing in an object of shapely, NumPy,
+    ezdxf, build123d or CadQuery, or in a list of corners.
 
-    The arguments are those of :func:`workhold.load`; ``view`` is how a solid is looked at. A geometry of
-    shapely has no unit and is in mm unless one is given. Refuses choices that do not apply to the object.
+    The arguments are those of :func:`workhold.load`; ``view`` holds those for solids. A geometry of shapely
+    and an array have no unit and are in mm unless one is given. Raises InputError for other objects, and for
+    arguments that do not apply to the object.
     """
     is_geometry = hasattr(part, "__geo_interface__") and hasattr(part, "geom_type")
     if is_geometry or isinstance(part, np.ndarray | list | tuple):
@@ -204,7 +215,9 @@ def read_object(
 
 
 def make_chains_from_shapely(geometry: Any, scale: float) -> Iterator[Chain]:
-    """Yield the rings and lines of a geometry of shapely as chains in mm; refuse points, which have no outline."""
+    """Yield the rings and lines of a geometry of shapely as
+    chains, multiplied by ``scale``; raise InputError for points.
+    """
     kind = geometry.geom_type
     if hasattr(geometry, "geoms"):
         for one in geometry.geoms:
@@ -221,13 +234,17 @@ def make_chains_from_shapely(geometry: Any, scale: float) -> Iterator[Chain]:
 
 
 def make_chain_from_corners(corners: Sequence[tuple[float, float]], kind: str) -> Chain:
+    """Return the chain of straight segments from corner to corner; ``kind`` is a word for its labels."""
     labels = tuple(f"corner {k} of a {kind}" for k in range(len(corners) - 1))
     return Chain(tuple(corners), (0.0,) * (len(corners) - 1), labels)
 
 
 def make_chain_from_array(points: Any, scale: float) -> Chain:
-    """Return the closed chain in mm of an array of corners; refuse any other array."""
-    corners = [(scale * x, scale * y) for x, y in number_pairs(points, "a corner of an outline", CORNERS)]
+    """Return the closed chain of an array (N, 2) of three or more corners, multiplied by ``scale``.
+
+    The first corner may be repeated at the end. Raises InputError for any other array.
+    """
+    corners = [(scale * x, scale * y) for x, y in to_number_pairs(points, "a corner of an outline", CORNERS)]
     if len(corners) < 3:
         raise InputError(f"an outline of {len(corners)} corners is not possible: {CORNERS}.")
     return make_chain_from_corners(
@@ -236,7 +253,9 @@ def make_chain_from_array(points: Any, scale: float) -> Chain:
 
 
 def list_wrapped_shapes(part: Any) -> Iterator[Any]:
-    """Yield the shapes of Open CASCADE that an object wraps, or that what it holds wraps; none of other objects."""
+    """Yield the shapes of Open CASCADE in an object that is one,
+    wraps one or holds such objects; none for other objects.
+    """
     if type(part).__module__.partition(".")[0] == "OCP":
         yield part
     elif getattr(part, "wrapped", None) is not None:

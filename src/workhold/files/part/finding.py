@@ -1,4 +1,4 @@
-"""The file that a part is in, the user's or a built-in one: where it is, its bytes, and which kind it is of.
+"""Part files, the user's or built-in ones: how they are found, read as bytes, and told apart by kind.
 
 Built in are the seven parts of the paper, as models: their real dimensions were never published (Wallack &
 Canny 1996).
@@ -34,7 +34,7 @@ class BuiltinPart:
 
     Parameters
     ----------
-    name : what to load it by.
+    name : the name to load it by.
     description : one line.
     """
 
@@ -67,7 +67,7 @@ def list_builtin_parts() -> tuple[BuiltinPart, ...]:
 
 
 def find_builtin_path(name: str) -> Path | None:
-    """Return the file of a built-in part, named in any mixture of capitals; None when there is none."""
+    """Return the file of a built-in part by its name in any mixture of capitals; None when there is none."""
     for part in PARTS:
         if part.name.lower() == name.strip().lower():
             return Path(str(files("workhold") / "data" / "parts" / f"{part.name}.json"))
@@ -75,7 +75,10 @@ def find_builtin_path(name: str) -> Path | None:
 
 
 def find_part_file(part: str | PathLike[str]) -> Path:
-    """Return the file of a part given by path or built-in name; the refusal lists built-in names that are close."""
+    """Return the path of an existing file, or else of the built-in part with that name.
+
+    Raises InputError where there is neither, listing built-in names that are close.
+    """
     path = Path(part)
     try:
         if path.exists() or path.is_symlink():
@@ -94,12 +97,12 @@ def find_part_file(part: str | PathLike[str]) -> Path:
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return the file's bytes.
+    """Return the content of a part file.
 
     Raises
     ------
     InputError
-        When it is a folder, empty, too large or not readable.
+        When it is a folder, empty, larger than ``PART_BYTES`` or not readable.
     """
     try:
         if path.is_dir():
@@ -124,7 +127,10 @@ def read_bytes(path: Path) -> bytes:
 
 
 def detect_file_kind(path: Path, content: bytes) -> str:
-    """Return "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes."""
+    """Return "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes.
+
+    Raises InputError where neither tells.
+    """
     ending = path.suffix.lower().lstrip(".")
     if ending in ("json", "dxf", "svg", "step"):
         return ending

@@ -1,4 +1,6 @@
-"""Reading a part: a file (JSON, DXF, SVG, STEP) or a built-in name becomes a workpiece in millimetres."""
+"""Reading of a part: a file (JSON, DXF, SVG, STEP), a built-in name or an object becomes a workpiece in
+millimetres.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ from workhold.files.part.finding import (
     read_bytes,
 )
 from workhold.files.part.loaded import (
-    Loaded,
+    LoadedPart,
     from_drawing,
     from_heights,
     name_part_after_solid,
@@ -36,7 +38,7 @@ from workhold.files.questions import (
     check_layer_names,
     is_read_by_height,
     name_questions,
-    number_or_name,
+    read_number_or_name,
     refuse_axis,
     refuse_layers,
 )
@@ -45,7 +47,7 @@ from workhold.limits import convert_real
 from workhold.model.workpiece import Workpiece
 from workhold.units import find_drawing_unit
 
-__all__ = ["Loaded", "list_builtin_parts", "load", "read_workpiece", "refuse_unsure_numbers"]
+__all__ = ["LoadedPart", "list_builtin_parts", "load", "read_workpiece", "refuse_unsure_numbers"]
 
 
 def load(
@@ -65,45 +67,45 @@ def load(
     heights: Mapping[str, Sequence[float]] | None = None,
     toolkit: Toolkit | None = None,
 ) -> Workpiece:
-    """Load a part from a file, by the name of a built-in model, or from an object of another library.
+    """Return a part from a file, a built-in model, or an object of another library, as a workpiece in mm.
+
+    The ``remarks`` of the workpiece say how it was read: what was left out, joined, or chosen of several
+    parts.
 
     Parameters
     ----------
     part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a
         geometry of shapely, an array (N, 2) of the corners of an outline, a document of ezdxf, or a sketch, a
         face or a solid of build123d or CadQuery.
-    name : what to call the part; if None the file's name, before it that of the solid where there are more.
-    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. Of an
-        SVG drawing in pixels how many make an inch: "px72", "px90", "px96". A geometry of shapely and an array
-        are in mm if None.
+    name : name of the part; if None the file's name, before it that of the solid where there are more.
+    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. For an
+        SVG drawing in pixels also the pixels per inch: "px72", "px90", "px96". A geometry of shapely and an
+        array are in mm if None.
     layers : the DXF layers to read, in any mixture of capitals, one or several; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
         None. Solids of a STEP file have numbers by decreasing volume, and may have names.
     join_tolerance : largest gap between loose ends to close, in mm.
-    fit : how far lines and arcs may be from the curves that they replace, in mm; None refuses curves that
-        are no lines or arcs. The workpiece's ``departure`` says how far
-        they are.
+    fit : largest distance in mm of lines and arcs from the curves that they replace; None refuses curves that
+        are not lines or arcs. The workpiece's ``departure`` is the largest distance there is.
     axis : "x", "y" or "z", the direction of a STEP file that points up; z when None. With a minus before it
         the part lies on its other side.
     section : take the section of a STEP file's solid at this height in mm above its lowest point, not its
         silhouette.
-    peg_height : how far pegs reach, in mm above the plane on which a STEP file's solid lies. The outline is
-        what they can meet, and only upright faces are touched.
+    peg_height : height up to which pegs reach, in mm above the plane on which a STEP file's solid lies. The
+        outline is what they can meet, and only upright faces are touched.
     head_room : with a height of the pegs, what is kept free above them, in mm; 0.5 when None.
     least_band : with a height of the pegs, how high an upright face must be there to be touched, in mm; 1
         when None.
-    heights : of a STEP file's solid, from which to which height carriers with heights of their own reach, as
-        ``toolkit.heights`` says, or that of ``toolkit`` when None.
-    toolkit : what a STEP file's solid will be held in. When no height of the pegs is given they are then no higher
-        than they must be to touch half of what pegs can touch, and such as are sold. When None they are as tall
-        as the part.
+    heights : of a STEP file's solid, the lowest and highest z in mm over which carriers with heights of their
+        own reach, by role as in ``toolkit.heights``; that of ``toolkit`` when None.
+    toolkit : what a STEP file's solid will be held in. When no height of the pegs is given they are then no
+        higher than they must be to touch half of what pegs can touch, and such as are sold. When None they
+        are as tall as the part.
 
     Raises
     ------
     InputError
         For a part that cannot be found, read or used, naming the place.
-
-    The ``remarks`` of the workpiece say how it was read: what was left out, joined, or chosen of several parts.
 
     Examples
     --------
@@ -148,16 +150,16 @@ def read_workpiece(
     heights: Mapping[str, Sequence[float]] | None = None,
     peg_diameter: float | None = None,
     called: Mapping[str, str] | None = None,
-) -> Loaded:
-    """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
+) -> LoadedPart:
+    """Return a part as :func:`load` does, with remarks and the list of all parts in the file.
 
     Parameters
     ----------
     usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those
         of :func:`load`.
     peg_diameter : of the pegs beside a solid in mm; None where it is not known.
-    called : what the questions of ``files.questions`` are called where the part is asked for; None is for
-        Python.
+    called : names of the questions of ``files.questions`` at the caller, such as options of the command line;
+        None gives those of Python's arguments.
 
     Raises
     ------
@@ -180,7 +182,7 @@ def read_workpiece(
         "unit": unit,
         "usual_unit": usual_unit,
         "layers": check_layer_names(layers),
-        "part_number": number_or_name(part_number),
+        "part_number": read_number_or_name(part_number),
         "fit": fit,
         "axis": axis,
         "section": section,
@@ -206,12 +208,13 @@ def read_workpiece(
 
 
 def refuse_unsure_numbers(
-    loaded: Loaded, faces: Sequence[int], called: Mapping[str, str] | None = None
+    loaded: LoadedPart, faces: Sequence[int], called: Mapping[str, str] | None = None
 ) -> None:
-    """Refuse faces named by number if the numbers depend on a peg height that was not given.
+    """Raise InputError for faces named by number if the numbers depend on a peg height that was not given.
 
     Parameters
     ----------
+    faces : their numbers; empty if none are named by number.
     called : see :func:`read_workpiece`.
 
     Raises
@@ -232,8 +235,11 @@ def refuse_unsure_numbers(
     raise InputError(name_questions(sentence, called))
 
 
-def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """Return a workpiece from an object of another library; refuse other objects and choices that do not apply."""
+def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> LoadedPart:
+    """Return a part from an object of another library; ``options`` are those of :func:`read_workpiece`.
+
+    Raises InputError for other objects, and for options that do not apply to the object.
+    """
     held = read_object(part, **options)
     if not isinstance(held.drawing, Drawing):
         return from_heights(held.name, held.drawing)
@@ -242,8 +248,11 @@ def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) ->
     )
 
 
-def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """Return a workpiece from a file; refuse one that cannot be used, and choices that do not apply to it."""
+def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> LoadedPart:
+    """Return a part from a file; ``options`` are those of :func:`read_workpiece`.
+
+    Raises InputError for a file that cannot be used, and for options that do not apply to its kind.
+    """
     content = read_bytes(path)
     kind = detect_file_kind(path, content)
     part_number, layers, fit = options["part_number"], options["layers"], options["fit"]
@@ -273,9 +282,10 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
     return from_drawing(path, drawing, part_number, join_tolerance, fit, budget=budget)
 
 
-def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
-    """Return a workpiece from the bytes of a STEP file; refuse wrong content, and choices that do not apply
-    to STEP.
+def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> LoadedPart:
+    """Return a part from the bytes of a STEP file; only the name of ``path`` is used.
+
+    Raises InputError for content that cannot be used, and for options that do not apply to STEP.
     """
     refuse_layers(options["layers"])
     if options["unit"] is not None:

@@ -1,4 +1,5 @@
-"""A workpiece from the outline of a drawing or of a solid, with remarks on how it was read, and its name.
+"""Making of a workpiece from the outline of a drawing or of a solid, with remarks on how it was read, and its
+name.
 
 A part that is one of several solids of a STEP file is named after its solid too.
 """
@@ -28,7 +29,7 @@ from workhold.files.outline.diagnostics import (
     refuse_nothing_closed,
     refuse_open_outline,
 )
-from workhold.files.outline.joining import Loop
+from workhold.files.outline.joining import JoinedLoop
 from workhold.files.outline.nesting import DrawnPart, join_loops_as_one_part, refuse_loops_across
 from workhold.files.outline.shared_lines import choose_outline, describe_bad_spots, make_outlines
 from workhold.files.part.finding import detect_file_kind, find_part_file, read_bytes
@@ -39,10 +40,10 @@ from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
-    from workhold.files.step.usual_height import UsualHeight
+    from workhold.files.step.usual_height import UsualPegHeight
 
 __all__ = [
-    "Loaded",
+    "LoadedPart",
     "build_workpiece",
     "from_drawing",
     "from_heights",
@@ -57,7 +58,7 @@ PART_LIST = 10
 
 
 @frozen
-class Loaded:
+class LoadedPart:
     """A workpiece and remarks on how it was read.
 
     Parameters
@@ -68,7 +69,7 @@ class Loaded:
     number : its number among them, from 1.
     heights : of a solid seen at the height of the pegs, what other heights offer.
     solids : all of a STEP file, the largest first.
-    usual : how high pegs beside a solid are taken to be where nobody says so, and they are known.
+    usual : height of pegs chosen for a solid because the user gave none; None otherwise.
     """
 
     workpiece: Workpiece
@@ -77,24 +78,24 @@ class Loaded:
     number: int = 1
     heights: tuple[HeightRow, ...] = ()
     solids: tuple[FileSolid, ...] = ()
-    usual: UsualHeight | None = None
+    usual: UsualPegHeight | None = None
 
 
-def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
-    """Return a workpiece from the outline of a solid at the height of the pegs."""
+def from_heights(name: str, drawing: HeightDrawing) -> LoadedPart:
+    """Return a part, called ``name``, from the outline of a solid at the height of the pegs."""
     refuse_large(sum(len(loop) for loop in drawing.loops))
-    loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
+    loops = [JoinedLoop(loop, ("",) * len(loop)) for loop in drawing.loops]
     workpiece = build_workpiece(name, loops, with_labels=False, solid=drawing.solid)
     own = []
     for one in drawing.own:
         refuse_large(sum(len(loop) for loop in one.loops))
-        rows = [Loop(loop, ("",) * len(loop)) for loop in one.loops]
+        rows = [JoinedLoop(loop, ("",) * len(loop)) for loop in one.loops]
         between = name_outline((one.solid.low, one.solid.peg_height))
         own.append((one.role, build_workpiece(between, rows, with_labels=False, solid=one.solid)))
     if own:
         workpiece = evolve(workpiece, outlines=tuple(own))
     remarks = (*drawing.remarks, *workpiece.remarks)
-    return Loaded(
+    return LoadedPart(
         workpiece,
         remarks,
         (join_loops_as_one_part(loops),),
@@ -112,11 +113,22 @@ def from_drawing(
     fit: float | None,
     layered: bool = False,
     budget: Budget | None = None,
-) -> Loaded:
-    """Return a workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
+) -> LoadedPart:
+    """Return a part, named after the file, from a drawing's chains.
 
-    What reading the file may still take is left in ``budget``; None is no limit. Refuses a drawing without a
-    usable closed outline, or with curves that nobody has allowed to be replaced.
+    Parameters
+    ----------
+    path : of the file; only its name is used.
+    part_number : of the part to take, from 1 by decreasing area; None is the largest that can be read.
+    tolerance : largest gap between ends to close, in mm.
+    fit : largest distance in mm of lines and arcs from curves that they replace; None refuses true curves.
+    layered : whether layers of the drawing can be chosen, for advice.
+    budget : work and time that may still be spent on the file; None is no limit.
+
+    Raises
+    ------
+    InputError
+        For a drawing without a usable closed outline, or with true curves and no fit.
     """
     budget = budget or Budget(UNLIMITED)
     try:
@@ -137,6 +149,7 @@ def is_usable(
     budget: Budget,
     drawing: Drawing,
 ) -> bool:
+    """Return whether a part can be made of a drawing; its arguments are those of :func:`from_drawing`."""
     try:
         make_loaded_outline(path, drawing, part_number, tolerance, fit, True, budget)
     except InputError:
@@ -152,8 +165,10 @@ def make_loaded_outline(
     fit: float | None,
     layered: bool,
     budget: Budget,
-) -> Loaded:
-    """Return the workpiece, or a refusal, see :func:`from_drawing`."""
+) -> LoadedPart:
+    """Return what :func:`from_drawing` returns; its errors
+    do not name layers with which a part could be made.
+    """
     clean = drop_zero_lengths(drawing.chains)
     outlines = make_outlines(clean.chains, tolerance, drawing, budget)
     parts = outlines.parts
@@ -180,17 +195,21 @@ def make_loaded_outline(
     remarks = (*drawing.remarks, *clean.remarks, *outlines.remarks, *of_curves, *of_chords)
     remarks += (*workpiece.remarks, *describe_departure(departure), *describe_strays(outlines.strays))
     remarks += (*describe_bad_spots(outlines), *describe_other_parts(parts, part, part_number))
-    return Loaded(workpiece, remarks, parts, part.number, solids=drawing.solids)
+    return LoadedPart(workpiece, remarks, parts, part.number, solids=drawing.solids)
 
 
 def build_workpiece(
     name: str,
-    loops: Sequence[Loop],
+    loops: Sequence[JoinedLoop],
     with_labels: bool = True,
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """Build the workpiece; its complaints lose the part's name, since the file's name stands before them."""
+    """Return a workpiece from loops in mm; its errors do not begin with the part's name.
+
+    The file's name stands there instead. Without ``with_labels`` the segments have no labels; ``departure``
+    is in mm.
+    """
     labels = [loop.labels for loop in loops] if with_labels else None
     try:
         return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure, solid)
@@ -208,6 +227,10 @@ def refuse_large(segments: int) -> None:
 
 
 def describe_other_parts(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
+    """Return one sentence that lists the parts of a drawing and says which is used; [] for a single part.
+
+    ``asked`` is the number that the user gave; None for none.
+    """
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
@@ -219,7 +242,7 @@ def describe_other_parts(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: i
 
 
 def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
-    """List the solids of a STEP file by decreasing volume, with their names where the file has them.
+    """Return the solids of a STEP file by decreasing volume, with their names where the file has them.
 
     ``load`` takes one of them by its number or its name.
 
@@ -249,19 +272,24 @@ def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
         raise InputError(f"{file.name}: {error}") from error
 
 
-def name_part_after_solid(loaded: Loaded, file: str, chosen: int | str | None) -> Loaded:
-    """Return a part named after its solid too, where the file holds several with names: ``lug of machine``.
+def name_part_after_solid(loaded: LoadedPart, file: str, chosen: int | str | None) -> LoadedPart:
+    """Return the part named "lug of machine", after its solid and the file, if the file holds several solids.
 
-    ``chosen`` is the number or the name of the solid that was read; None is the largest.
+    Unchanged where the solid has no name, or that of the file. ``chosen`` is the number or the name of the
+    solid that was read; None is the largest.
     """
-    name = "" if len(loaded.solids) < 2 else name_of_chosen(loaded.solids, chosen)
+    name = "" if len(loaded.solids) < 2 else find_chosen_name(loaded.solids, chosen)
     if not name or name == file:
         return loaded
     return evolve(loaded, workpiece=evolve(loaded.workpiece, name=f"{name} of {file}"))
 
 
-def name_of_chosen(solids: Sequence[FileSolid], chosen: int | str | None) -> str:
-    """Return what the file calls the solid of a number or a name; empty where it does not."""
+def find_chosen_name(solids: Sequence[FileSolid], chosen: int | str | None) -> str:
+    """Return the name of the solid chosen by number (from 1)
+    or by a name in any mixture of capitals; "" if it has none.
+
+    A chosen name must be that of a solid.
+    """
     if not isinstance(chosen, str):
         return solids[(chosen or 1) - 1].name
     asked = " ".join(chosen.split())

@@ -1,6 +1,7 @@
-"""What a file holds and what it leaves open, for someone who is asked on the spot instead of refused.
+"""Surveys of a part file: its content and the questions that reading it leaves open.
 
-The layers of a DXF drawing are listed with what is on them, so that the ones with the outline can be chosen.
+They are for a user interface that asks the user on the spot instead of refusing the file. The layers of a DXF
+drawing are listed with what is on them, so that the ones with the outline can be chosen.
 
 Glossary
 --------
@@ -24,24 +25,24 @@ from attrs import evolve, frozen
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget, OverBudgetError
 from workhold.files.dxf.reader import (
+    choose_scale,
     make_damage_error,
     open_document,
     read_unit_code,
     refuse_crowded,
     refuse_other_formats,
-    scale_of,
 )
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Chain, Drawing, Placement, drop_zero_lengths
 from workhold.files.outline.diagnostics import measure_size
-from workhold.files.outline.joining import Loop, join
+from workhold.files.outline.joining import JoinedLoop, join
 from workhold.files.outline.nesting import DrawnPart, nest_loops
 from workhold.files.part.finding import detect_file_kind, find_part_file, read_bytes
-from workhold.files.part.load import Loaded, read_workpiece
+from workhold.files.part.load import LoadedPart, read_workpiece
 from workhold.files.questions import MARK, UNIT, name_questions
 from workhold.model.solid import FileSolid
 
-__all__ = ["DrawnLayer", "Survey", "list_drawn_layers", "survey_part_file"]
+__all__ = ["DrawnLayer", "DrawingSurvey", "list_drawn_layers", "survey_part_file"]
 
 
 @frozen
@@ -67,14 +68,14 @@ class DrawnLayer:
 
 
 class LayerWalk(DxfWalk):
-    """Visits everything, on hidden layers too, whatever is wrong with it."""
+    """A walk that visits all entities, on hidden layers too, and passes over whatever is wrong with one."""
 
     def __init__(self, document: Any, budget: Budget) -> None:
         super().__init__(document, None, None, budget)
         self.kinds: dict[str, Counter[str]] = {}
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Count an entity, and collect its chain where it has one."""
+        """Count an entity by layer and kind, and collect its chain where it has a readable one."""
         kind = entity.dxftype()
         if kind != "INSERT":
             self.kinds.setdefault(self.find_effective_layer(entity, nest), Counter())[kind] += 1
@@ -86,19 +87,26 @@ class LayerWalk(DxfWalk):
             self.level = None
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
-        """Return True: everything is looked at."""
+        """Return True, so that entities of all layers are read."""
         return True
 
 
 def list_drawn_layers(
     path: str | Path, unit: str | None, usual_unit: str | None
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """Return the layers of a DXF file with something on them, by name, and whether their sizes are in mm.
+    """Return the layers of a DXF file that have something on
+    them, sorted by name, and whether their sizes are in mm.
+
+    Sizes are in units of the drawing where neither the file nor an argument gives a unit.
+
+    Parameters
+    ----------
+    unit, usual_unit : see :func:`workhold.files.part.load.read_workpiece`.
 
     Raises
     ------
     InputError
-        For a file that is none, or damaged.
+        For a file that is not DXF, or is damaged.
     """
     file = find_part_file(path)
     content = read_bytes(file)
@@ -120,7 +128,8 @@ def list_drawn_layers(
 def list_layers_of_document(
     document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    known = scale_of(code, unit, usual_unit)
+    """Return the layers of ezdxf's document as :func:`list_drawn_layers`; ``code`` is its ``$INSUNITS``."""
+    known = choose_scale(code, unit, usual_unit)
     scale = 1.0 if known is None else known[0]
     try:
         walk, space = LayerWalk(document, budget), document.modelspace()
@@ -149,7 +158,7 @@ def list_layers_of_document(
 
 
 def drop_unusable_chains(chains: list[Chain]) -> list[Chain]:
-    """Return the chains; return no chain if one of their numbers is not finite or far too large."""
+    """Return the chains, or [] if one of their numbers is not finite or far too large."""
     try:
         drop_zero_lengths(chains)
     except InputError:
@@ -158,7 +167,9 @@ def drop_unusable_chains(chains: list[Chain]) -> list[Chain]:
 
 
 def count_closed_outlines(chains: list[Chain]) -> int | None:
-    """Return how many closed outlines chains make; None where they could go on in more than one way."""
+    """Return the number of closed outlines that chains make;
+    None where they could be joined in more than one way.
+    """
     try:
         joined = join(drop_zero_lengths(chains).chains, 1e-3)
         return None if joined.junctions else len(joined.loops)
@@ -173,13 +184,13 @@ ANY_UNIT, ONE_PIXEL = "mm", "px25.4"
 
 
 @frozen
-class Survey:
-    """What a file holds and what it leaves open.
+class DrawingSurvey:
+    """The content of a file, and the questions that it leaves open.
 
     Parameters
     ----------
     loaded : the part, or None where it is refused.
-    refusal : why it is, in a sentence; empty where it is not.
+    refusal : the error message of a refusal; empty where there is none.
     asked : names of the questions that must be answered first, such as "unit".
     size : width and height in mm of all that is drawn; None for files that hold no drawing, and while it
         cannot be read. Where the unit is asked, one unit of the drawing stands for a millimetre in it and in
@@ -192,7 +203,7 @@ class Survey:
     pixels : width and height in pixels of all that is drawn, where the unit of an SVG drawing is asked.
     """
 
-    loaded: Loaded | None
+    loaded: LoadedPart | None
     refusal: str
     asked: tuple[str, ...]
     size: tuple[float, float] | None
@@ -204,8 +215,8 @@ class Survey:
     pixels: tuple[float, float] | None = None
 
 
-def survey_part_file(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
-    """Read a part as far as it goes.
+def survey_part_file(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> DrawingSurvey:
+    """Return a survey of a part file: the part if it can be read, else the refusal, and all that is drawn.
 
     Parameters
     ----------
@@ -227,7 +238,7 @@ def survey_part_file(path: Path, *, called: Mapping[str, str] | None = None, **o
     asked = tuple(dict.fromkeys(mark[1:-1] for mark in MARK.findall(sentence)))
     if loaded is not None:
         loaded = evolve(loaded, remarks=tuple(name_questions(remark, called) for remark in loaded.remarks))
-    told = Survey(loaded, name_questions(sentence, called), asked, None, (), (), ())
+    told = DrawingSurvey(loaded, name_questions(sentence, called), asked, None, (), (), ())
     if not is_over:
         with suppress(OverBudgetError):
             told = add_drawn_content(told, path, content, ANY_UNIT if UNIT in sentence else None, options)
@@ -235,12 +246,20 @@ def survey_part_file(path: Path, *, called: Mapping[str, str] | None = None, **o
 
 
 def add_drawn_content(
-    told: Survey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]
-) -> Survey:
-    """Return a survey with what is drawn in the file, for which it is read again.
+    told: DrawingSurvey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]
+) -> DrawingSurvey:
+    """Return a survey with size, chains, parts, gaps, layers
+    and solids filled in; the file is read again for them.
 
-    It is read in ``unit`` where its own is asked; options are those of :func:`survey_part_file`. Raises OverBudgetError
-    where that takes too much.
+    Parameters
+    ----------
+    unit : unit in which to read the drawing, where its own is asked; None otherwise.
+    options : those of :func:`survey_part_file`.
+
+    Raises
+    ------
+    OverBudgetError
+        When the drawing takes too much work.
     """
     kind = ""
     with suppress(InputError):
@@ -278,9 +297,10 @@ def add_drawn_content(
 
 @contextmanager
 def ignore_refusals() -> Iterator[None]:
-    """Pass over what is refused, but not over what takes too much.
+    """Suppress InputError in the block, except for one caused
+    by an OverBudgetError: raise OverBudgetError for that.
 
-    An OverBudgetError is raised: that is not tried once more.
+    So work that took too much is not tried once more.
     """
     try:
         yield
@@ -293,7 +313,11 @@ MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
 
 
 def read_all_drawn(kind: str, path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
-    """Return all that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
+    """Return all that is drawn in a DXF or SVG file; an empty
+    drawing for other kinds and where it cannot be read.
+
+    Raises OverBudgetError when reading takes too much work.
+    """
     taken = {name: options.get(name) for name in ("unit", "fit")}
     with ignore_refusals():
         if kind == "dxf":
@@ -310,7 +334,7 @@ def read_all_drawn(kind: str, path: Path, content: bytes, options: Mapping[str, 
 
 
 def list_refused_solids(content: bytes) -> tuple[FileSolid, ...]:
-    """Return the solids of a STEP file whose outline was refused; none where it is damaged."""
+    """Return the solids of the bytes of a STEP file whose outline was refused; () where it is damaged."""
     with suppress(InputError):
         from workhold.files.step.solids import list_solids
 
@@ -318,8 +342,8 @@ def list_refused_solids(content: bytes) -> tuple[FileSolid, ...]:
     return ()
 
 
-def try_to_nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
-    """Return the parts that loops make; none where it takes too long to tell."""
+def try_to_nest(loops: Sequence[JoinedLoop]) -> tuple[DrawnPart, ...]:
+    """Return the parts that closed loops make; () where that is refused or takes too long."""
     try:
         return nest_loops(loops, Budget(LIMITS["dxf"]))
     except InputError:
@@ -329,7 +353,12 @@ def try_to_nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
 def find_gaps_and_parts(
     chains: tuple[Chain, ...], tolerance: float, size: tuple[float, float] | None
 ) -> tuple[tuple[float, ...], tuple[DrawnPart, ...]]:
-    """Return the gaps between loose ends, and the parts that there are with those up to a tolerance (mm) closed."""
+    """Return the gaps between loose ends, sorted, and the
+    parts after closing gaps up to a tolerance; all in mm.
+
+    Gaps wider than ``WIDEST_GAP`` of the drawing's size are left out. Both are empty where chains could be
+    joined in more than one way.
+    """
     if size is None:
         return (), ()
     try:

@@ -1,7 +1,7 @@
 """A modal interpreter: from blocks to moves of the tip, in mm from the program's own zero.
 
 A block's words take effect in one order, whatever order they are written in (NISTIR 6556, "Order of
-execution"). Feed and speed come first, then the tool, what stays in force, and the move.
+execution"). Feed and speed come first, then the tool, modal codes, and the move.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from workhold.files.program.words import (
     OTHER_UNITS,
     UNITS,
     VISITS,
-    Modes,
+    ControlState,
     ProgramBlock,
     is_spline,
     normalize_code,
@@ -73,17 +73,18 @@ class Interpreter:
 
     Parameters
     ----------
-    changes : whether the program changes tools by M6; where it never does, T alone names the tool.
+    changes : whether the program changes tools by M6; where it never does, T alone changes the tool.
     has_lengths : whether it puts a tool length in force anywhere (G43).
     in_thousandths : whether a length without a decimal point counts 0.001 mm or 0.0001 inch.
-    path : writes the moves.
+    path : writer of the moves.
     skipped : lines with a move to the machine's own places.
     calls : (line, number) of every tool that comes into the spindle.
     other_lengths : lines with G43 for another tool than the one in the spindle.
-    passed : lines with codes that say nothing of the path, by their names.
+    passed : lines with codes that do not affect the path, by code.
     whole, pointed : lines with lengths without a decimal point, and whether others have one.
     angles : of rotary axes, by their letters; those at places of the machine's own are ``away``.
     presets : lines with G92 at the start.
+    distance_said : whether the program has G90 or G91.
     """
 
     changes: bool
@@ -102,16 +103,17 @@ class Interpreter:
     distance_said: bool = False
 
     @property
-    def modes(self) -> Modes:
+    def modes(self) -> ControlState:
+        """State of the control."""
         return self.path.modes
 
     def read(self, block: ProgramBlock) -> None:
-        """Take a block.
+        """Execute a block: update the state and add its moves to ``path``.
 
         Raises
         ------
         InputError
-            For what is not read, without the line's number.
+            For what is not supported, without the line's number.
         """
         self.path.line = block.line
         codes: dict[str, str] = {}
@@ -158,7 +160,9 @@ class Interpreter:
             )
 
     def add_code(self, codes: dict[str, str], code: str) -> None:
-        """Add a code to those of the block by its group; refuse one that is not read, and two of one group."""
+        """Add a G code to ``codes`` under its group; raise
+        InputError for an unsupported one, and for two of one group.
+        """
         group = GROUPS.get(code)
         if group is None:
             refuse_code(code)
@@ -170,7 +174,9 @@ class Interpreter:
         codes[group] = code
 
     def drop_further_axes(self, codes: dict[str, str], values: dict[str, float]) -> None:
-        """Take the words of further axes out of a block; refuse one that moves any of them."""
+        """Remove the words of axes other than X, Y and Z from
+        ``values``; raise InputError if one of them moves.
+        """
         once, distance = codes.get("once"), codes.get("distance", self.modes.distance)
         if once == "4":
             # U is the time of a dwell.
@@ -194,11 +200,15 @@ class Interpreter:
                 )
 
     def looks_ahead(self, codes: dict[str, str]) -> bool:
-        """Return whether a block has a code of how the control looks ahead, to which its numbers may belong."""
+        """Return whether a block has a code for look-ahead or smoothing, to which its numbers may belong."""
         return any(code in LOOK_AHEAD for code in codes.values())
 
     def count_whole(self, letters: list[str], codes: dict[str, str], values: dict[str, float]) -> None:
-        """Remember lengths without a decimal point, and make them thousandths where they are."""
+        """Note the line of lengths without a decimal point, and
+        scale these in ``values`` if they count thousandths.
+
+        ``letters`` are the words with such lengths.
+        """
         self.whole.append(self.path.line)
         unit = UNITS[codes["unit"]] if "unit" in codes else self.modes.unit
         if self.in_thousandths and unit is not None:
@@ -206,10 +216,11 @@ class Interpreter:
                 values[letter] *= LAST_DIGIT[unit.name]
 
     def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
-        """Take what stays in force, and return the letters that have a meaning.
+        """Update everything modal but the motion: feed, speed,
+        tool, its length, unit, plane, zero, and distance mode.
 
-        That is feed and speed, the tool, its length, unit, plane, zero and how places are written. Refuses
-        functions that are not read, and a change to no tool.
+        Return the letters that have a meaning. Raises InputError for functions that are not supported, and
+        for M6 before any T.
         """
         modes, used = self.modes, {"N", "F", "S", "T"}
         for function in functions:
@@ -241,9 +252,10 @@ class Interpreter:
         return used
 
     def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Put the codes of a block in force that stay so; pass over those that say nothing of the path.
+        """Put the modal codes of a block in force, and note those that do not affect the path.
 
-        Returns the letters that belong to them. Refuses a spline, and a zero with a number that is none.
+        Return the letters that belong to them. Raises InputError for a spline, and for a wrong number of a
+        zero.
         """
         modes, used = self.modes, set()
         for code in codes.values():
@@ -277,7 +289,9 @@ class Interpreter:
         return used
 
     def mount_called_tool(self) -> None:
-        """Put the tool that was called into the spindle; X, Y and Z stay what they were (NISTIR 6556, 3.6.3)."""
+        """Put the tool that was called into the spindle; X,
+        Y and Z stay what they were (NISTIR 6556, 3.6.3).
+        """
         modes = self.modes
         if modes.called != modes.tool:
             modes.tool = modes.called
@@ -285,9 +299,10 @@ class Interpreter:
             self.calls.append((self.path.line, modes.called))
 
     def change_length_offset(self, code: str, number: float | None) -> None:
-        """Put a tool's length in force (G43), or takes it away (G49); its tip is at another height then.
+        """Put a tool's length in force (G43), or cancel it
+        (G49); the tip's height becomes unknown if it changes.
 
-        The number of the length is H; 0 is none.
+        ``number`` is the length's number H; 0 cancels, None means the tool in the spindle.
         """
         modes = self.modes
         if code == "49" or number == 0:
@@ -339,9 +354,10 @@ class Interpreter:
         return used | wanted
 
     def change_motion(self, codes: dict[str, str]) -> None:
-        """Put the motion of a block in force, or its cycle, which begins anew after any other motion.
+        """Put the motion or the drill cycle of a block in force;
+        a cycle other than the one in force starts with no values.
 
-        Refuses both together.
+        Raises InputError for both together.
         """
         modes, motion, cycle = self.modes, codes.get("motion"), codes.get("cycle")
         if motion is not None and cycle not in (None, CANCEL):
@@ -354,9 +370,11 @@ class Interpreter:
             modes.cycle, modes.sticky = cycle, {}
 
     def move_once(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Note a move to a place of the machine's own, after which the places of the axes are unknown.
+        """Handle G28, G30 or G53, a move to a place of the
+        machine's own, after which the axes' positions are unknown.
 
-        Refuses G53 with anything but G0, and a place that is passed and not known.
+        Return the letters that have a meaning. Raises InputError for G53 with anything but G0, and where the
+        place that is passed on the way is not known.
         """
         once, axes = codes["once"], values.keys() & {"X", "Y", "Z"}
         self.change_motion(codes)
@@ -385,10 +403,11 @@ class Interpreter:
         return axes | ROTARY | ({"P"} if once == "30" else set())
 
     def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Take a word that could set another zero, where it sets none.
+        """Handle G52, G92, G92.1 or G92.2 where it sets no
+        other zero, and return the letters that have a meaning.
 
-        G52 with 0 is none, and so is taking back what was never set. G92 before anything else says where the
-        tip stands. Refuses every other zero, and one beside a place.
+        G52 with 0 sets none, and neither does cancelling what was never set. G92 before anything else says
+        where the tip stands. Raises InputError for everything else.
         """
         modes, axes, code = self.modes, values.keys() & {"X", "Y", "Z"}, codes["once"]
         self.change_motion(codes)
@@ -411,9 +430,9 @@ class Interpreter:
         return set(axes)
 
     def move_along_arc(self, clockwise: bool, values: dict[str, float]) -> set[str]:
-        """Move along an arc or a helix about z.
+        """Move along an arc or a helix about z, and return the letters that have a meaning.
 
-        Refuses an arc that is not known, or stands in another plane.
+        Raises InputError for an arc with unknown ends or centre, and for one in another plane.
         """
         modes = self.modes
         if modes.plane != "17":
@@ -433,13 +452,15 @@ class Interpreter:
                 raise InputError("an arc has R, and I, J or P besides: write R alone, or I and J.")
             arc = make_arc_of_radius(self.path.convert_to_mm(values["R"]), start, end, clockwise)
         else:
-            arc = make_arc_about_center(self.centre_of(values), start, end, clockwise, turns)
-        for place, bulge in arc.spans(start, end):
+            arc = make_arc_about_center(self.find_arc_centre(values), start, end, clockwise, turns)
+        for place, bulge in arc.iterate_spans(start, end):
             self.path.move_to(list(place), True, bulge)
         return {"X", "Y", "Z", "I", "J", "K", "R", "P"}
 
-    def centre_of(self, values: dict[str, float]) -> tuple[float, float]:
-        """Return where I and J say that an arc's centre is; refuse an arc without them."""
+    def find_arc_centre(self, values: dict[str, float]) -> tuple[float, float]:
+        """Return the centre (x, y) in mm of an arc given by
+        I and J; raise InputError for an arc without them.
+        """
         given = values.keys() & {"I", "J"}
         if not given or (self.modes.centre == "90.1" and len(given) < 2):
             raise InputError(
@@ -455,7 +476,9 @@ class Interpreter:
         return from_x + x, from_y + y
 
     def read_arc_turns(self, values: dict[str, float]) -> int:
-        """Return how many turns an arc makes at most, P; refuse a P that is no such number."""
+        """Return P, the number of turns that an arc begins,
+        1 without P; raise InputError for a wrong number.
+        """
         turns = values.get("P", 1.0)
         if turns != int(turns) or not 1 <= turns <= MOST_TURNS:
             raise InputError(
@@ -464,7 +487,7 @@ class Interpreter:
         return int(turns)
 
     def require_known_place(self, place: Reached) -> Place:
-        """Return a place of an arc of which all is known; refuse one of which something is not."""
+        """Return an arc's end; raise InputError if one of its coordinates is None."""
         x, y, z = place
         if x is None or y is None or z is None:
             refuse_unknown(self.path, place, "an arc begins at a place")

@@ -1,10 +1,10 @@
 """The path of the tip as rows of moves, in mm from the program's own zero: lines, arcs and drill cycles.
 
-A rapid move to a place of which something is not known is left out, and one from such a place is its end
-alone. A cut is never left out: where its path is not known all along, the program is refused.
+A rapid move to a place with an unknown coordinate is left out, and one from such a place is its end alone. A
+cut is never left out: where its path is not known all along, the program is refused.
 
-Arcs become spans of half a turn or less. In a drill cycle pecks (Q) go up and down between the plane R and
-the bottom. One move down and one up sweep the same, and stand for all of them.
+Arcs are split into spans of half a turn or less. In a drill cycle pecks (Q) go up and down between the plane
+R and the bottom. One move down and one up sweep the same, and replace all of them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from attrs import define, field, frozen
 from workhold.conventions import ARC_RADII
 from workhold.errors import InputError, join_words
 from workhold.files.budget import LIMITS, Budget
-from workhold.files.program.words import AT_FEED_UP, NOSE, Modes
+from workhold.files.program.words import AT_FEED_UP, NOSE, ControlState
 from workhold.files.questions import START
 from workhold.limits import MOST_LENGTH
 
@@ -47,24 +47,24 @@ PECKING = ("73", "83")
 
 @define
 class PathWriter:
-    """Writes the moves that blocks make.
+    """A writer of the moves that blocks make, with the control's state.
 
     Parameters
     ----------
-    modes : what is in force.
+    modes : state of the control.
     line : of the block that is read.
-    rows : of the moves, see ``model.moves.Moves.of_rows``; the tool is -1 before any is called.
+    rows : of the moves, see ``model.moves.Moves.from_rows``; the tool is -1 before any is called.
     arrivals : lines at which the tool comes from a place that is not known.
     unplaced : lines of rapid moves in increments that begin at a place that is not known.
-    adrift : lines of rapid moves that end where something is not known.
+    adrift : lines of rapid moves to a place with an unknown coordinate.
     nose : lines of rapid moves to a height of the spindle's nose.
     unpecked : lines of peck drilling without the depth of a peck, which sweeps the same.
     has_heights : whether the program gives any height.
-    offset_used : code of the zero in which the moves are.
-    budget : what the moves may still take.
+    offset_used : code of the zero in which the moves are; None before the first.
+    budget : number of moves, and time, that may still be spent.
     """
 
-    modes: Modes = field(factory=Modes)
+    modes: ControlState = field(factory=ControlState)
     line: int = 0
     rows: list[tuple[Any, ...]] = field(factory=list)
     arrivals: list[int] = field(factory=list)
@@ -92,7 +92,7 @@ class PathWriter:
         return self.modes.unit.millimetres
 
     def convert_to_mm(self, value: float) -> float:
-        """Return a length in mm from its number.
+        """Return a length in mm from a number in the unit in force.
 
         Raises
         ------
@@ -105,9 +105,15 @@ class PathWriter:
         return found
 
     def compute_target_position(self, values: dict[str, float], rapid: bool = False) -> Reached:
-        """Return where the axis words of a block lead; refuse an increment from a place that is not known.
+        """Return the position (x, y, z) in mm to which the axis
+        words of a block lead; None for an unknown coordinate.
 
-        ``rapid`` says whether the move may be left out as long as nobody knows where it begins.
+        Raises InputError for an increment from an unknown position, unless ``rapid`` says that the move is a
+        rapid one: then its line is added to ``unplaced``.
+
+        Parameters
+        ----------
+        values : numbers of the block by letter.
         """
         place = list(self.modes.place)
         if self.offset_used is not None and values:
@@ -139,20 +145,20 @@ class PathWriter:
         return place
 
     def forget_position(self, axes: Iterable[int], why: str) -> None:
-        """Note that the place of the tip along some axes is unknown from here on, and why."""
+        """Set the tip's coordinates along some axes (0 to 2) to None, and store why they are unknown."""
         for axis in axes:
             self.modes.place[axis], self.modes.lost[axis] = None, why
         if self.modes.place[2] is None:
             self.modes.initial = None
 
     def set_zero_offset(self, offset: str) -> None:
-        """Put a zero in force; places that were named from another one are not known from it."""
+        """Put a zero in force; a position named from another zero becomes unknown."""
         if offset != self.modes.offset and self.modes.named:
             self.forget_position(range(3), f"line {self.line} changes to another zero")
         self.modes.offset = offset
 
     def refuse_other_zero(self) -> None:
-        """Refuse a place in a second zero."""
+        """Raise InputError for a position in another zero than the moves so far."""
         modes = self.modes
         if self.offset_used != modes.offset:
             raise InputError(
@@ -161,14 +167,15 @@ class PathWriter:
             )
 
     def move_to(self, place: Reached, cutting: bool, bulge: float = 0.0) -> None:
-        """Move the tip; of a rapid move from a place that is not known, only where it arrives counts.
+        """Move the tip to a position (x, y, z) in mm, and add a row for the move where its path is known.
 
-        A cut straight down, or up, from a height that is not known is where it arrives as well.
+        From an unknown position the row is the end alone, with equal start and end; a rapid move to an
+        unknown position gives no row. ``bulge`` is the arc's seen from above.
 
         Raises
         ------
         InputError
-            For a cut along a way that is not known.
+            For a cut along an unknown path, other than straight down or up to a known height.
         """
         before = self.modes.place
         x, y, z = place
@@ -191,11 +198,11 @@ class PathWriter:
             self.add(cutting, (from_x, from_y, from_z), end, bulge)
 
     def has_other_tool(self) -> bool:
-        """Return whether the tool has come into the spindle where the one before it moved last, and stands there."""
+        """Return whether the tool in the spindle is another than that of the last row."""
         return bool(self.rows) and self.rows[-1][1] != self.modes.tool and self.modes.tool is not None
 
     def add(self, cutting: bool, start: Place, end: Place, bulge: float) -> None:
-        """Add a move.
+        """Append the row of a move from ``start`` to ``end`` in mm, with tool, feed and speed in force.
 
         Raises
         ------
@@ -216,9 +223,9 @@ class PathWriter:
 
 
 def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts at a place") -> NoReturn:
-    """Refuse a cut at a place of which something is not known, with why it is not, and what helps.
+    """Raise InputError for a cut at a place with unknown coordinates (None), with the reason and a remedy.
 
-    ``what`` says what is done there.
+    ``what`` begins the message.
     """
     unknown: dict[str, list[int]] = {}
     for axis in (axis for axis, value in enumerate(place) if value is None):
@@ -255,10 +262,11 @@ class PlaneArc:
     center: Point
     sweep: float
 
-    def spans(self, start: Place, end: Place) -> Iterator[tuple[Place, float]]:
+    def iterate_spans(self, start: Place, end: Place) -> Iterator[tuple[Place, float]]:
         """Yield the end and the bulge of each span; none is more than half a turn.
 
-        Where the ends are not equally far from the centre, the distance changes with the sweep.
+        Where the ends are not equally far from the centre, the distance changes linearly with the sweep; so
+        does the height.
         """
         count = max(ceil(abs(self.sweep) / pi - 1e-9), 1)
         (x, y), part = self.center, self.sweep / count
@@ -275,9 +283,10 @@ class PlaneArc:
 
 
 def make_arc_about_center(center: Point, start: Place, end: Place, clockwise: bool, turns: int) -> PlaneArc:
-    """Return an arc about a centre; where its ends are one place, it is a full circle.
+    """Return an arc about a centre (x, y) in mm; a full circle
+    where its ends are the same, with ``turns`` - 1 more turns.
 
-    Refuses ends that are not equally far from the centre.
+    Raises InputError for ends that are not equally far from the centre.
     """
     (x, y), (to_x, to_y) = (
         (start[0] - center[0], start[1] - center[1]),
@@ -299,9 +308,9 @@ def make_arc_about_center(center: Point, start: Place, end: Place, clockwise: bo
 
 
 def make_arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> PlaneArc:
-    """Return an arc of a radius; of more than half a turn where the radius is negative.
+    """Return an arc of a radius in mm; of more than half a turn where the radius is negative.
 
-    Refuses one place as both ends, and ends too far apart.
+    Raises InputError for equal ends, and for ends too far apart.
     """
     x, y = end[0] - start[0], end[1] - start[1]
     chord, size = hypot(x, y), abs(radius)
@@ -324,10 +333,10 @@ def make_arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool)
 
 
 def drill_holes(path: PathWriter, values: dict[str, float]) -> set[str]:
-    """Drill a hole, or a row of them in increments: over it, down to R, to Z at the feed, and up again.
+    """Add the moves of a block with a drill cycle: over the hole, down to R, to Z at the feed, and up again.
 
-    Returns the letters that have a meaning. Refuses a cycle that lacks something, or that controls read in
-    different ways.
+    With L or K the hole is repeated, in increments. Return the letters that have a meaning in the block.
+    Raises InputError for a cycle that lacks a value, or that controls read in different ways.
     """
     modes = path.modes
     bottom, plane = read_drilling_heights(path, values)
@@ -347,10 +356,10 @@ def drill_holes(path: PathWriter, values: dict[str, float]) -> set[str]:
 
 
 def read_drilling_heights(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
-    """Return the heights of the hole's bottom and of the plane R in mm; those that a block does not give stay
-    in force.
+    """Return the z in mm of the hole's bottom and of the
+    plane R; values that a block does not give stay in force.
 
-    Refuses a cycle where one is missing, or where they do not follow each other downward.
+    Raises InputError for a cycle where one is missing, or where they do not follow each other downward.
     """
     modes, sticky = path.modes, path.modes.sticky
     if modes.plane != "17":
@@ -391,7 +400,10 @@ def read_drilling_heights(path: PathWriter, values: dict[str, float]) -> tuple[f
 
 
 def read_drilling_repeats(path: PathWriter, values: dict[str, float]) -> int:
-    """Return how often a block drills: L, or K on other controls; refuse both together and wrong numbers."""
+    """Return how often a block drills: L, or K on other controls; 1 without them.
+
+    Raises InputError for both together and for wrong numbers.
+    """
     given = [values[key] for key in "LK" if key in values]
     if len(given) > 1:
         raise InputError("a drill cycle has both L and K: write one of them.")

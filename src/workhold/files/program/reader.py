@@ -1,4 +1,4 @@
-"""A program from its file: text, blocks, moves, tools, and the notes on how it was read."""
+"""Reading of a program from its file: text, blocks, moves, tools, and notes on how it was read."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from workhold.files.program.words import (
 from workhold.files.questions import START, name_questions
 from workhold.files.text import read_limited
 from workhold.limits import convert_real, refuse_long
-from workhold.model.cutting_forces import forces_on
+from workhold.model.cutting_forces import compute_cutting_forces
 from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
 from workhold.model.program import Program
@@ -51,13 +51,13 @@ WholeNumbers = Literal["units", "thousandths"]
 
 @frozen
 class ReadProgram:
-    """A program, and which tools come into the spindle.
+    """A program, and the tools that come into the spindle.
 
     Parameters
     ----------
     program : what was read.
     calls : (line, number of the tool) in their order.
-    lines : how many lines the file has.
+    lines : number of lines of the file.
     """
 
     program: Program
@@ -66,7 +66,7 @@ class ReadProgram:
 
 
 def read_program(path: str | Path, tools: ToolsGiven = None, **how: Any) -> Program:
-    """Read a program, see :meth:`workhold.model.program.Program.read`.
+    """Return the program in a file, see :meth:`workhold.model.program.Program.read`.
 
     Parameters
     ----------
@@ -96,12 +96,12 @@ def read_program_with_calls(
     stock: Stock | Mapping[str, Any] | str | None = None,
     called: Mapping[str, str] | None = None,
 ) -> ReadProgram:
-    """Read a program and say which tools it calls.
+    """Return the program in a file, with the tools that it calls.
 
     Parameters
     ----------
-    called : what the questions of ``files.questions`` are called where the program is asked for; None is for
-        Python. The others are those of :meth:`workhold.model.program.Program.read`.
+    called : names of the questions of ``files.questions`` at the caller; None gives those of Python's
+        arguments. The other parameters are those of :meth:`workhold.model.program.Program.read`.
 
     Raises
     ------
@@ -121,8 +121,8 @@ def read_program_with_calls(
             f"whole numbers of a program count units or thousandths, and not '{str(whole_numbers)[:20]}': give "
             "one of them."
         )
-    begin = None if start is None else place_of(start)
-    cut_from = Stock.of(stock, None if thickness is None else convert_real(thickness, "thickness"))
+    begin = None if start is None else read_start_place(start)
+    cut_from = Stock.from_value(stock, None if thickness is None else convert_real(thickness, "thickness"))
     try:
         content = read_limited(path, LIMITS["program"])
         listing = expand_calls(parse_program_text(decode_program(content)))
@@ -156,7 +156,7 @@ def read_program_with_calls(
     try:
         # Beside the part no tool is known to be before the part is.
         within = find_stretches_in_stock(moves, found, cut_from, None, moves.cutting)
-        forces = forces_on(moves, found, CuttingData.of(cutting), within)
+        forces = compute_cutting_forces(moves, found, CuttingData.from_value(cutting), within)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     program = evolve(program, moves=moves, forces=forces)
@@ -166,7 +166,8 @@ def read_program_with_calls(
 def compute_height_of_zero(z_zero: ZZero, thickness: float | None) -> float:
     """Return the height of the program's Z0 in mm above the plane on which the part lies.
 
-    Refuses the part's top where nobody knows how high it is.
+    Raises InputError for "top" where the part's thickness is not known, and for anything that is not a
+    height.
     """
     if z_zero == "bottom":
         return 0.0
@@ -183,8 +184,8 @@ def compute_height_of_zero(z_zero: ZZero, thickness: float | None) -> float:
     return height
 
 
-def place_of(start: Sequence[float]) -> Place:
-    """Return the place of the tip at the start in mm; refuse what is not a place."""
+def read_start_place(start: Sequence[float]) -> Place:
+    """Return the position (x, y, z) of the tip at the start in mm; raise InputError for anything else."""
     values = tuple(convert_real(value, "the start of the program") for value in start)
     if len(values) != 3 or not all(isfinite(value) for value in values):
         raise InputError("the start of the program is no place: give X, Y and Z in mm, from its own zero.")
@@ -194,7 +195,9 @@ def place_of(start: Sequence[float]) -> Place:
 
 
 def decode_program(content: bytes) -> str:
-    """Return the text of a program; refuse what is no text. Comments may be in an encoding of western languages."""
+    """Return the text of a program in UTF-8, or else in
+    Latin-1, as comments may be; raise InputError for no text.
+    """
     if b"\0" in content:
         raise InputError("the file is no text: give a program of RS-274 (G-code).")
     try:
@@ -206,7 +209,17 @@ def decode_program(content: bytes) -> str:
 def run(
     listing: ProgramText, unit: Unit | None, start: Place | None = None, in_thousandths: bool = False
 ) -> Interpreter:
-    """Read all blocks; refuse the first that cannot be read with its line, and a program that moves nothing."""
+    """Return the interpreter after it has read all blocks.
+
+    Raises InputError for the first block that cannot be read, with its line, and for a program that moves
+    nothing.
+
+    Parameters
+    ----------
+    unit : of the program until it says its own; None if not known.
+    start : position of the tip at the start in mm; None if not known.
+    in_thousandths : see :class:`Interpreter`.
+    """
     changes = any(
         letter == "M" and normalize_code(text) == "6"
         for block in listing.blocks
@@ -236,21 +249,24 @@ def run(
 
 
 def gives_height(block: ProgramBlock) -> bool:
-    """Return whether a block gives a height of the tip, and not one of the machine's own."""
+    """Return whether a block gives a height of the tip, other than one of the machine's own."""
     return any(letter == "Z" for letter, _ in block.words) and not any(
         letter == "G" and normalize_code(text) in VISITS for letter, text in block.words
     )
 
 
 def has_length(block: ProgramBlock) -> bool:
-    """Return whether a block puts the length of a tool in force; number 0 takes it away."""
+    """Return whether a block puts a tool length in force (G43 without H0)."""
     if not any(letter == "G" and normalize_code(text) == "43" for letter, text in block.words):
         return False
     return not any(letter == "H" and float(text) == 0.0 for letter, text in block.words)
 
 
 def find_first_unit(listing: ProgramText, unit: str | None) -> Unit:
-    """Return the unit in which a program begins, in which its comments speak of tools."""
+    """Return the unit in which a program begins, which is also that of tools in its comments.
+
+    ``unit`` is the one to take where the program has none; mm if None.
+    """
     codes = (
         normalize_code(text) for block in listing.blocks for letter, text in block.words if letter == "G"
     )
@@ -258,8 +274,11 @@ def find_first_unit(listing: ProgramText, unit: str | None) -> Unit:
 
 
 def make_moves(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarray[Any, Any]) -> Moves:
-    """Return the moves in the part's coordinates; those before any call have the only tool that is given."""
-    moves = Moves.of_rows(control.path.rows)
+    """Return the moves in the part's coordinates: shifted by ``shift`` (x, y, z) in mm.
+
+    Moves before any tool call get the lowest number among ``tools``.
+    """
+    moves = Moves.from_rows(control.path.rows)
     tool = np.where(moves.tool < 0, min(tools), moves.tool)
     return evolve(moves, tool=tool, start=moves.start + shift, end=moves.end + shift)
 
@@ -267,7 +286,16 @@ def make_moves(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarra
 def list_tools_used(
     path: Path, control: Interpreter, listing: ProgramText, given: ToolsGiven, unit: Unit
 ) -> tuple[dict[int, Tool], list[str]]:
-    """Return the tools that move, with notes on what is not known of them; refuse a tool of no known diameter."""
+    """Return the tools with which the program moves, by number, and notes on what is not known of them.
+
+    Rapid moves before any tool is called may be removed from ``control``, see :func:`drop_unknown`. Raises
+    InputError for a tool without a known diameter.
+
+    Parameters
+    ----------
+    given : tools by number, or a table's path; None for those in the program's comments.
+    unit : of lengths, where they have none.
+    """
     notes: list[str] = []
     if given is None:
         try:
@@ -304,11 +332,11 @@ def list_tools_used(
 
 
 def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) -> list[str]:
-    """Leave rapid moves out that are made before a tool is called, or with an empty spindle (T0), and notes
-    them.
+    """Remove rapid moves without a tool, before any call or with
+    T0, from ``control``; return a list with a note on them.
 
-    They stay where number 0 is among the tools that are known, and where the program calls no other tool.
-    Refuses a cut.
+    They are kept if ``known`` has a tool 0, or the program has no other moves. Raises InputError for a cut
+    without a tool.
     """
     rows = control.path.rows
     early = [row for row in rows if row[1] <= 0]
@@ -329,7 +357,9 @@ def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) ->
 
 
 def make_tool_from_value(number: int, value: Any, unit: Unit) -> Tool:
-    """Return a tool that is one, a diameter in the program's unit, or fields; refuse anything else."""
+    """Return a tool from a Tool, from a diameter in the
+    program's unit, or from fields; raise InputError for others.
+    """
     if isinstance(value, Tool):
         return value
     fields = value if isinstance(value, Mapping) else {"diameter": value}
@@ -337,6 +367,7 @@ def make_tool_from_value(number: int, value: Any, unit: Unit) -> Tool:
 
 
 def describe_missing_tools(used: Sequence[int], missing: Sequence[int]) -> str:
+    """Return the error message for tools without a known diameter."""
     names = [f"T{number}" for number in missing]
     if used == [0]:
         called = "the program moves without calling a tool, and what is in the spindle (T0)"
@@ -350,7 +381,7 @@ def describe_missing_tools(used: Sequence[int], missing: Sequence[int]) -> str:
 
 
 def format_line_numbers(lines: Sequence[int]) -> str:
-    """Return the lines as a list that stays short.
+    """Return "Line" or "Lines" with the first few line numbers and the number of the rest.
 
     >>> format_line_numbers([3]), format_line_numbers([1, 2, 3, 4, 5, 6, 7])
     ('Line 3', 'Lines 1, 2, 3, 4, 5 and 2 more')
@@ -364,7 +395,7 @@ def format_line_numbers(lines: Sequence[int]) -> str:
 
 
 def describe_reading(control: Interpreter, listing: ProgramText) -> list[str]:
-    """Return what of the reading a user has to know, in sentences."""
+    """Return notes, in sentences, on how the program was read."""
     notes = []
     if control.path.arrivals:
         notes.append(
@@ -441,6 +472,7 @@ def describe_reading(control: Interpreter, listing: ProgramText) -> list[str]:
 
 
 def describe_whole_program(control: Interpreter) -> list[str]:
+    """Return a list with a note on lengths without a decimal point; [] if there are none."""
     unit = control.modes.unit
     if not control.whole or unit is None:
         return []

@@ -1,7 +1,7 @@
-"""Subprograms of a file: the blocks of a program in the order in which a control comes to them.
+"""Subprograms of a file: the blocks of a program in the order in which a control runs them.
 
-M98 P100 runs the blocks behind O100 until M99, M97 P100 those from the block N100 on; L says how often. Of five
-digits and more P has, on Fanuc, how often in front of the last four.
+M98 P100 runs the blocks behind O100 until M99, M97 P100 those from the block N100 on; L says how often. On
+Fanuc, of a P with five digits and more the last four are the number, and those before them say how often.
 
 Glossary
 --------
@@ -36,7 +36,7 @@ Starts = dict[tuple[str, float], list[int]]
 
 
 @define
-class Running:
+class RunningSubprogram:
     """A subprogram that runs.
 
     Parameters
@@ -44,7 +44,7 @@ class Running:
     begin : index of its first block.
     back : index of the block behind its call.
     left : how often it still runs, this time included.
-    call : line and words of its call, as a message names them.
+    call : line and words of its call, for messages.
     program : number of the program in which it stands.
     """
 
@@ -55,13 +55,15 @@ class Running:
     program: int | None
 
     def refuse_endless(self) -> InputError:
+        """Return the error for a subprogram without M99."""
         return InputError(f"{self.call} a subprogram without an end: write M99 behind its last block.")
 
 
 def expand_calls(listing: ProgramText) -> ProgramText:
-    """Return the text with its subprograms written out where they are called; one without calls as it is.
+    """Return the text with its subprograms written out where they are called; unchanged if it has no calls.
 
-    Refuses a call of what is not in the file, a subprogram without an end, and an M99 that ends none.
+    Raises InputError for a call of what is not in the file, a subprogram without an end, and an M99 that ends
+    none.
     """
     if not any(block.functions & {*CALLS, RETURN} for block in listing.blocks):
         return listing
@@ -75,8 +77,11 @@ def expand_calls(listing: ProgramText) -> ProgramText:
 
 
 def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[ProgramBlock]:
-    """Yield blocks as they run, without calls and M99, up to the program's end."""
-    running: list[Running] = []
+    """Yield blocks in the order in which they run, without calls and M99, up to the program's end.
+
+    ``optional`` has the lines that begin with a slash. Raises InputError as :func:`expand_calls`.
+    """
+    running: list[RunningSubprogram] = []
     starts = find_subprogram_starts(blocks)
     budget, index = Budget(LIMITS["program"]), 0
     while index < len(blocks):
@@ -120,10 +125,13 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
         raise running[-1].refuse_endless()
 
 
-def begin_call(blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlock, back: int) -> Running:
-    """Return the subprogram that a block calls.
+def begin_call(
+    blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlock, back: int
+) -> RunningSubprogram:
+    """Return the subprogram that a block calls; ``back`` is the index of the block after the call.
 
-    Refuses one that is not in the file, or there twice, and words that the block cannot have.
+    Raises InputError for one that is not in the file, or there twice, and for words that the block cannot
+    have.
     """
     given = {letter: float(text) for letter, text in block.words if letter in OF_CALLS}
     code = min(block.functions & CALLS.keys())
@@ -157,11 +165,11 @@ def begin_call(blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlo
             f"M{code} runs {name} {repeats:g} times: write a whole number from 1 to {MOST_REPEATS}."
         )
     call = f"line {block.line}: M{code} calls {name},"
-    return Running(found[0], back, int(repeats), call, blocks[found[0]].program)
+    return RunningSubprogram(found[0], back, int(repeats), call, blocks[found[0]].program)
 
 
 def find_subprogram_starts(blocks: Sequence[ProgramBlock]) -> Starts:
-    """Return the indices of the blocks at which subprograms begin, by the letter and the number that calls name."""
+    """Return the indices of the blocks at which subprograms begin, by letter ("N" or "O") and number."""
     starts: Starts = {}
     before: int | None = None
     for index, block in enumerate(blocks):
@@ -174,7 +182,10 @@ def find_subprogram_starts(blocks: Sequence[ProgramBlock]) -> Starts:
 
 
 def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> None:
-    """Refuse an M99 that does not simply lead back behind the call."""
+    """Raise InputError for an M99 that does not simply return behind the call.
+
+    ``is_called`` says whether a subprogram runs, ``is_optional`` whether the line begins with a slash.
+    """
     if not is_called:
         raise InputError("M99 stands outside of a subprogram, where the program begins anew: write M30.")
     if is_optional:
@@ -186,7 +197,7 @@ def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> No
 
 
 def remove_call_from_block(block: ProgramBlock) -> Iterator[ProgramBlock]:
-    """Yield the block without its call or M99, if anything is left of it."""
+    """Yield the block without its call or M99, if any words are left."""
     is_call = bool(block.functions & CALLS.keys())
     words = [
         (letter, text)

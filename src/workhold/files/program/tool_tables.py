@@ -79,14 +79,14 @@ def make_tool_from_fields(number: int, fields: Mapping[str, Any], place: str, un
 
     Parameters
     ----------
-    fields : lengths by their names; the diameter is needed. A tool whose stickout is not said goes on upward.
-    place : where they stand, for messages.
+    fields : lengths by their names; the diameter is needed. A tool without a stickout is ``ENDLESS`` mm long.
+    place : name of their source, for messages.
     unit : of lengths, where the fields do not say.
 
     Raises
     ------
     InputError
-        For a field that is not known, or cannot be.
+        For a field that is not known, or whose value is impossible.
 
     Examples
     --------
@@ -119,10 +119,10 @@ def make_tool_from_fields(number: int, fields: Mapping[str, Any], place: str, un
 
 
 def make_cutting_data(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
-    """Return how a tool cuts, from its fields; lengths are in the unit given.
+    """Return the cutting data of a tool from its fields, with lengths in ``unit``.
 
-    A table that was written for another program may say of flutes and of a point what cannot be used here.
-    That is refused only where it is the force that is asked for.
+    Number of teeth and point angle of a table for another program may be impossible here. That raises
+    InputError only if the fields ask for a cutting force; otherwise they are left out.
     """
     given = {key: fields[key] for key in CUTTING if fields.get(key) is not None}
     if fields.get("flutes") is not None:
@@ -136,6 +136,7 @@ def make_cutting_data(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
 
 
 def is_usable(key: str, value: Any) -> bool:
+    """Return whether cutting data accept a value."""
     try:
         CuttingData(**{key: value})
     except InputError:
@@ -144,7 +145,11 @@ def is_usable(key: str, value: Any) -> bool:
 
 
 def stack_cylinders(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
-    """Return the cylinders of a tool from its lengths in mm; refuse a shank or a holder whose place is not said."""
+    """Return the cylinders of a tool from its lengths in mm, from the tip up.
+
+    Raises InputError for a shank without flute length, a holder without stickout, or a holder length without
+    diameter.
+    """
     flute, reach = lengths.get("flute_length"), lengths.get("stickout")
     radius, shank = lengths["diameter"] / 2, lengths.get("shank_diameter")
     top = ENDLESS if reach is None else reach
@@ -167,11 +172,11 @@ def stack_cylinders(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
 
 
 def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Read a table of tools.
+    """Return the tools in a table.
 
     Parameters
     ----------
-    path : a file in one of the three forms; a name ending in .toml or .csv says which, else its content does.
+    path : a file in one of the three forms; a name ending in .toml or .csv decides, else its content does.
     unit : of lengths, where the file does not say.
 
     Returns
@@ -198,7 +203,10 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
 
 
 def parse_tool_comment(text: str) -> tuple[int | None, dict[str, str]] | None:
-    """Return the tool that a comment describes and its fields; None as its number means the tool in use."""
+    """Return the number and the fields of the tool that a comment describes; None if it describes none.
+
+    The number is None where the comment means the tool in the spindle.
+    """
     if match := COMMENT.match(text):
         before, after = match[2].strip(" -"), match[4].rpartition(" - ")[2].strip()
         return int(match[1]), {"diameter": match[3], "name": before or ("" if "=" in after else after)}
@@ -211,7 +219,9 @@ def parse_tool_comment(text: str) -> tuple[int | None, dict[str, str]] | None:
 
 
 def read_tool_number(text: Any, place: str) -> int:
-    """Return the number of a tool; refuse anything but a whole number from 0."""
+    """Return the number of a tool, written with or without T;
+    raise InputError for anything but a whole number from 0.
+    """
     word = str(text).strip()
     word = word[1:] if word[:1] in ("T", "t") else word
     if not (word.isascii() and word.isdigit() and len(word) <= 6):
@@ -222,7 +232,9 @@ def read_tool_number(text: Any, place: str) -> int:
 
 
 def collect_tools(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) -> dict[int, Tool]:
-    """Return the tools of rows of number, fields and place; refuse a tool that is given twice, and none."""
+    """Return tools by number from rows (number, fields, place);
+    raise InputError for one given twice, and for no rows.
+    """
     tools: dict[int, Tool] = {}
     budget = Budget(LIMITS["tools"])
     for number, fields, place in rows:
@@ -238,7 +250,10 @@ def collect_tools(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit
 
 
 def read_toml_tools(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Return the tools of TOML, and whether it says the unit of each; refuse another form."""
+    """Return the tools of parsed TOML by number, and whether it says the unit of each.
+
+    Raises InputError for another form.
+    """
     for key in content:
         if key not in ("unit", "tool"):
             raise InputError(
@@ -254,7 +269,11 @@ def read_toml_tools(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, T
 
 
 def read_csv_tools(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Return the tools of a table with a head, separated by commas, semicolons or tabs; refuse another form."""
+    """Return the tools of a table with column names, separated
+    by commas, semicolons or tabs, and whether each has a unit.
+
+    Raises InputError for another form.
+    """
     known = ("tool", *FIELDS)
     wanted = f"write tool,diameter and others of {', '.join(known)}"
     if not text.strip():
@@ -276,8 +295,8 @@ def read_csv_tools(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
 
 
 def is_linuxcnc(text: str) -> bool:
-    """Return whether the first line that is no remark is words of letters and numbers, or begins with a
-    tool's number.
+    """Return whether the first line that is no remark
+    begins with T, or consists of words of which one is T.
     """
     codes = (line.partition(";")[0].strip() for line in text.splitlines())
     code = next((code for code in codes if code), "")
@@ -286,7 +305,10 @@ def is_linuxcnc(text: str) -> bool:
 
 
 def read_linuxcnc_tools(text: str, unit: Unit) -> dict[int, Tool]:
-    """Return the tools of LinuxCNC's table, without those that have no diameter; refuse a line of another form."""
+    """Return the tools of LinuxCNC's table by number, leaving out those without a diameter.
+
+    Raises InputError for a line of another form.
+    """
     rows = []
     for place, line in enumerate(text.splitlines(), 1):
         code, _, remark = line.partition(";")
@@ -306,13 +328,13 @@ def read_linuxcnc_tools(text: str, unit: Unit) -> dict[int, Tool]:
 def read_tools_in_comments(
     comments: Iterable[tuple[int, str]], unit: Unit, calls: Sequence[tuple[int, int]] = ()
 ) -> dict[int, Tool]:
-    """Return the tools that a program describes in its comments, with a diameter in the program's unit.
+    """Return the tools that a program describes in its comments, by number.
 
     Parameters
     ----------
     comments : (line, text) of each.
-    unit : the program's.
-    calls : (line, number) of the tools that come into the spindle, of which some comments speak.
+    unit : of diameters in comments that do not give their own: the program's.
+    calls : (line, number) of the tools that come into the spindle, for comments about the tool in use.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A program's text as blocks of words with comments, and its codes: groups, refusals, what stays in force.
+"""A program's text as blocks of words with comments; its codes: groups, refusals, and the state of a control.
 
 A group holds codes of which one is in force, or stands in a block: T. R. Kramer, F. M. Proctor, E. Messina,
 "The NIST RS274NGC interpreter, version 3", NISTIR 6556, 2000, "Modal groups". Cycles are a group of their own
@@ -37,7 +37,7 @@ __all__ = [
     "SWITCHED_END",
     "UNITS",
     "VISITS",
-    "Modes",
+    "ControlState",
     "ProgramBlock",
     "ProgramText",
     "normalize_code",
@@ -175,7 +175,7 @@ LONGEST = 2000
 
 @cache
 def normalize_code(text: str) -> str:
-    """Return the number of a code without zeros that say nothing.
+    """Return the number of a code without leading and trailing zeros.
 
     Examples
     --------
@@ -186,22 +186,25 @@ def normalize_code(text: str) -> str:
 
 
 def refuse_code(code: str) -> NoReturn:
-    """Refuse a code of letter G with its reason, whatever it is."""
+    """Raise InputError for a code of letter G, with the reason why it is not supported."""
     reason = REASONS.get(code, "is not known: take it out, or write the moves that it makes")
     raise InputError(f"G{code} {reason}.")
 
 
 def refuse_function(code: str) -> None:
-    """Refuse a code of letter M that does more than switch something."""
+    """Raise InputError for a code of letter M that does more than switch something."""
     if code in FUNCTION_REASONS:
         raise InputError(f"M{code} {FUNCTION_REASONS[code]}.")
 
 
 def is_spline(code: str, letters: Set[str], turns: float) -> bool:
-    """Return whether G5 or G5.1 is a curve of its own, and not a word of how a control looks ahead.
+    """Return whether G5 or G5.1 is a curve of its own, and not
+    a mode of how a control looks ahead; False for other codes.
 
-    The letters are those of its block. ``turns`` is P, which calls a stored path from 10001 on; 0 where there
-    is none.
+    Parameters
+    ----------
+    letters : of the block.
+    turns : value of P, which calls a stored path from 10001 on; 0 where there is none.
     """
     return code in ("5", "5.1") and (bool(letters & set("XYZIJL")) or turns > 10_000)
 
@@ -211,7 +214,7 @@ NOSE = "nose"
 
 
 @define
-class Modes:
+class ControlState:
     """The state of a control, as far as the path follows from it; lengths in mm, from the program's own zero.
 
     Parameters
@@ -222,7 +225,7 @@ class Modes:
     plane, distance, centre, feed_kind, back : codes in force.
     offset : code of the zero in force.
     place : x, y and z of the tip, None where it is not known.
-    lost : why each of them is not known; empty where the program has not named it yet.
+    lost : reason why each of them is not known; empty where the program has not named it yet.
     named : whether any of them has been named yet.
     length : whose tool length is in force, such as H2 or T2; None before any is said, or :data:`NOSE`.
     called, tool : number that T named last, and that of the tool in the spindle; None before the first.
@@ -261,7 +264,8 @@ class ProgramBlock:
     line : its number, from 1.
     words : letters and the texts of their numbers, in order; without the block's own number.
     number : the block's own, N; None without one.
-    program, program_line : number (O) of the program in which it stands, and that one's line; None before any.
+    program, program_line : number (O) of the program in which it stands, and the line of that O; None before
+        any.
     functions : codes of its words M.
     """
 
@@ -280,7 +284,7 @@ class ProgramBlock:
 
 @frozen
 class ProgramText:
-    """A program's blocks up to its end, and what stands beside them.
+    """A program's blocks up to its end, with its comments and special lines.
 
     Parameters
     ----------
@@ -299,9 +303,10 @@ class ProgramText:
 
 
 def parse_program_text(text: str) -> ProgramText:
-    """Read a program's text into blocks, until M2, M30 or a second percent sign ends it.
+    """Return a program's text as blocks, until M2, M30 or a second percent sign ends it.
 
-    Where a subprogram is called, it may stand behind M30, up to the percent sign.
+    If a subprogram is called, blocks behind M30 are included, up to the percent sign. Raises InputError, with
+    the line, for a line that is not a block.
     """
     found = ProgramText([], [], [], [], [])
     began = ended = is_closed = calls = False
@@ -356,16 +361,16 @@ def parse_program_text(text: str) -> ProgramText:
 
 
 def number_lines(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the lines of a text, counted as editors do."""
+    """Yield (number, line) for the lines of a text, from 1; LF, CR and CR LF end lines."""
     return enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1)
 
 
 def strip_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
-    """Return a line without its comments, which are added to a list; refuse a parenthesis without its
-    partner.
+    """Return a line without its comments, which are appended to ``comments`` with the line's number.
 
-    Of a comment within another one control ends the outer one at the first parenthesis, another at the last.
-    Where nothing stands between the two, all read the same words.
+    Of nested comments one control ends the outer one at the first closing parenthesis, another at the last.
+    They are accepted where nothing stands between the two. Raises InputError for a parenthesis without its
+    partner.
     """
     if "(" not in content and ";" not in content and ")" not in content:
         return content
@@ -387,7 +392,7 @@ def strip_comments(line: int, content: str, comments: list[tuple[int, str]]) -> 
 
 
 def explain_refusal(code: str, written: str) -> str:
-    """Return why a line is not a block, and what helps.
+    """Return a sentence on why a line is not a block, with a remedy.
 
     ``code`` is the line in capitals, ``written`` as it stands in the file.
     """
@@ -422,5 +427,6 @@ def explain_refusal(code: str, written: str) -> str:
 
 
 def shorten_excerpt(text: str) -> str:
+    """Return a text without unprintable characters, cut to ``SHOWN`` characters."""
     shown = make_printable(text.strip())
     return shown if len(shown) <= SHOWN else shown[: SHOWN - 3] + "..."

@@ -2,8 +2,8 @@
 
 Its text ``result.json`` is the head of the JSON form (:mod:`workhold.files.result.writer`). The numbers are
 those of that form, rounded as there, so that a result can go from one form to the other and back without a
-change. Where pegs stand follows from their holes and is not written. Opening such a file reads the head and
-the types; fixtures are read, and checked, when they are looked at.
+change. Places of pegs follow from their holes and are not written. Opening such a file reads the head and the
+types; fixtures are read, and checked, when they are accessed.
 """
 
 from __future__ import annotations
@@ -50,17 +50,21 @@ BLOCK = 1 << 15
 
 @frozen
 class ColumnsSink:
-    """Writes results in columns as they come; replaces an earlier file only when all went well."""
+    """A sink that writes a result in columns as its fixtures
+    come; an earlier file is replaced only when all went well.
+    """
 
     path: Path
 
     @property
     def folder(self) -> Path:
-        """The folder of the file, where what is being sorted finds room as well."""
+        """The folder of the file, where the sorting has its temporary files as well."""
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Write a result and its fixtures, as many as arrive before the user stops."""
+        """Write a result and its fixtures, at most ``listed``
+        of them, and fewer where the user stops the search.
+        """
         counts = Counter[str]()
         bends = result.query.knows_heights
         figures = len(FIGURES) if bends else BEFORE_PINS
@@ -69,23 +73,23 @@ class ColumnsSink:
             archive = ArchiveWriter(stream, columns, listed)
             for table in tables:
                 counts.update(result.toolkit.count_arrangements(table.arrangement))
-                table = table.with_figures(columns["quality"].shape[0])
+                table = table.with_figure_columns(columns["quality"].shape[0])
                 for start in range(0, len(table), BLOCK):
                     archive.add(round_columns_for_file(table.take(slice(start, start + BLOCK))))
             if archive.done < listed:
-                result = result.cut_short(archive.done)
+                result = result.mark_cut_short(archive.done)
             text = make_head(result, with_pieces=False)
             if bends:
                 text[PINS_KNOWN] = True
             text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
-                text["seatings"] = [one.as_fields() for one in result.seating]
+                text["seatings"] = [one.to_fields() for one in result.seating]
             parts = write_head_json(text, result.query.program, ", ", is_ascii=False)
             archive.close(HEAD, "".join(parts) + "}", FORMAT)
 
 
 def refuse_holds(query: Query, path: str | Path) -> None:
-    """Refuse what friction holds, which has more than pegs, or none, to stand in columns."""
+    """Raise InputError for a query whose toolkit holds by friction: columns have room for pegs only."""
     if isinstance(query, Query) and query.toolkit.holds_by_friction:
         has = "straps as well" if query.toolkit.strap_set is not None else "none"
         raise InputError(
@@ -111,12 +115,12 @@ def answer_to_file(
 ) -> Result:
     """Find every fixture that a query asks for, however many, and write them in columns.
 
-    No more than some 100 MB of fixtures are in memory at a time. What is being sorted is kept beside the
-    file, in files without a name, and takes up to twice its size.
+    No more than some 100 MB of fixtures are in memory at a time. Fixtures that are being sorted are kept
+    beside the file, in files without a name, and take up to twice its size.
 
     Parameters
     ----------
-    query : what is asked.
+    query : what to search for.
     path : of the file, whose name ends in .npz.
     overwrite : whether a file that workhold has not written may be replaced.
     threads, progress, cancel, preview : as :func:`workhold.answer` takes them.
@@ -124,7 +128,7 @@ def answer_to_file(
     Returns
     -------
     Result
-        Read from the file: fixtures are read when they are looked at.
+        Read from the file: fixtures are read when they are accessed.
 
     Raises
     ------
@@ -150,7 +154,9 @@ def answer_to_file(
 
 
 def round_columns_for_file(table: FixtureTable) -> tuple[NDArray[Any], ...]:
-    """Return the columns of a table, rounded as the JSON form writes them."""
+    """Return the columns of a table in the order of
+    :func:`describe_columns`, rounded as the JSON form writes them.
+    """
     _, read = round_table_for_file(table)
     *columns, pairs = evolve(
         read, force=round_to_twelve_digits(table.force), quality=round_to_twelve_digits(table.quality)
@@ -160,11 +166,11 @@ def round_columns_for_file(table: FixtureTable) -> tuple[NDArray[Any], ...]:
 
 @define(frozen=True, eq=False)
 class MappedTable(FixtureTable):
-    """The fixtures of a file in columns; those taken are checked.
+    """The fixtures of a file in columns; those that :meth:`take` returns are checked.
 
     Parameters
     ----------
-    query : what they answer.
+    query : that they answer.
     path : of the file.
     """
 
@@ -172,6 +178,7 @@ class MappedTable(FixtureTable):
     path: Path = field(kw_only=True)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
+        """Return the fixtures at some rows; raise InputError if one is faulty."""
         table = super().take(order)
         places = range(len(self))[order] if isinstance(order, slice) else np.arange(len(self))[order]
         refuse_faulty(table, self.query, self.path, places)
@@ -179,7 +186,10 @@ class MappedTable(FixtureTable):
 
 
 def read_columns(path: Path) -> Result:
-    """Return the result of a file in columns, of which only the head and the fixtures' types are read yet."""
+    """Return the result of a file in columns; only the head and the fixtures' types are read at once.
+
+    Raises InputError for a file that is no result file, or contradicts itself.
+    """
     text, columns = map_archive(path, describe_columns_from_head, HEAD)
     try:
         data = parse_head(text)

@@ -1,6 +1,6 @@
-"""The shapes of a fixture and of its seating in a result file, as forms of pydantic.
+"""The forms of a fixture and of its seating in a result file, as models of pydantic.
 
-A seating is checked by its form, and becomes what it is in the model. The form of a whole file, fixtures
+A seating is checked by its form, and then made an object of the model. The form of a whole file, fixtures
 included, serves its JSON Schema only: a million fixtures are collected into arrays (``files.result.reader``).
 """
 
@@ -45,7 +45,7 @@ class SeatingKeys(BaseModel):
 
 
 class SeatPosePart(SeatingKeys):
-    """Where the part lies, as drawn or turned over."""
+    """Pose of the part, as drawn or turned over; lengths in mm."""
 
     theta_deg: float
     x: float
@@ -61,14 +61,14 @@ class SeatContactPart(SeatingKeys):
 
     @model_validator(mode="after")
     def one_of_both(self) -> SeatContactPart:
-        """Refuse a contact with neither or both."""
+        """Return the contact; raise ValueError unless it has either a face or a corner."""
         if (self.face is None) == (self.corner is None):
             raise ValueError("a contact is on a face or on a corner")
         return self
 
 
 class SeatPart(SeatingKeys):
-    """Where closing the vise comes to rest."""
+    """A pose in which the part comes to rest when the vise is closed."""
 
     kind: Literal["fixture", "corner", "pocket", "curved", "loose", "unsettled"]
     pose: SeatPosePart
@@ -84,7 +84,7 @@ class SeatPart(SeatingKeys):
 
 
 class PassPart(SeatingKeys):
-    """Where the cage opens first."""
+    """The pose in which the cage opens first."""
 
     pose: SeatPosePart
     jaw_separation: float
@@ -92,7 +92,7 @@ class PassPart(SeatingKeys):
 
 
 class CagePart(SeatingKeys):
-    """How far the part may be off and still come home."""
+    """Extremes of the poses in the cage, relative to the fixture's pose."""
 
     theta_deg: SeatingPair
     x: SeatingPair
@@ -107,7 +107,7 @@ class CageShortPart(SeatingKeys):
 
 
 class SeatingPart(SeatingKeys):
-    """What else the pegs of a fixture can do with the part; see docs/seating.md."""
+    """Figures and seats of a fixture's seating; see docs/seating.md."""
 
     capture_opening: Length | None
     drop_room: Length | None
@@ -126,7 +126,12 @@ class SeatingPart(SeatingKeys):
 
 
 def check_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
-    """Return the seating of a fixture, counted from 1, in a pose.
+    """Return the seating of a fixture from its JSON object.
+
+    Parameters
+    ----------
+    pose : of the fixture.
+    number : of the fixture, counted from 1, for messages.
 
     Raises
     ------
@@ -140,13 +145,13 @@ def check_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
         key = ".".join(filter(None, ("seating", key)))
         raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     # What the form lets be left out has its default there.
-    return Seating.of_fields(part.model_dump(by_alias=True), pose)
+    return Seating.from_fields(part.model_dump(by_alias=True), pose)
 
 
 def add_seatings(result: Result, seating: Sequence[Seating], path: Path) -> Result:
     """Return a result with the seating of its first fixtures.
 
-    Refuses seating that was not asked for, or of more fixtures than it was asked for.
+    Raises InputError for seating of more fixtures than the query asks for, or than there are.
     """
     query = result.query
     if len(seating) > (query.seating or 0) or len(seating) > len(result):
@@ -154,11 +159,14 @@ def add_seatings(result: Result, seating: Sequence[Seating], path: Path) -> Resu
             f"{path}: the seating of {len(seating)} fixtures is stated, but it is asked of "
             f"{query.seating or 0} and {len(result)} are listed."
         )
-    return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
+    return evolve(result, seating=tuple(one.with_toolkit(query.toolkit, query.opening) for one in seating))
 
 
 def collect_seating_figures(data: Mapping[str, Any]) -> dict[str, float]:
-    """Return the figures of a seating in a file of this program; infinite where it has no end."""
+    """Return the figures of a seating by key, from its JSON object in a file of this program.
+
+    A figure that is null there is inf (unbounded).
+    """
     figures = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
     # Without a pass it is not known how near a part must be put.
     figures["placing"] = (
@@ -168,7 +176,8 @@ def collect_seating_figures(data: Mapping[str, Any]) -> dict[str, float]:
 
 
 def read_head_seatings(data: dict[str, Any], path: Path) -> list[Any]:
-    """Return the seating of the first fixtures as the head of a file in columns has it.
+    """Return the seatings of the first fixtures, as JSON
+    objects, from the head of a file in columns; [] without any.
 
     Raises
     ------
@@ -230,7 +239,7 @@ class WallPart(FormPart):
 
 
 class PosePart(FormPart):
-    """Where the workpiece lies."""
+    """Pose of the workpiece; lengths in mm."""
 
     theta_deg: float
     x: float
@@ -238,7 +247,7 @@ class PosePart(FormPart):
 
 
 class NearestMovePart(FormPart):
-    """Where the tools of the program come nearest to what holds the part."""
+    """Nearest approach of the program's tools to what holds the part, in mm."""
 
     distance: float
     line: Whole

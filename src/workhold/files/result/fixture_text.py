@@ -1,8 +1,8 @@
 """The fixtures of a result as text: lines of JSON (MODEL, "Result file"), and CSV for a spreadsheet.
 
-A line of JSON is a template that follows from the toolkit's carriers. It gives of each contact the place
-where it stands, as its carrier is written, and the force on it, per unit of the force of each thing that
-moves. The templates are filled with columns of numbers, because a result may have a million fixtures.
+A line of JSON is made from a template that follows from the toolkit's carriers. It gives of each contact its
+place, as its carrier is written, and the force on it, per unit of the force of each thing that moves. The
+templates are filled with columns of numbers, because a result may have a million fixtures.
 
 The CSV table has one row per fixture and a line of column names. The pins of one fixture are a table of their
 own: which hole, which dowel, and what each touches.
@@ -29,9 +29,9 @@ from workhold.errors import make_printable
 from workhold.fixels.carrier import Carrier, make_column_letters
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.clamps import ratios
+from workhold.model.clamps import compute_force_ratios
 from workhold.model.fixture import Fixture
-from workhold.model.fixture_table import FixtureTable, list_flat_angles, peg_places
+from workhold.model.fixture_table import FixtureTable, compute_peg_places, list_flat_angles
 from workhold.model.quality import SEATING_FIGURES, Figure, list_figures_in_columns
 from workhold.model.result import Result
 from workhold.model.seating import DECIMALS
@@ -63,26 +63,29 @@ DIGITS, DOUBTFUL = 12, 1e-3
 
 
 def list_known_figures(table: FixtureTable) -> list[Figure]:
-    """Return the figures of quality that all fixtures of a table have."""
+    """Return the figures of quality that are finite for
+    all fixtures of a table, in the order of its columns.
+    """
     figures = list_figures_in_columns(table.quality.shape[1])
     return [figure for number, figure in enumerate(figures) if np.isfinite(table.quality[:, number]).all()]
 
 
 def round_to_steps(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
-    """Return the nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
+    """Return the values rounded to multiples of 1/steps, without negative zeros."""
     return np.rint(values.astype(np.float64) * steps) / steps + 0.0
 
 
 def round_degrees(degrees: Any) -> NDArray[np.float64]:
-    """Return the angles in degrees, a number or an array, as they are written, in [0, 360)."""
+    """Return angles in degrees, a number or an array, in [0, 360) and rounded to 1e-10."""
     out = round_to_steps(np.asarray(degrees) % 360.0, ANGLE_STEPS)
     return np.where(out >= 360.0, 0.0, out)
 
 
 def round_table_for_file(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
-    """Return the orientations (N,) in degrees as they are written, and the table as it is then read.
+    """Return the orientations (N,) in degrees as written,
+    and the table with poses and jaw travels as read back.
 
-    Where pegs stand follows from the poses and travels as read, so that it is the same for the reader.
+    The places of pegs follow from these rounded values, so that they are the same for the reader.
     """
     theta = round_degrees(np.degrees(table.theta))
     position, travel = (
@@ -92,10 +95,12 @@ def round_table_for_file(table: FixtureTable) -> tuple[NDArray[np.float64], Fixt
 
 
 def round_to_twelve_digits(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the floats nearest to values with twelve significant digits; NaN for infinite ones, which JSON
-    lacks.
+    """Return the floats nearest to values with twelve
+    significant digits; NaN for infinite ones, which JSON lacks.
 
-    A whole number below 1e12 times or over an exact power of ten is rounded once, as reading the digits is.
+    The results are those of formatting and parsing each value, but computed on arrays: a whole number below
+    1e12 times or over an exact power of ten is rounded once, as parsing the digits is. Doubtful values are
+    formatted.
     """
     values = np.where(np.isfinite(values), values, np.nan)
     size = np.abs(values)
@@ -132,8 +137,10 @@ LEFT_OUT = "%.0s"
 def make_fixture_template(
     arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], band: str
 ) -> str:
-    """Return the line of a fixture with its numbers left open, in the order of
-    :meth:`WrittenBlock.list_line_columns`.
+    """Return the JSON line of a fixture of one type (arrangement) as a %-template.
+
+    Its numbers come in the order of :meth:`WrittenBlock.list_line_columns`; ``band`` is the template of a
+    peg's band, or "".
     """
     tips, travels = toolkit.tips, toolkit.travels
     carriers = [toolkit.carriers[number] for number in arrangement.carriers]
@@ -153,8 +160,12 @@ def make_fixture_template(
 
 
 def make_peg_template(carrier: Carrier, travels: int) -> str:
-    """Return the form of a peg of a carrier, its numbers left open; those of a clamp's place come twice."""
-    key, name = carrier.written_as
+    """Return the %-template of a peg on a carrier (jaw, plate or clamp).
+
+    ``travels`` is the number of things that move. For a clamp it takes column and row twice: for its hole,
+    and for the line that it pushes along.
+    """
+    key, name = carrier.file_entry
     contact = f'"x": %r, "y": %r, "segment": %d, "force": {FORCE[travels]}'
     if carrier.contact is not CLAMP_TIP:
         return f'"{key}": "{name}", "column": %d, "row": %d, {contact}'
@@ -165,7 +176,7 @@ def make_peg_template(carrier: Carrier, travels: int) -> str:
 
 
 def write_fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
-    """Yield the lines of a list of fixtures, block by block."""
+    """Yield the JSON lines of the fixtures of a table, as a list for each block."""
     figures = list_known_figures(table)
     band = ', "band": %s' * (workpiece.solid is not None)
     templates = [make_fixture_template(one, toolkit, figures, band) for one in toolkit.arrangements]
@@ -184,7 +195,7 @@ def list_fixture_rows(
     The indices of the arrangements, and a tuple of numbers for every fixture. It holds column, row, x, y,
     face and force of each peg (of two clamps at their working ratio). Then come theta in degrees, x and y of
     the pose, jaw separation or each clamp's travel, and the figures of :func:`list_known_figures`. Where pegs
-    have flats, a list is last: the directions of the flats of those in holes.
+    have flats, a list is last: the directions in degrees of the flats of those in holes. Lengths are in mm.
     """
     for block in split_into_written_blocks(table, toolkit, workpiece):
         yield block.table.arrangement.tolist(), zip(*block.list_row_columns(), strict=True)
@@ -193,13 +204,16 @@ def list_fixture_rows(
 def split_into_written_blocks(
     table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
 ) -> Iterator[WrittenBlock]:
-    """Yield the fixtures of a table, rounded as they are written, block by block."""
+    """Yield the fixtures of a table in blocks of at most ``BLOCK``, rounded as they are written."""
     figures = list_figures_in_columns(table.quality.shape[1])
     known = [figures.index(figure) for figure in list_known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
         theta, table_read = round_table_for_file(block)
-        x, y = (round_to_steps(places, LENGTH_STEPS) for places in peg_places(table_read, toolkit, workpiece))
+        x, y = (
+            round_to_steps(places, LENGTH_STEPS)
+            for places in compute_peg_places(table_read, toolkit, workpiece)
+        )
         yield WrittenBlock(table_read, toolkit, workpiece, theta, x, y, known)
 
 
@@ -209,10 +223,10 @@ class WrittenBlock:
 
     Parameters
     ----------
-    table : of them, their poses and travels rounded.
+    table : of the fixtures, with poses and travels rounded.
     theta : (N,) orientations in degrees.
     x, y : (N, P) places of the contacts in mm.
-    known : the numbers of the figures that are written.
+    known : indices of the figures that are written.
     """
 
     table: FixtureTable
@@ -225,28 +239,32 @@ class WrittenBlock:
 
     @property
     def contacts(self) -> range:
+        """Indices of the contacts."""
         return range(self.toolkit.peg_count)
 
     @property
     def placed(self) -> list[int]:
-        """The numbers of the contacts that are no ends of walls."""
+        """Indices of the contacts that are not ends of a wall."""
         on_walls = [k for ends in self.toolkit.ends_on_walls for k in self.contacts[ends]]
         return [k for k in self.contacts if k not in on_walls]
 
     @property
     def pose(self) -> list[list[Any]]:
+        """Three columns: theta in degrees, x and y in mm."""
         return [array.tolist() for array in (self.theta, *self.table.position.T)]
 
     @property
     def flats(self) -> list[list[list[float | None]]]:
-        """A column of the flats' angles in degrees, of all pegs in places of their own."""
+        """One column in a list: for each fixture the angles in
+        degrees of its placed pegs' flats; [] without flat pins.
+        """
         if FLAT_PIN not in self.toolkit.contacts:
             return []
         angles, placed = list_flat_angles(self.table, self.toolkit, self.workpiece), self.placed
         return [[[row[k] for k in placed] for row in angles]]
 
     def list_row_columns(self) -> list[list[Any]]:
-        """Return the columns of :func:`list_fixture_rows`."""
+        """Return the columns of numbers for :func:`list_fixture_rows`."""
         table, columns = self.table, list[list[Any]]()
         for k in self.contacts:
             numbers = (table.column, table.row, self.x, self.y, table.face, table.working_force)
@@ -256,12 +274,12 @@ class WrittenBlock:
         return [*columns, *self.pose, *moved, *self.flats]
 
     def list_line_columns(self) -> list[list[Any]]:
-        """Return the columns of numbers in the order in which a line has them."""
+        """Return the columns of values in the order in which a line's template takes them."""
         table, toolkit, tips = self.table, self.toolkit, self.toolkit.tips
         force, quality, ratio = table.force[:, :, None], table.quality, list[list[Any]]()
         if toolkit.travels > 1:
             force, quality = round_to_twelve_digits(table.force) + 0.0, round_to_twelve_digits(quality) + 0.0
-            low, high = (round_to_twelve_digits(ends).tolist() for ends in ratios(force))
+            low, high = (round_to_twelve_digits(ends).tolist() for ends in compute_force_ratios(force))
             ratio = [low, ["null" if isnan(end) else repr(end) for end in high]]
         known, walls, pegs = self.workpiece.numbered.bands, list[NDArray[Any]](), list[NDArray[Any]]()
         bands = [np.array([json.dumps(band) for band in known], object)] if known else []
@@ -293,6 +311,7 @@ TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
 def list_column_names(result: Result) -> list[str]:
+    """Return the column names of a result's CSV table."""
     toolkit = result.toolkit
     pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
     moved = TRAVEL_COLUMNS[toolkit.travels]
@@ -304,31 +323,34 @@ def list_column_names(result: Result) -> list[str]:
 
 
 def list_seating_values(result: Result) -> list[list[float]]:
-    """Return the figures of the seating of all fixtures: infinite without an end, NaN where it is not worked out."""
+    """Return the seating figures of all fixtures in the order of ``SEATING_FIGURES``.
+
+    A figure is inf where it is unbounded, and NaN for fixtures whose seating has not been computed.
+    """
     known = [list(one.figures.values()) for one in result.seating]
     return known + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(known))
 
 
-def hold_csv_text(result: Result) -> Iterator[str]:
-    """The same of what friction holds."""
-    from workhold.files.result.hold_text import hold_columns, hold_rows
+def write_hold_csv(result: Result) -> Iterator[str]:
+    """Yield the CSV table, in one piece, of a result whose fixtures hold by friction."""
+    from workhold.files.result.hold_text import list_hold_columns, list_hold_rows
 
     lines = io.StringIO()
     table = csv.writer(lines, lineterminator="\n")
-    table.writerow(hold_columns(result.toolkit))
-    table.writerows(["" if value is None else value for value in row] for row in hold_rows(result))
+    table.writerow(list_hold_columns(result.toolkit))
+    table.writerows(["" if value is None else value for value in row] for row in list_hold_rows(result))
     yield lines.getvalue()
 
 
 def write_result_csv(result: Result) -> Iterator[str]:
-    """Yield the fixtures of a result as comma-separated values, piece by piece, numbered by rank from 1.
+    """Yield the CSV table of a result, piece by piece; fixtures are numbered by rank from 1.
 
     Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
     pictures.
     """
     toolkit, carriers = result.toolkit, result.toolkit.carriers
     if toolkit.holds_by_friction:
-        yield from hold_csv_text(result)
+        yield from write_hold_csv(result)
         return
     yield ",".join(list_column_names(result)) + "\n"
     moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
@@ -344,7 +366,7 @@ def write_result_csv(result: Result) -> Iterator[str]:
             fields = [str(number), name, *map(repr, pose), *(f"{value:.12g}" for value in quality)]
             for peg, jaw in enumerate(jaws):
                 column, hole_row, peg_x, peg_y, face, force = row[6 * peg : 6 * peg + 6]
-                fields += [jaw.place_name(column, hole_row), jaw.name, str(column), str(hole_row)]
+                fields += [jaw.name_place(column, hole_row), jaw.name, str(column), str(hole_row)]
                 fields += [repr(peg_x), repr(peg_y), str(face), f"{force:.12g}"]
             fields += ["" if angle is None else repr(angle) for angle in looks]
             if seated:
@@ -361,14 +383,14 @@ HEADER = ("hole", "carrier", "column", "row", "x", "y", "diameter", "length", "u
 def write_pin_list(
     fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, length: float | None
 ) -> str:
-    """Return a row for each pin, in the fixture's order; clamps have no row.
+    """Return a CSV table with a row for each pin, in the fixture's order; clamps have no row.
 
     Parameters
     ----------
     unit : of the lengths: x and y of the hole's centre from the first carrier's hole A1, diameter and length
         of the pin.
-    dowel : what the pins are and how they fit, in words; the cell is empty where it is not known.
-    length : of the pins, in mm; the same.
+    dowel : description of the pins and their fit; the cell is empty for None.
+    length : of the pins, in mm; the cell is empty for None.
     """
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
@@ -379,7 +401,11 @@ def write_pin_list(
         carrier = carriers[peg.carrier]
         if not carrier.has_lattice:
             continue
-        sizes = (unit.number(peg.x), unit.number(peg.y), unit.format_short_length(2 * carrier.peg_radius))
+        sizes = (
+            unit.format_number(peg.x),
+            unit.format_number(peg.y),
+            unit.format_short_length(2 * carrier.peg_radius),
+        )
         long = "" if length is None else unit.format_short_length(length)
         place = (peg.hole, make_printable(carrier.title), make_column_letters(peg.column), peg.row + 1)
         looks = ["" if peg.flat_deg is None else f"{peg.flat_deg:.4f}"] * flats

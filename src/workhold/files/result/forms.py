@@ -1,4 +1,4 @@
-"""The shape of a result file: its head, checked by pydantic, with what that is in the model."""
+"""The form of a result file's head, checked by pydantic, and its parts as objects of the model."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from workhold.files.input_forms import LONGEST_NAME, TAGS, join_forms, make_form
 from workhold.fixels.kinds import USUAL, find_table, make_toolkit
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.dowels import Fit
+from workhold.model.dowels import DowelFit
 from workhold.model.own_outlines import add_own_outlines
 from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.model.requirements import ANY_DIRECTION, Load, Restrictions, Tolerance, make_zone
-from workhold.model.search_report import Proof, Undecided
+from workhold.model.search_report import ProofReport, UndecidedCandidate
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -42,19 +42,25 @@ Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 def describe_first_fault(error: ValidationError) -> tuple[str, str]:
-    """Return the first key of a file that is wrong, and what is wrong with it, without a capital or a full stop."""
+    """Return the first wrong key of a file, with points between nested keys, and the fault in words.
+
+    The words have no capital and no full stop; for a missing key they are ``MISSING``.
+    """
     first = error.errors()[0]
     key = ".".join(str(part) for part in first["loc"] if part not in TAGS)
     return key, MISSING if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
 
 
 class FormPart(BaseModel):
-    """What a key of the head must look like; further keys are allowed."""
+    """Base of the forms of a head's keys; further keys are allowed."""
 
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
 
     def list_keys_not_given(self, place: str = "") -> Iterator[str]:
-        """Yield the keys that the file does not give, in it and in the parts of it, such as ``vise.rows``."""
+        """Yield the keys that the file does not give, in this part and those inside, such as ``vise.rows``.
+
+        ``place`` is put in front of each.
+        """
         for name in type(self).model_fields:
             value: Any = getattr(self, name)
             if name not in self.model_fields_set:
@@ -69,7 +75,7 @@ class FormPart(BaseModel):
 
 
 class WorkpiecePart(FormPart):
-    """The workpiece's keys."""
+    """Keys of the workpiece."""
 
     name: str = Field(max_length=LONGEST_NAME)
     units: Literal["mm"]
@@ -112,14 +118,16 @@ class SolidPart(FormPart):
     least_band: float
 
     def to_outline(self, workpiece: WorkpiecePart) -> SolidOutline:
-        """Return the solid with the bands of its outline; refuse one without bands, and impossible heights."""
+        """Return the solid with the bands of its outline; raise
+        InputError without bands, and for impossible heights.
+        """
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
-        return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())
+        return SolidOutline.from_entries(self.model_dump(), workpiece.model_dump())
 
 
 class OutlinePart(FormPart):
-    """What carriers with heights of their own meet of the solid."""
+    """The outline of the solid that carriers with heights of their own meet."""
 
     loops: list[list[list[float]]]
     bands: list[Pair | None]
@@ -150,6 +158,7 @@ TYPES: Mapping[Form, Any] = {
 
 
 def make_form_key(row: ToolkitField) -> tuple[Any, Any]:
+    """Return (type, default) of a toolkit's field for pydantic."""
     return make_optional_entry(TYPES[row.form], row)
 
 
@@ -176,6 +185,7 @@ class RestrictionsPart(FormPart):
     touch: list[int] = []
 
     def to_restrictions(self) -> Restrictions:
+        """Return the restrictions as an object of the model."""
         return Restrictions(self.avoid, [*map(make_zone, self.zones)], self.angles, self.touch)
 
 
@@ -188,9 +198,10 @@ class FitPart(FormPart):
     position_assumed: bool = False
     standard: str = Field(default="", max_length=LONGEST_STANDARD)
 
-    def fit(self) -> Fit:
+    def fit(self) -> DowelFit:
+        """Return the fit as an object of the model."""
         (low, high), hole = self.pin, self.hole
-        return Fit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
+        return DowelFit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
 
 
 class TolerancePart(FormPart):
@@ -202,6 +213,7 @@ class TolerancePart(FormPart):
     departure: float = 0.0
 
     def to_tolerance(self) -> Tolerance:
+        """Return the tolerance as an object of the model."""
         return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
 
 
@@ -216,7 +228,8 @@ class LoadPart(FormPart):
     upward: float = 0.0
     height: float | None = None
 
-    def load(self) -> Load:
+    def to_load(self) -> Load:
+        """Return the load as an object of the model."""
         return Load(
             self.points, self.force, self.directions, self.moment, self.name, self.upward, self.height
         )
@@ -236,9 +249,12 @@ class UndecidedPart(FormPart):
     reach_deg: float | None = Field(default=None, ge=0)
     reason: str = Field(min_length=1)
 
-    def to_undecided(self) -> Undecided:
+    def to_undecided(self) -> UndecidedCandidate:
+        """Return the candidate as an object of the model."""
         faces, columns, rows = (tuple(v) for v in (self.segments, self.columns, self.rows))
-        return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
+        return UndecidedCandidate(
+            self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg
+        )
 
 
 class ProofPart(FormPart):
@@ -251,13 +267,14 @@ class ProofPart(FormPart):
     escalated: int = Field(ge=0)
     undecided: list[UndecidedPart]
 
-    def to_proof(self) -> Proof:
+    def to_proof(self) -> ProofReport:
+        """Return the account as an object of the model."""
         counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
-        return Proof(*counts, tuple(item.to_undecided() for item in self.undecided))
+        return ProofReport(*counts, tuple(item.to_undecided() for item in self.undecided))
 
 
 class NotePart(FormPart):
-    """What a note says: its kind, and what else there is of that kind."""
+    """The data of a note: its kind, and the further keys of that kind."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -299,7 +316,7 @@ class Head(FormPart):
     )
 
     def to_toolkit(self) -> Toolkit:
-        """Return the toolkit; refuse a head that has none at all, or two."""
+        """Return the toolkit; raise InputError for a head that has none at all, or two."""
         if self.vise is not None and self.toolkit is not None:
             raise InputError("it has the keys vise and toolkit, of which only one can be.")
         if self.vise is not None:
@@ -309,6 +326,7 @@ class Head(FormPart):
         return make_toolkit(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
 
     def to_query(self) -> Query:
+        """Return the query with workpiece and toolkit; raise InputError for an impossible one."""
         toolkit = self.to_toolkit()
         workpiece = Workpiece.from_loops(
             self.workpiece.name,
@@ -326,16 +344,18 @@ class Head(FormPart):
             restrictions=self.restrictions.to_restrictions(),
             rank_by=["closure_margin"] if self.ranking is None else self.ranking,
             tolerance=None if self.tolerance is None else self.tolerance.to_tolerance(),
-            loads=(part.load() for part in self.loads),
+            loads=(part.to_load() for part in self.loads),
             program=self.to_program(),
             **collect_given_values(self, OF_SEARCH),
         )
 
     def to_program(self) -> Program | None:
-        """Return the program that fixtures are to let pass; refuse one that lacks something or cannot be."""
+        """Return the program with which fixtures must not collide,
+        None without one; raise InputError for a wrong one.
+        """
         if self.program is None:
             return None
         try:
-            return Program.of_entries(self.program)
+            return Program.from_entries(self.program)
         except (LookupError, TypeError, ValueError, AttributeError) as error:
             raise InputError(f"its program cannot be used: {error}.") from error

@@ -1,9 +1,9 @@
-"""The text of what friction holds: a line of JSON of a result file, or a row of a spreadsheet, for each fixture.
+"""The text of fixtures that hold by friction: a line of JSON, or a row of a spreadsheet, for each.
 
-A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the parallels and
-the side of the work stop. Figures that follow from these are written, too. :mod:`workhold.files.result.holds` reads
-the lines; it is a module of its own because pydantic takes long to import. Of straps
-:mod:`workhold.files.result.strapped_text` has the text.
+A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the
+parallels and the side of the work stop. Figures that follow from these are written, too.
+:mod:`workhold.files.result.holds` reads the lines; it is a module of its own because pydantic takes long to
+import. Straps are written by :mod:`workhold.files.result.strapped_text`.
 """
 
 from __future__ import annotations
@@ -14,40 +14,50 @@ from typing import Any
 
 from workhold.files.result.strapped_text import (
     is_strapped,
+    iterate_strapped_rows,
+    list_strapped_columns,
     make_need_entry,
-    strapped_columns,
-    strapped_entry,
-    strapped_rows,
+    make_strapped_entry,
 )
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch
+from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, JawPatch
 from workhold.model.result import Result
 
-__all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold", "make_need_entry"]
+__all__ = [
+    "list_hold_columns",
+    "make_hold_entry",
+    "write_hold_lines",
+    "list_hold_rows",
+    "is_hold",
+    "make_need_entry",
+]
 
 DIGITS = 12
 
 
 def round_length_for_file(value: float) -> float:
-    """Return a length as it is written, to 1e-9 mm."""
+    """Return a length in mm rounded to 1e-9, without a negative zero."""
     return round(value, 9) + 0.0
 
 
 def round_figure_for_file(value: Any) -> Any:
-    """Return a figure as it is written, to twelve digits; a truth and nothing as they are."""
+    """Return a number, or nested lists of them, rounded to
+    twelve digits; None and bool are returned unchanged.
+    """
     if isinstance(value, list):
         return [round_figure_for_file(one) for one in value]
     return value if value is None or isinstance(value, bool) else float(f"{value:.{DIGITS}g}") + 0.0
 
 
-def hold_entry(fixture: Fixture) -> dict[str, Any]:
-    """A fixture that friction holds, as it is written."""
+def make_hold_entry(fixture: Fixture) -> dict[str, Any]:
+    """Return the JSON object of a fixture that holds by friction; lengths in mm, angles in degrees."""
     hold, pose = fixture.hold, fixture.pose
     if not isinstance(hold, JawHold):
-        return strapped_entry(fixture)
+        return make_strapped_entry(fixture)
 
-    def patch_entry(patch: Patch) -> dict[str, Any]:
+    def patch_entry(patch: JawPatch) -> dict[str, Any]:
+        """Return the JSON object of what a jaw touches."""
         rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
 
@@ -66,18 +76,18 @@ def hold_entry(fixture: Fixture) -> dict[str, Any]:
         },
         "jaw_separation": round_length_for_file(hold.opening),
         "warnings": list(hold.warnings),
-        "quality": {key: round_figure_for_file(value) for key, value in hold.as_quality().items()},
+        "quality": {key: round_figure_for_file(value) for key, value in hold.to_quality().items()},
         **of_program,
     }
 
 
-def hold_lines(result: Result) -> Iterator[str]:
-    """Yield the lines of a result's fixtures."""
-    return (json.dumps(hold_entry(fixture)) for fixture in result)
+def write_hold_lines(result: Result) -> Iterator[str]:
+    """Yield the JSON line of each fixture of a result."""
+    return (json.dumps(make_hold_entry(fixture)) for fixture in result)
 
 
 def is_hold(fixture: Any) -> bool:
-    """Whether a fixture in a file is one that friction holds."""
+    """Return whether a fixture, as parsed from a file, is one that holds by friction."""
     return is_strapped(fixture) or (
         isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
     )
@@ -87,20 +97,22 @@ BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "pa
 AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
 
 
-def hold_columns(toolkit: Toolkit) -> list[str]:
-    """The names of the columns of :func:`hold_rows`, in a toolkit."""
+def list_hold_columns(toolkit: Toolkit) -> list[str]:
+    """Return the column names of :func:`list_hold_rows` for a toolkit."""
     if toolkit.strap_set is not None:
-        return strapped_columns(toolkit.strap_set.count)
+        return list_strapped_columns(toolkit.strap_set.count)
     return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
 
 
-def hold_rows(result: Result) -> Iterator[list[Any]]:
-    """A row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+def list_hold_rows(result: Result) -> Iterator[list[Any]]:
+    """Yield a row for each fixture, best first: lengths in
+    mm, angles in degrees, forces in N; None where not known.
+    """
     if result.toolkit.strap_set is not None:
-        yield from strapped_rows(result, result.toolkit.strap_set.count)
+        yield from iterate_strapped_rows(result, result.toolkit.strap_set.count)
         return
     for number, fixture in enumerate(result, 1):
-        entry = hold_entry(fixture)
+        entry = make_hold_entry(fixture)
         pose, quality = entry["pose"], entry["quality"]
         faces = (" ".join(map(str, entry[jaw]["segments"])) for jaw in ("fixed", "moving"))
         figures = [quality.get(figure.key) for figure in HOLD_FIGURES]

@@ -1,4 +1,4 @@
-"""Fixtures that friction holds in a result file, checked and read: those of flat jaws, and of straps.
+"""Fixtures in a result file that hold by friction, checked and read: those of flat jaws, and of straps.
 
 :mod:`workhold.files.result.hold_text` writes them.
 """
@@ -18,13 +18,13 @@ from workhold.files.result.strapped import (
     ProgramForcePart,
     StrappedSeatPart,
     check_strapped,
-    table_of_strapped,
+    make_strapped_table,
 )
 from workhold.files.result.strapped_text import is_strapped
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
-from workhold.model.jaw_hold import JawHold, Patch
+from workhold.model.jaw_hold import JawHold, JawPatch
 from workhold.model.pose import Pose
 from workhold.model.query import Query
 from workhold.model.straps import StrappedHold
@@ -43,9 +43,10 @@ class PatchPart(FormPart):
     segments: list[Whole] = Field(description="numbers of the faces; none where corners touch")
     rectangles: list[RectanglePart] = Field(min_length=1)
 
-    def to_patch(self) -> Patch:
+    def to_patch(self) -> JawPatch:
+        """Return the patch as an object of the model."""
         rows = tuple((x0, x1, z0, z1) for x0, x1, z0, z1 in self.rectangles)
-        return Patch(rows, tuple(self.segments), not self.segments)
+        return JawPatch(rows, tuple(self.segments), not self.segments)
 
 
 class HoldPosePart(FormPart):
@@ -88,13 +89,21 @@ class HoldPart(FormPart):
     program_force: ProgramForcePart | None = None
 
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
-        """Return the fixture with the figures that are written."""
+        """Return the fixture with the figures that are written.
+
+        ``unit_force`` is the query's, see :meth:`to_hold`.
+        """
         pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
         written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
-        return Fixture(self.type, (), pose, self.jaw_separation, written, hold=self.hold(toolkit, unit_force))
+        return Fixture(
+            self.type, (), pose, self.jaw_separation, written, hold=self.to_hold(toolkit, unit_force)
+        )
 
-    def hold(self, toolkit: Toolkit, unit_force: float | None = None) -> JawHold:
-        """Return how the jaws of a toolkit hold the part; refuse a toolkit without flat jaws."""
+    def to_hold(self, toolkit: Toolkit, unit_force: float | None = None) -> JawHold:
+        """Return how the jaws of a toolkit hold the part; raise InputError for a toolkit without flat jaws.
+
+        ``unit_force`` is passed on to :class:`JawHold`.
+        """
         if toolkit.flat_jaws is None:
             raise InputError(f"it lies between flat jaws, which a {toolkit.noun} does not have.")
         quality, need = self.quality, self.program_force
@@ -119,7 +128,7 @@ AnyHoldPart = HoldPart | StrappedSeatPart
 
 
 def read_holds(fixtures: Iterable[Any], path: Path) -> list[AnyHoldPart]:
-    """The fixtures of a file.
+    """Return the fixtures of a file in their checked form.
 
     Raises
     ------
@@ -140,7 +149,11 @@ def read_holds(fixtures: Iterable[Any], path: Path) -> list[AnyHoldPart]:
 def make_jaw_holds(
     parts: Sequence[AnyHoldPart], query: Query, path: Path
 ) -> tuple[JawHold | StrappedHold, ...]:
-    """How friction holds the part in each fixture of a file; refuse faces that there are not, and other kinds."""
+    """Return the hold of each fixture of a file, in its order.
+
+    Raises InputError for fixtures of another kind of toolkit, of an unknown type, and on segments that are no
+    faces.
+    """
     strapped = [part for part in parts if isinstance(part, StrappedSeatPart)]
     jaws = [part for part in parts if isinstance(part, HoldPart)]
     if (strapped if query.toolkit.flat_jaws is not None else jaws) or (strapped and jaws):
@@ -157,13 +170,13 @@ def make_jaw_holds(
             raise InputError(
                 f"{path}: fixture {number} touches a segment that does not name a face of the part."
             )
-    return tuple(part.hold(query.toolkit, query.unit_force) for part in parts)
+    return tuple(part.to_hold(query.toolkit, query.unit_force) for part in parts)
 
 
 def make_table_of_holds(given: Sequence[AnyHoldPart], toolkit: Toolkit) -> FixtureTable:
-    """The table of the fixtures of a file in a toolkit."""
+    """Return the table of the fixtures of a file, in its order."""
     if toolkit.strap_set is not None:
-        return table_of_strapped([part for part in given if isinstance(part, StrappedSeatPart)])
+        return make_strapped_table([part for part in given if isinstance(part, StrappedSeatPart)])
     parts = [part for part in given if isinstance(part, HoldPart)]
     return make_flat_jaw_table(
         [radians(part.pose.theta_deg) for part in parts],

@@ -1,7 +1,7 @@
-"""Notes in result files: their sentences under ``notes``, and beside them under ``note_data`` what they say.
+"""Notes in result files: their sentences under ``notes``, and the data of each under ``note_data``.
 
-Files from before there was such data have the sentences alone. This is the one place where a sentence is
-recognised: it is compared with those of every note that its numbers and its query may make.
+Files of older versions have the sentences alone. This is the one place where a sentence is recognised: it is
+compared with those of all notes that its numbers and its query allow.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from workhold.model.notes import (
 )
 from workhold.model.query import Query
 
-__all__ = ["note_faults", "read_notes"]
+__all__ = ["find_note_faults", "read_notes"]
 
 
 def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
@@ -58,18 +58,23 @@ def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
             "each."
         )
     pairs = zip(head.notes, head.note_data, strict=True)
-    return tuple(note_of(*pair, query, number) for number, pair in enumerate(pairs))
+    return tuple(make_note(*pair, query, number) for number, pair in enumerate(pairs))
 
 
-def note_faults(head: Head, notes: Sequence[Note]) -> Iterator[str]:
-    """Yield a fault for each sentence of a head that its data would not be put into."""
+def find_note_faults(head: Head, notes: Sequence[Note]) -> Iterator[str]:
+    """Yield a message for each sentence in a head that
+    differs from the words of the note made from its data.
+    """
     for sentence, note in zip(head.notes, notes, strict=True):
         if sentence != note.words:
             yield f'the note "{sentence[:80]}" is not what its data say, "{note.words[:80]}"'
 
 
-def note_of(sentence: str, part: BaseModel, query: Query, number: int) -> Note:
-    """Return the note of an entry of data; that of a kind which this program does not know is its sentence."""
+def make_note(sentence: str, part: BaseModel, query: Query, number: int) -> Note:
+    """Return the note of an entry of data; one of an unknown kind becomes a remark with the sentence.
+
+    ``number`` is the entry's index, for the InputError that is raised for impossible data.
+    """
     entry = part.model_dump()
     if (kind := KINDS.get(entry["kind"])) is None:
         return Remark(sentence)
@@ -87,12 +92,15 @@ def note_of(sentence: str, part: BaseModel, query: Query, number: int) -> Note:
 
 
 def has_wording(kind: type[Note]) -> bool:
+    """Return whether a kind of note has the toolkit's wording as a field."""
     return any(one.name == "wording" for one in fields(kind))
 
 
 @cache
 def find_note_form(name: str) -> type[BaseModel]:
-    """Return the form of the data of a kind of note; further keys are allowed."""
+    """Return the pydantic form of the data of a kind of
+    note, by the kind's name; further keys are allowed.
+    """
     kind = KINDS[name]
     hints = get_type_hints(kind)
     # JSON has lists for tuples.
@@ -110,14 +118,17 @@ NUMBER = re.compile(r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def recognize_note(sentence: str, query: Query, verified: int) -> Note:
-    """Return the note that a sentence states, in a result with ``verified`` verified candidates; else a remark."""
+    """Return the note that a sentence states; a remark if it is none.
+
+    ``verified`` is the number of verified candidates of the result.
+    """
     words = [word.replace(",", "") for word in NUMBER.findall(sentence)]
     thinkable = list_possible_notes([float(word) for word in words], query, verified)
     return next((note for note in thinkable if note.words == sentence), Remark(sentence))
 
 
 def list_possible_notes(numbers: Sequence[float], query: Query, verified: int) -> Iterator[Note]:
-    """Yield the notes that some numbers, in their order, and a query may make."""
+    """Yield all notes that can have the given numbers, in this order, in their sentence, for a query."""
     wording, asked = query.toolkit.wording, query.asked_of_places
     whole = [int(number) for number in numbers]
     yield PushedByHand()

@@ -1,8 +1,8 @@
-"""One fixture of a result file, without those beside it.
+"""Reading of one fixture of a result file, without the others.
 
-Of a file with one fixture on every line the other lines are counted and passed over. What is asked of other
-fixtures later is taken from the file then: how many stand in the same holes from the text of their lines, all
-else from all of them, read as usual. A file in columns, or of another layout, is read as a whole.
+In a file with one fixture on every line the other lines are counted and skipped. If other fixtures are needed
+later, they are read from the file then: how many have the same holes from the text of their lines, all else
+by reading the file as usual. A file in columns, or of another layout, is read as a whole.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ STANDING = re.compile(rb'"(type|directions?|jaw|role|hole|column|row)"\s*:\s*("[
 
 
 @frozen
-class Picked:
-    """What is read of a file for one fixture.
+class OneFixtureRead:
+    """The texts read from a file for one fixture.
 
     Parameters
     ----------
-    texts : of the one asked for, and before it of all others where each has its seating stated.
-    first : index of the first of them.
-    count : how many fixtures there are.
+    texts : of the one asked for, and before it those of all earlier ones if each has its seating stated.
+    first : index of the first of them in the file, from 0.
+    count : number of fixtures in the file.
     """
 
     texts: list[bytes]
@@ -60,7 +60,8 @@ class Picked:
 
 
 def read_one(path: str | Path, rank: int) -> Result:
-    """Read a result file for the fixture of a rank; others are read and checked once they are asked for.
+    """Return the result in a file with the fixture of a rank,
+    from 1, read; others are read once they are accessed.
 
     Raises
     ------
@@ -92,12 +93,15 @@ def read_one(path: str | Path, rank: int) -> Result:
 
 
 def refuse_missing(path: Path, rank: int, count: int) -> None:
+    """Raise InputError for a rank above the number of fixtures."""
     if rank > count:
         raise InputError(f"{path} lists {count} fixtures: there is no fixture {rank}.")
 
 
-def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> Picked:
-    """Pick the fixture of a rank, and count the others."""
+def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> OneFixtureRead:
+    """Return the text of the fixture of a rank, from 1, with
+    those that have to be read before it, and count all.
+    """
     chosen: list[bytes] = []
     number = 0
     for number, text in enumerate(texts, 1):
@@ -107,24 +111,25 @@ def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> Picked:
                 chosen = []
             if number == rank or SEATED in text:
                 chosen.append(text)
-    return Picked(chosen, min(rank, number) - len(chosen), number)
+    return OneFixtureRead(chosen, min(rank, number) - len(chosen), number)
 
 
 class TableOfFile(FixtureTable):
-    """The fixtures of a file of which some are read; all are once something asks for others.
+    """A table of all fixtures of a file, of which some are
+    read; the others are read once one of them is accessed.
 
     Parameters
     ----------
     read : those read.
-    found : where they stand in the file.
+    found : their place in the file.
     path : of the file.
     """
 
     read: FixtureTable
-    found: Picked
+    found: OneFixtureRead
     path: Path
 
-    def __init__(self, read: FixtureTable, found: Picked, path: Path) -> None:
+    def __init__(self, read: FixtureTable, found: OneFixtureRead, path: Path) -> None:
         vars(self).update(read=read, found=found, path=path)
 
     def __len__(self) -> int:
@@ -132,21 +137,25 @@ class TableOfFile(FixtureTable):
 
     @cached_property
     def whole(self) -> FixtureTable:
-        """All fixtures, read as usual."""
+        """All fixtures, read as usual at the first access."""
         return read_result(self.path).table
 
     def __getattr__(self, name: str) -> Any:
+        """Return a column of the whole table."""
         if name in {column.name for column in fields(FixtureTable)}:
             return getattr(self.whole, name)
         raise AttributeError(name)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
+        """Return the fixtures at some rows, without reading the file if these are read already."""
         places = np.arange(len(self))[order] - self.found.first
         is_read = len(places) > 0 and places.min() >= 0 and places.max() < len(self.read)
         return self.read.take(places) if is_read else self.whole.take(order)
 
     def count_in_same_holes(self, index: int) -> int:
-        """Return how many other fixtures have their pegs in the same holes as one that is read."""
+        """Return how many other fixtures have their pegs in the
+        same holes as the one at ``index``, which must be read.
+        """
         here = STANDING.findall(self.found.texts[index - self.found.first])
         with explain_reading_errors(self.path), self.path.open("rb") as stream:
             stream.seek(start_of_fixtures(stream))

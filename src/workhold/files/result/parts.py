@@ -1,9 +1,9 @@
-"""The two parts of a result file read back: its head, checked by pydantic, and its fixtures as JSON objects.
+"""The two parts of a result file: its head, checked by pydantic, and its fixtures as JSON objects.
 
 A file with one fixture per line, as workhold writes it, is read line by line, so that no more than one
-fixture at a time is an object. Any other layout of the same JSON is read as a whole. Whoever reads a result
-file reads it by this module. What the fixtures are held to is the same in whatever form they are written.
-Of a file in columns, the head gives the shape of the columns too (docs/columns.md).
+fixture at a time is an object. Any other layout of the same JSON is read as a whole. Every reader of result
+files uses this module. Fixtures have to meet the same conditions in whatever form they are written. For a
+file in columns, the head also determines the columns (docs/columns.md).
 
 Glossary
 --------
@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from workhold.archive import Column, Columns
+from workhold.archive import ColumnFormat, Columns
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.result.forms import MISSING, Head, ProofPart, describe_first_fault
@@ -42,7 +42,7 @@ from workhold.model.moves import PIECE_KEYS, pack_piece
 from workhold.model.quality import BEFORE_PINS, FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 
 __all__ = [
     "HEAD",
@@ -85,31 +85,39 @@ LONGEST_FIRST_LINE = 250
 
 
 def describe_columns(travels: int, has_program: bool = False, figures: int = BEFORE_PINS) -> Columns:
-    """Return what each column holds (docs/columns.md), by how many things move in a fixture.
+    """Return the format of each column by name (docs/columns.md).
 
-    ``has_program`` says whether the program clearance stands behind the figures of quality, of which there
-    are ``figures`` without it.
+    Parameters
+    ----------
+    travels : number of things that move in a fixture, 1 or 2.
+    has_program : whether the program clearance stands behind the figures of quality.
+    figures : number of figures of quality without it.
     """
     pegs, several = 3 + travels, (travels,) if travels > 1 else ()
     return {
-        "arrangement": Column("|i1"),
-        **dict.fromkeys(("column", "row", "face"), Column("<i4", (pegs,))),
-        "theta": Column("<f8"),
-        "position": Column("<f8", (2,)),
-        "jaw_separation": Column("<f8", several),
-        "force": Column("<f8", (pegs, *several)),
-        "quality": Column("<f8", (figures + has_program,)),
-        **({"pairs": Column("<i4")} if travels > 1 else {}),
+        "arrangement": ColumnFormat("|i1"),
+        **dict.fromkeys(("column", "row", "face"), ColumnFormat("<i4", (pegs,))),
+        "theta": ColumnFormat("<f8"),
+        "position": ColumnFormat("<f8", (2,)),
+        "jaw_separation": ColumnFormat("<f8", several),
+        "force": ColumnFormat("<f8", (pegs, *several)),
+        "quality": ColumnFormat("<f8", (figures + has_program,)),
+        **({"pairs": ColumnFormat("<i4")} if travels > 1 else {}),
     }
 
 
 def drop_swept_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the entries without those of a swept piece, which are many."""
+    """Return a JSON object unchanged, or None for one that is a cylinder of a tool on a move of a program.
+
+    For use as ``object_hook``; a program has many such objects.
+    """
     return None if entries.keys() == PIECE_KEYS else entries
 
 
 def describe_columns_from_head(head: str) -> Columns:
-    """Return what the columns hold beside a head, which may be of any kind of file."""
+    """Return the formats of the columns by name for the
+    text of a head; those of a vise if the text is no head.
+    """
     try:
         said = json.loads(head, object_hook=drop_swept_piece)
         toolkit = said.get("toolkit")
@@ -121,7 +129,11 @@ def describe_columns_from_head(head: str) -> Columns:
 
 
 def pack_swept_piece(entries: dict[str, Any]) -> Any:
-    """Return a swept piece packed, where entries are those of one; all others as they are."""
+    """Return a JSON object unchanged, or packed into bytes
+    if it is a cylinder of a tool on a move of a program.
+
+    One that cannot be packed is returned unchanged.
+    """
     if entries.keys() != PIECE_KEYS:
         return entries
     try:
@@ -132,12 +144,15 @@ def pack_swept_piece(entries: dict[str, Any]) -> Any:
 
 
 def parse_head(text: str) -> Any:
-    """Return the content of a head's JSON, its swept pieces packed."""
+    """Return the content of a head's JSON; tools' cylinders on moves of a program are packed into bytes.
+
+    Raises InputError for broken JSON.
+    """
     return parse_json(text, pack_swept_piece)
 
 
 def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
-    """Refuse indices (N,) of arrangements that a toolkit does not have."""
+    """Raise InputError for an index (N,) of a fixture type that the toolkit does not have."""
     names = [one.title for one in toolkit.arrangements]
     if arrangement.min(initial=0) < 0 or arrangement.max(initial=0) >= len(names):
         number = int(np.argmax((arrangement < 0) | (arrangement >= len(names)))) + 1
@@ -145,9 +160,13 @@ def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit
 
 
 def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequence[int]) -> None:
-    """Refuse fixtures (N,), or (N, P) by their pegs, of which one is faulty.
+    """Raise InputError if a fixture is faulty, naming the
+    first; ``reason`` follows its number in the message.
 
-    ``places`` are where in the file they stand, from 0.
+    Parameters
+    ----------
+    faulty : (N,) by fixtures, or (N, P) by their pegs.
+    places : index of each fixture in the file, from 0.
     """
     if faulty.any():
         first = int(np.argwhere(faulty)[0, 0])
@@ -155,9 +174,9 @@ def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequ
 
 
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
-    """Refuse fixtures of known types that contradict the toolkit, the workpiece or themselves.
+    """Raise InputError for fixtures of known types that contradict the toolkit, the workpiece or themselves.
 
-    ``places`` are where in the file they stand, from 0.
+    ``places`` are the indices of the fixtures in the file, from 0.
     """
     if len(table) == 0:
         return
@@ -185,6 +204,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
 
 
 def check_head(data: Any, path: Path) -> Head:
+    """Return a head from its JSON object; raise InputError, naming the first key that is missing or wrong."""
     try:
         return Head.model_validate(data)
     except ValidationError as error:
@@ -195,7 +215,7 @@ def check_head(data: Any, path: Path) -> Head:
 
 
 def check_query(head: Head, path: Path) -> Query:
-    """Return what was asked; refuse what cannot be, and counts of other types."""
+    """Return the query of a head; raise InputError for an impossible one, and for counts of other types."""
     try:
         query = head.to_query()
     except InputError as error:
@@ -210,7 +230,9 @@ def check_query(head: Head, path: Path) -> Query:
 
 
 def make_result_from_counts(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """Return the result of a head and a table; refuse counts that are not those of the table."""
+    """Return the result of a head and a table; raise
+    InputError unless the head's counts are those of the table.
+    """
     for name, listed in query.toolkit.count_arrangements(table.arrangement).items():
         if head.counts[name] != listed:
             said = head.counts[name]
@@ -219,7 +241,9 @@ def make_result_from_counts(table: FixtureTable, head: Head, query: Query, path:
 
 
 def make_result(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """Return the result of a head and a table; refuse notes and an account of the search that cannot be."""
+    """Return the result of a head and a table; raise
+    InputError for impossible notes or account of the search.
+    """
     try:
         notes = read_notes(head, query)
     except InputError as error:
@@ -239,11 +263,11 @@ def make_result(table: FixtureTable, head: Head, query: Query, path: Path) -> Re
     )
 
 
-def check_proof(part: ProofPart, query: Query, path: Path) -> Proof:
+def check_proof(part: ProofPart, query: Query, path: Path) -> ProofReport:
     """Return the account of the search.
 
-    Refuses counts that do not add up, and an undecided candidate that names an unknown type or a segment that
-    is no face.
+    Raises InputError for counts that do not add up, and for an undecided candidate of an unknown type, with a
+    wrong number of pegs, or on a segment that is no face.
     """
     accounted = part.discarded_by_bound + part.verified + len(part.undecided)
     if accounted != part.candidates:
@@ -278,16 +302,15 @@ Take = Callable[[Iterable[Any], Path], Taken]
 
 
 class OtherLayoutError(Exception):
-    """The file does not have one fixture on every line."""
+    """Raised when a file does not have one fixture on every line."""
 
 
 def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
-    """Return the head and fixtures of a result file.
+    """Return the head of a result file, and ``take(fixtures, path)``, whatever its layout.
 
     Parameters
     ----------
-    take : makes something of the fixtures, once from first to last; it may be called a second time from the
-        start.
+    take : gets the fixtures as an iterable of JSON objects; it may be called a second time from the start.
 
     Raises
     ------
@@ -304,7 +327,7 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
 
 @contextmanager
 def explain_reading_errors(path: Path) -> Iterator[None]:
-    """Say in a sentence why a file cannot be read in the block as the text of a result."""
+    """Turn errors of reading a file as text, raised in the block, into an InputError that names the file."""
     try:
         if path.exists() and not path.is_file():
             raise InputError(f"{path} is not a file: give a result file.")
@@ -318,10 +341,10 @@ def explain_reading_errors(path: Path) -> Iterator[None]:
 
 
 def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Return the head and fixtures of a file with one fixture per line; ``take`` is given their texts.
+    """Return the head's JSON object of a file with one fixture per line, and ``take(texts, path)``.
 
-    Raises OtherLayoutError when the lines are not of that form. Refuses a line, or what stands around the
-    fixtures, that is longer than any may be.
+    ``take`` gets the fixtures as an iterable of bytes, which it must exhaust. Raises OtherLayoutError when
+    the lines are not of that form, and InputError when a line, or the head, is too long.
     """
     with path.open("rb") as stream:
         before = stream.read(start_of_fixtures(stream))
@@ -343,9 +366,10 @@ def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
 
 
 def start_of_fixtures(stream: BinaryIO) -> int:
-    """Return how many bytes stand before the first fixture; the stream is at its start before and after.
+    """Return the byte offset of the first fixture; the stream is at its start before and after.
 
-    Nothing is kept of what is read: a file of any size may be none.
+    The file is searched in pieces that are not kept, because a file of any size may have no fixtures. Raises
+    OtherLayoutError where there is no line that begins the fixtures.
     """
     at, kept = 0, b"\n"
     while at <= MOST_AROUND and (read := stream.read(CHUNK)):
@@ -360,7 +384,11 @@ def start_of_fixtures(stream: BinaryIO) -> int:
 
 
 def split_fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[bytes]:
-    """Yield the fixtures on their lines, as text; the line that ends the list goes to ``after``."""
+    """Yield the JSON text of each fixture from the stream;
+    the line that ends the list is appended to ``after``.
+
+    Raises OtherLayoutError where a line is not one fixture, and InputError for one that is too long.
+    """
     last = False
     for number in count(1):
         line = stream.readline(MOST_LINE + 1)
@@ -380,7 +408,9 @@ def split_fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Ite
 
 
 def parse_fixture_text(text: bytes) -> Any:
-    """Return the fixture of a line; raise OtherLayoutError if the line is not one whole fixture."""
+    """Return the JSON value of a fixture's line; raise
+    OtherLayoutError if the line is not one whole value.
+    """
     try:
         return parse_json(text.decode())
     except UnicodeDecodeError:
@@ -390,6 +420,9 @@ def parse_fixture_text(text: bytes) -> Any:
 
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
+    """Return the head's JSON object of a file of any
+    layout, read as a whole, and ``take(fixtures, path)``.
+    """
     try:
         text = read_limited(path, LIMITS["result"]).decode("utf-8-sig")
     except InputError as error:

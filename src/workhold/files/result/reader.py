@@ -1,8 +1,8 @@
 """Reader of result files (MODEL, "Result file"), from workhold or any program that writes the form.
 
 The head is checked by pydantic (``files.result.parts``), the fixtures by array operations. A file in columns
-is mapped into memory, and its fixtures are checked when they are looked at. The first bytes
-of a file say what it is, not its name. Messages count fixtures and pegs from 1.
+is mapped into memory, and its fixtures are checked when they are accessed. The first bytes of a file
+determine its form, not its name. Messages count fixtures and pegs from 1.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from workhold.files.result.parts import (
 )
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
-from workhold.model.fixture_table import FixtureTable, peg_places
+from workhold.model.fixture_table import FixtureTable, compute_peg_places
 from workhold.model.pose import Pose
 from workhold.model.quality import (
     BEFORE_PINS,
@@ -48,23 +48,24 @@ from workhold.model.quality import (
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.model.wall_ends import wall_ends
+from workhold.model.wall_ends import find_wall_ends
 
-__all__ = ["Columns", "check_table", "collect_columns", "add_missing_figures", "read_result"]
+__all__ = ["FixtureArrays", "check_table", "collect_columns", "add_missing_figures", "read_result"]
 
 BLOCK = 4096
 
 
 @frozen
-class Columns:
-    """The fixtures of a file as arrays.
+class FixtureArrays:
+    """The fixtures of a file as arrays, N fixtures with P pegs.
 
     Parameters
     ----------
     types, jaws : (N,) and (N, P), by name.
-    holes : (N, P, 3) holes and faces.
-    contacts : (N, P, 4) x, y and forces per unit of each of two clamps' forces (0 for a missing second one).
-    placing : (N, 5) pose in degrees and mm, jaw separation and number of pairs.
+    holes : (N, P, 3) column, row and face.
+    contacts : (N, P, 4) x, y in mm and forces per unit of each of two clamps' forces (0 for a missing second
+        one).
+    placing : (N, 5) theta in degrees, x and y in mm, jaw separation in mm and number of pairs.
     quality : (N, Q) figures of quality, that of a program last, NaN where the file gives none.
     seating : of the first fixtures.
     """
@@ -79,7 +80,7 @@ class Columns:
 
 
 def read_result(path: str | Path) -> Result:
-    """Read a result file in JSON or in columns.
+    """Return the result in a file in JSON or in columns.
 
     Parameters
     ----------
@@ -114,16 +115,23 @@ def read_result(path: str | Path) -> Result:
     return add_seatings(result, columns.seating, path)
 
 
-def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> Columns | list[AnyHoldPart]:
-    """Return fixtures with pegs as arrays, and fixtures held by friction as they are."""
+def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> FixtureArrays | list[AnyHoldPart]:
+    """Return fixtures with pegs as arrays, or fixtures that hold by friction as a list in their checked form.
+
+    The first fixture decides which they are.
+    """
     iterator = iter(fixtures)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
     return read_holds(together, path) if first and is_hold(first[0]) else collect_columns(together, path)
 
 
-def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
-    """Return the fixtures as arrays; the ``first`` of them stands in that place in the file, from 0."""
+def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> FixtureArrays:
+    """Return fixtures with pegs, given as JSON objects, as arrays.
+
+    Raises InputError for a fixture that lacks a key or has an impossible value; ``first`` is the index of the
+    first one in the file, from 0, for messages.
+    """
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
     number, pegs, seating = first + 1, 0, list[Seating]()
@@ -156,13 +164,17 @@ def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Colu
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
         if len(rows) < BLOCK:
             types, jaws, holes, contacts, placing, quality = map(np.concatenate, blocks)
-            return Columns(types, jaws, holes, contacts, placing, quality, tuple(seating))
+            return FixtureArrays(types, jaws, holes, contacts, placing, quality, tuple(seating))
 
 
 def make_fixture_row(
     fixture: Any,
 ) -> tuple[str, list[str], list[list[int]], list[list[float]], list[float], list[float]]:
-    """Return the numbers of one fixture, for one row of each array of :class:`Columns`."""
+    """Return the values of one fixture for a row of each array
+    of :class:`FixtureArrays`, in the order of its fields.
+
+    Raises KeyError, TypeError, ValueError or AttributeError for a fixture that is not of the form.
+    """
     name = fixture["type"]
     pegs, pose = fixture["pegs"], fixture["pose"]
     if "wall" in fixture and isinstance(pegs, list):
@@ -202,14 +214,17 @@ def make_fixture_row(
 
 
 def read_clamp_directions(fixture: Any) -> list[str]:
-    """Return the directions in which the clamps of a fixture push; none where no clamp holds the part."""
+    """Return the directions in which the clamps of a fixture push; [] where no clamp holds the part."""
     if fixture.get("directions") is not None:
         return [*fixture["directions"]]
     return [] if fixture.get("direction") is None else [str(fixture["direction"])]
 
 
 def read_wall_pegs(wall: Any) -> list[Any]:
-    """Return the two ends of the contact with a wall as pegs; what touches there follows from the pose."""
+    """Return the two ends of the contact with a wall as JSON objects of pegs, with 0 for their faces.
+
+    The faces follow from the pose later. Raises ValueError for a wall of another form.
+    """
     places, forces = (wall["from"], wall["to"]), wall["forces"]
     if [len(values) for values in (*places, forces)] != [2, 2, 2]:
         raise ValueError("its wall does not have two places of two numbers and two forces")
@@ -220,7 +235,11 @@ def read_wall_pegs(wall: Any) -> list[Any]:
 
 
 def read_peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
-    """Return the carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole lacks."""
+    """Return the name of what a peg of a file stands in (its carrier), and the column and row of its hole.
+
+    Column and row are 0 where a clamp without a hole lacks them. ``direction`` is the one in which its clamp
+    pushes.
+    """
     if "role" not in peg:
         return peg["jaw"], peg["column"], peg["row"]
     if peg["role"] == WALL:
@@ -243,18 +262,22 @@ def read_peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
 
 
 def find_indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
-    """Return the place of each word among some names; -1 for a word that is not among them."""
+    """Return the index of each word in ``names``; -1 for a word that is not in it."""
     out = np.full(words.shape, -1, np.int8)
     for index, name in enumerate(names):
         out[words == name] = index
     return out
 
 
-def check_table(columns: Columns, query: Query, path: Path, first: int = 0) -> FixtureTable:
-    """Return the table of the fixtures, pegs in the order of their arrangements; the ``first`` has that place."""
+def check_table(columns: FixtureArrays, query: Query, path: Path, first: int = 0) -> FixtureTable:
+    """Return the table of the fixtures, each with its pegs in the order that its type has in the toolkit.
+
+    Raises InputError for fixtures that contradict the query or themselves; ``first`` is the index of the
+    first one in the file, from 0, for messages.
+    """
     toolkit = query.toolkit
     if len(columns.types) == 0:
-        return FixtureTable.empty(toolkit)
+        return FixtureTable.make_empty(toolkit)
     if columns.jaws.shape[1] != toolkit.peg_count:
         raise InputError(
             f"{path}: its fixtures do not have the {toolkit.peg_count} pegs of the {toolkit.noun}."
@@ -273,7 +296,7 @@ def check_table(columns: Columns, query: Query, path: Path, first: int = 0) -> F
     for ends in toolkit.ends_on_walls:
         face[:, ends] = find_faces_on_wall(query, np.radians(theta_deg), np.stack([x, y], axis=1), path)
     tips = range(toolkit.peg_count - toolkit.tips, toolkit.peg_count)
-    strokes = [clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in tips]
+    strokes = [compute_clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in tips]
     travels, force = strokes or [separation], contact[:, :, 2 : 2 + toolkit.travels]
     # With one thing that moves there is no axis for it.
     alone = ... if toolkit.travels > 1 else 0
@@ -296,7 +319,7 @@ def check_table(columns: Columns, query: Query, path: Path, first: int = 0) -> F
     refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
     refuse(jaw != toolkit.find_peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
     refuse_faulty(table, query, path, rows)
-    hole_x, hole_y = peg_places(table, toolkit, query.workpiece)
+    hole_x, hole_y = compute_peg_places(table, toolkit, query.workpiece)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
     refuse(apart, "has a peg whose x, y are not those of its hole")
     return table
@@ -305,39 +328,51 @@ def check_table(columns: Columns, query: Query, path: Path, first: int = 0) -> F
 def find_faces_on_wall(
     query: Query, theta: NDArray[np.float64], position: NDArray[np.float64], path: Path
 ) -> NDArray[np.int64]:
-    """Return the faces (N, 2) at the ends of the contact with a wall, in poses (N,) in radians and (N, 2) in
-    mm.
+    """Return the faces (N, 2) at the ends of the contact with
+    a wall, in poses theta (N,) in radians and (N, 2) in mm.
 
-    Refuses a workpiece that cannot lie flush on a wall, where there are fixtures.
+    Raises InputError for a workpiece that cannot lie flush on a wall, where there are fixtures.
     """
     workpiece = query.workpiece
     if len(theta) and len(workpiece.hull_edges) == 0:
         raise InputError(f"{path}: fixture 1 lies flush on a wall, which {workpiece.name} cannot.")
-    return wall_ends(workpiece, query.toolkit, theta, position).face
+    return find_wall_ends(workpiece, query.toolkit, theta, position).face
 
 
-def clamp_travel(
+def compute_clamp_travel(
     toolkit: Toolkit, numbers: NDArray[Any], hole: NDArray[np.int32], tip: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the travels (N,) in mm of clamps on carriers (N,), from their holes to their tips, both (N, 2 or more)."""
+    """Return the travel (N,) in mm of clamps along their
+    direction, from the centre of their hole to their tip.
+
+    Parameters
+    ----------
+    numbers : (N,) index of each clamp's carrier.
+    hole : (N, 2 or more) column and row.
+    tip : (N, 2 or more) x and y in mm.
+    """
     out = np.zeros(len(tip))
     for number, carrier in enumerate(toolkit.carriers):
         if carrier.travel is None:
             continue
-        x, y = carrier.place(hole[:, 0], hole[:, 1])
+        x, y = carrier.compute_hole_center(hole[:, 0], hole[:, 1])
         along, across = carrier.travel.unit
         out = np.where(numbers == number, (tip[:, 0] - x) * along + (tip[:, 1] - y) * across, out)
     return out
 
 
 def find_asked_figures(query: Query) -> list[int]:
-    """Return the places of the figures of a query among all, see ``model.quality.list_figures_in_columns``."""
+    """Return the indices of a query's figures among all
+    figures, see ``model.quality.list_figures_in_columns``.
+    """
     known = len(FIGURES) if query.knows_heights else BEFORE_PINS
     return [*range(known), *([len(FIGURES)] if query.program is not None else [])]
 
 
 def add_missing_figures(table: FixtureTable, query: Query) -> FixtureTable:
-    """Return the table with the figures of quality that the file does not give."""
+    """Return the table with those figures of quality computed
+    that are NaN because the file does not give them.
+    """
     wanted = np.isnan(table.quality)
     if not query.is_loaded:
         wanted[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = False

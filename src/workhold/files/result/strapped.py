@@ -16,13 +16,13 @@ from workhold.files.result.forms import FormPart
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.straps import HandPush, Strap, StrappedHold
 
-__all__ = ["ProgramForcePart", "StrappedSeatPart", "check_strapped", "table_of_strapped"]
+__all__ = ["ProgramForcePart", "StrappedSeatPart", "check_strapped", "make_strapped_table"]
 
 LARGEST, MOST_HOLES = 1e9, 1_000_000
 Whole = Annotated[int, Field(ge=0)]
@@ -91,9 +91,9 @@ class ProgramForcePart(FormPart):
     tool: int
     move: Whole = Field(description="number of the program's move, from 0")
 
-    def to_need(self) -> ProgramNeed:
+    def to_need(self) -> ProgramJawForce:
         """Return what is written."""
-        return ProgramNeed(self.force, self.line, self.tool, self.move)
+        return ProgramJawForce(self.force, self.line, self.tool, self.move)
 
 
 class StrappedSeatPart(FormPart):
@@ -122,9 +122,9 @@ class StrappedSeatPart(FormPart):
         )
         pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
         written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
-        return Fixture(self.type, pegs, pose, 0.0, written, hold=self.hold(toolkit, unit_force))
+        return Fixture(self.type, pegs, pose, 0.0, written, hold=self.to_hold(toolkit, unit_force))
 
-    def hold(self, toolkit: Toolkit, unit_force: float | None = None) -> StrappedHold:
+    def to_hold(self, toolkit: Toolkit, unit_force: float | None = None) -> StrappedHold:
         """How straps hold the part; refuses a toolkit without straps."""
         if toolkit.strap_set is None:
             raise InputError(f"straps hold it, which a {toolkit.noun} does not have.")
@@ -169,13 +169,13 @@ def check_strapped(parts: Sequence[StrappedSeatPart], query: Query, path: Path) 
                 f"{path}: fixture {number} touches a segment that does not name a face of the part."
             )
         for peg in part.pegs:
-            x, y = plate.place(peg.column, peg.row)
+            x, y = plate.compute_hole_center(peg.column, peg.row)
             if hypot(peg.x - x, peg.y - y) > AGREEMENT:
                 raise InputError(f"{path}: fixture {number} has a peg whose x, y are not those of its hole.")
 
 
-def table_of_strapped(parts: Sequence[StrappedSeatPart]) -> FixtureTable:
-    """The table of the seats of a file."""
+def make_strapped_table(parts: Sequence[StrappedSeatPart]) -> FixtureTable:
+    """Return the table of the seats of a file."""
     count = len(parts)
     quality = make_unknown_quality(np.full(count, np.nan))
     places = {one.key: number for number, one in enumerate(FIGURES)}

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from workhold.model.fixture import Fixture
-from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, FIGURES, LOCATION_ERROR, SMALLEST_FACE, TILT
 from workhold.model.result import Result
 from workhold.model.straps import STRAP_FIGURES, StrappedHold
@@ -19,9 +19,9 @@ __all__ = [
     "SEAT_FIGURES",
     "is_strapped",
     "make_need_entry",
-    "strapped_columns",
-    "strapped_entry",
-    "strapped_rows",
+    "list_strapped_columns",
+    "make_strapped_entry",
+    "iterate_strapped_rows",
 ]
 
 DIGITS = 12
@@ -31,13 +31,13 @@ SEAT_FIGURES = tuple(
 )
 
 
-def length(value: float) -> float:
-    """A length as it is written, to 1e-9 mm."""
+def round_length(value: float) -> float:
+    """Return a length as it is written, to 1e-9 mm."""
     return round(value, 9) + 0.0
 
 
-def figure(value: float | None) -> float | None:
-    """A figure as it is written, to twelve digits; nothing as it is."""
+def round_figure(value: float | None) -> float | None:
+    """Return a figure as it is written, to twelve digits; None as it is."""
     return None if value is None else float(f"{value:.{DIGITS}g}") + 0.0
 
 
@@ -46,18 +46,20 @@ def is_strapped(fixture: Any) -> bool:
     return isinstance(fixture, dict) and "straps" in fixture and "push" in fixture
 
 
-def strapped_entry(fixture: Fixture) -> dict[str, Any]:
-    """A seat with its straps, as it is written."""
+def make_strapped_entry(fixture: Fixture) -> dict[str, Any]:
+    """Return a seat with its straps, as it is written."""
     hold, pose = fixture.hold, fixture.pose
     assert isinstance(hold, StrappedHold)
     push = hold.push
-    seat = {one.key: figure(fixture.quality[one.key]) for one in SEAT_FIGURES if one.key in fixture.quality}
+    seat = {
+        one.key: round_figure(fixture.quality[one.key]) for one in SEAT_FIGURES if one.key in fixture.quality
+    }
     needs: dict[str, Any] = {}
     if hold.places is not None:
         needs = {
             "full_contact": bool(hold.straps),
-            "clamp_needed": figure(hold.clamp_needed),
-            "clamp_needed_each": [figure(one) for one in hold.clamp_needed_each],
+            "clamp_needed": round_figure(hold.clamp_needed),
+            "clamp_needed_each": [round_figure(one) for one in hold.clamp_needed_each],
         }
     return {
         "type": fixture.type,
@@ -66,24 +68,24 @@ def strapped_entry(fixture: Fixture) -> dict[str, Any]:
                 "role": "locator",
                 "column": peg.column,
                 "row": peg.row,
-                "x": length(peg.x),
-                "y": length(peg.y),
+                "x": round_length(peg.x),
+                "y": round_length(peg.y),
                 "segment": peg.face,
             }
             for peg in fixture.pegs
         ],
         "pose": {
             "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
-            "x": length(pose.x),
-            "y": length(pose.y),
+            "x": round_length(pose.x),
+            "y": round_length(pose.y),
         },
         "looked_at": hold.is_looked_at,
         "straps": [
             {
                 "hole": list(one.hole),
-                "at": [length(value) for value in one.at],
+                "at": [round_length(value) for value in one.at],
                 "over": one.written_over,
-                "heel": length(one.height),
+                "heel": round_length(one.height),
             }
             for one in hold.straps
         ],
@@ -92,22 +94,22 @@ def strapped_entry(fixture: Fixture) -> dict[str, Any]:
         "push": None
         if push is None
         else {
-            "at": [length(value) for value in push.at],
+            "at": [round_length(value) for value in push.at],
             "direction_deg": round(push.direction_deg, 9),
-            "shares": [figure(one) for one in push.shares],
+            "shares": [round_figure(one) for one in push.shares],
         },
         "quality": {**seat, **needs},
         **({} if hold.program_need is None else {"program_force": make_need_entry(hold.program_need)}),
     }
 
 
-def make_need_entry(need: ProgramNeed) -> dict[str, Any]:
+def make_need_entry(need: ProgramJawForce) -> dict[str, Any]:
     """Return what the tools of a program ask for, as it is written."""
-    return {"force": figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
+    return {"force": round_figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
 
 
-def strapped_columns(straps: int) -> list[str]:
-    """The names of the columns of :func:`strapped_rows`, for so many straps."""
+def list_strapped_columns(straps: int) -> list[str]:
+    """The names of the columns of :func:`iterate_strapped_rows`, for so many straps."""
     pegs = [f"{name}_{k}" for k in range(1, 4) for name in ("column", "row", "face")]
     of_straps = [
         f"strap_{name}_{k}" for k in range(1, straps + 1) for name in ("column", "row", "x", "y", "heel")
@@ -116,13 +118,13 @@ def strapped_columns(straps: int) -> list[str]:
     return ["number", "type", "theta_deg", "x", "y", *keys, *pegs, *of_straps, "push_x", "push_y", "push_deg"]
 
 
-def strapped_rows(result: Result, straps: int) -> Iterator[list[Any]]:
-    """A row for each seat, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+def iterate_strapped_rows(result: Result, straps: int) -> Iterator[list[Any]]:
+    """Yield a row for each seat, best first: lengths in mm, angles in degrees, forces in N; None for unknown."""
     for number, fixture in enumerate(result, 1):
-        entry = strapped_entry(fixture)
+        entry = make_strapped_entry(fixture)
         pose, figures = entry["pose"], fixture.quality
         known = [figures.get(one.key) for one in (*STRAP_FIGURES, *SEAT_FIGURES)]
-        row = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], *map(figure, known)]
+        row = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], *map(round_figure, known)]
         for peg in entry["pegs"]:
             row += [peg["column"], peg["row"], peg["segment"]]
         for k in range(straps):

@@ -1,4 +1,5 @@
-"""Writing the result file: its head, and one line of JSON for every fixture (``files.result.fixture_text``).
+"""Writing of the result file: its head, and one line of JSON for every fixture
+(``files.result.fixture_text``).
 
 Glossary
 --------
@@ -22,10 +23,10 @@ from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SearchQuestion
 from workhold.files.atomic import write_text_file
 from workhold.files.result.fixture_text import round_degrees, round_table_for_file, write_fixture_lines
-from workhold.files.result.hold_text import hold_lines
-from workhold.fixels.carrier import Holes
+from workhold.files.result.hold_text import write_hold_lines
+from workhold.fixels.carrier import HoleSelection
 from workhold.fixels.kinds import USUAL
-from workhold.fixels.pegs import Flat
+from workhold.fixels.pegs import PegFlat
 from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, TopClamp
 from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
@@ -36,7 +37,7 @@ from workhold.model.quality import PROGRAM_CLEARANCE
 from workhold.model.query import Query
 from workhold.model.requirements import Load
 from workhold.model.result import Result
-from workhold.model.search_report import Proof
+from workhold.model.search_report import ProofReport
 from workhold.model.solid import BESIDE_TOP, STANDING, SolidOutline
 from workhold.model.workpiece import Workpiece
 
@@ -45,7 +46,7 @@ __all__ = [
     "make_query_entry",
     "make_head",
     "write_head_json",
-    "load_entry",
+    "make_load_entry",
     "write_program_json",
     "make_proof_entry",
     "write_result_text",
@@ -75,13 +76,13 @@ def write_result_text(result: Result) -> Iterator[str]:
     yield ',\n"fixtures": ['
     separator, count = "\n", 0
     if result.toolkit.holds_by_friction:
-        yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(hold_lines(result)))
+        yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(write_hold_lines(result)))
         yield "\n]}\n"
         return
     for lines in write_fixture_lines(result.table, result.toolkit, result.workpiece):
         seatings = result.seating[count : count + len(lines)]
         lines[: len(seatings)] = [
-            add_entry_to_line(line, "seating", one.as_fields())
+            add_entry_to_line(line, "seating", one.to_fields())
             for line, one in zip(lines, seatings, strict=False)
         ]
         if result.query.passed is not None:
@@ -92,16 +93,19 @@ def write_result_text(result: Result) -> Iterator[str]:
 
 
 def add_entry_to_line(line: str, key: str, value: dict[str, Any]) -> str:
+    """Return the JSON line of a fixture with a further key and value."""
     return f'{line[:-1]}, "{key}": {json.dumps(value)}}}'
 
 
 def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
-    """Return the lines of some fixtures, each with what the program's tools come nearest to.
+    """Return the lines of the fixtures at ``rows``, with what
+    the program's tools come nearest to and the forces needed.
 
-    Nothing is said where no tool comes down to the pegs.
+    A fixture whose tools do not come down to the pegs gets no clearance, and only a program with forces gives
+    any.
     """
     # Other files are written without what measures.
-    from workhold.statics.program_clearance import element_name, find_nearest_moves
+    from workhold.statics.program_clearance import find_nearest_moves, name_element
 
     assert result.query.passed is not None
     program = result.query.passed[0]
@@ -114,7 +118,7 @@ def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
                 "distance": float(f"{table.quality[number, PROGRAM_CLEARANCE]:.12g}"),
                 "line": int(near.line[number]),
                 "tool": int(near.tool[number]),
-                "element": element_name(table, toolkit, number, int(near.contact[number])),
+                "element": name_element(table, toolkit, number, int(near.contact[number])),
             }
             line = add_entry_to_line(line, "program_clearance", said)
         out.append(line)
@@ -122,6 +126,9 @@ def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
 
 
 def add_program_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
+    """Return the lines of the fixtures of a table, each with
+    the forces that the program needs, where there are any.
+    """
     from workhold.statics.program_forces import find_cutting_needs
 
     jaw_force = result.query.jaw_force
@@ -133,11 +140,11 @@ def add_program_forces(lines: list[str], table: FixtureTable, result: Result, pr
 
 
 def make_head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
-    """Return everything in the file but the fixtures, at full precision.
+    """Return everything in the file but the fixtures, as a JSON object at full precision.
 
     Parameters
     ----------
-    with_pieces : whether all that a program sweeps is among it, or only what else there is of it.
+    with_pieces : whether all that a program sweeps is included, or only the program's other data.
     """
     return {
         "format": FORMAT,
@@ -157,21 +164,21 @@ def make_head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
 
 
 def make_notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
-    """Note as they are written: their sentences, and their data in the same order."""
+    """Return the entries of notes: their sentences, and their data in the same order."""
     return {"notes": [note.words for note in notes], "note_data": [note.data for note in notes]}
 
 
 def make_least_error_entry(result: Result) -> dict[str, float]:
-    """Return the least effective location error as it is written; nothing where the order has no steps."""
+    """Return the entry of the least effective location error in mm; {} where the order has no steps."""
     least = result.least_effective_error
     return {} if least is None else {"least_effective_error": least}
 
 
 def write_program_json(program: Program) -> Iterator[str]:
     """Yield the JSON of a program as ``Program.to_dict`` has it, in parts."""
-    start = json.dumps(program.head())
+    start = json.dumps(program.make_head())
     yield f'{start[:-1]}, "pieces": ['
-    separator, pieces = "", program.iter_entries()
+    separator, pieces = "", program.iterate_entries()
     while some := [json.dumps(piece) for piece in islice(pieces, AT_ONCE)]:
         yield separator + ", ".join(some)
         separator = ", "
@@ -181,7 +188,15 @@ def write_program_json(program: Program) -> Iterator[str]:
 def write_head_json(
     entries: Mapping[str, Any], program: Program | None, separator: str, is_ascii: bool = True
 ) -> Iterator[str]:
-    """Yield the JSON of a head in parts, with all that a program sweeps and without its last bracket."""
+    """Yield the JSON of a head in parts, without its closing bracket.
+
+    Parameters
+    ----------
+    entries : the head's.
+    program : written with all that it sweeps under the key ``program``; None if there is none.
+    separator : text between two entries.
+    is_ascii : whether other characters are escaped.
+    """
     before = "{"
     for key, value in entries.items():
         yield f"{before}{json.dumps(key)}: "
@@ -193,7 +208,7 @@ def write_head_json(
 
 
 def make_workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
-    """Return a workpiece as it is written; its file has the same form."""
+    """Return a workpiece as a JSON object; a workpiece file has the same form."""
     return {
         "name": workpiece.name,
         "units": "mm",
@@ -204,7 +219,9 @@ def make_workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def make_bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
-    """Return the bands of an outline's segments as they are written, and the solid's faces over each."""
+    """Return the entries of the heights that may be touched
+    on each segment, and of the solid's faces; {} for None.
+    """
     if solid is None:
         return {}
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
@@ -217,18 +234,18 @@ def make_bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
 
 
 def make_solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
-    """Return how the solid of an outline stands, as it is written; nothing for a prism."""
+    """Return the entry of a solid's axis, height, and heights and limits of the pegs; {} for None."""
     if solid is None:
         return {}
     return {"solid": {key: getattr(solid, key) for key in STANDING}}
 
 
 def make_own_outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
-    """Return the outlines of carriers with heights of their own, as they are written; empty without such
-    carriers.
+    """Return the entry of the outlines that jaws or clamps
+    with heights of their own meet, by role; {} without any.
 
-    Their segments are numbered on after those of the workpiece, in the order in which they stand. An outline
-    that is equal to one before it has the numbers of that.
+    The numbers of their segments continue after those of the workpiece, in their order here. An outline that
+    equals an earlier one has the numbers of that.
     """
     own = {
         role: {"loops": [(loop + 0.0).tolist() for loop in one.loops], **make_bands_entry(one.solid)}
@@ -238,7 +255,7 @@ def make_own_outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def make_query_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
-    """Return what a query asks about a workpiece, as it is written; see :func:`make_head`."""
+    """Return the entries of a query but for the workpiece; for ``with_pieces`` see :func:`make_head`."""
     asked = {
         **make_toolkit_entry(query.toolkit),
         "types": list(query.types),
@@ -251,7 +268,7 @@ def make_query_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
         },
         "ranking": list(query.rank_by),
         "tolerance": asdict(query.tolerance),
-        "loads": [load_entry(load) for load in query.loads],
+        "loads": [make_load_entry(load) for load in query.loads],
     }
     always = {"best", "jaw_force"} | ({"opening", "foolproof"} if query.seating is not None else set())
     asked |= {
@@ -263,20 +280,24 @@ def make_query_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     if query.friction is not None:
         asked["friction"] = dict(query.friction)
     if query.program is not None:
-        program = query.program.to_dict() if with_pieces else query.program.head()
+        program = query.program.to_dict() if with_pieces else query.program.make_head()
         asked["program"] = program
     return asked
 
 
 def make_toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
-    """Return the key of a toolkit in a file, and its fields, with its kind where it has no key of its own."""
+    """Return the entry of a toolkit: its fields under a
+    key of its own, or under ``toolkit`` with its kind.
+    """
     fields = make_toolkit_fields(toolkit)
     key = OWN_KEYS.get(toolkit.kind)
     return {"toolkit": {"kind": toolkit.kind, **fields}} if key is None else {key: fields}
 
 
 def make_toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
-    """Return the fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
+    """Return the fields of a toolkit as JSON values: lengths
+    in mm, holes by name; pitch, columns and rows come first.
+    """
     # The tolerance stands among what was asked.
     values = asdict(toolkit, recurse=False, filter=lambda one, _: one.name != "tolerance")  # type: ignore[arg-type]
     fields = {name: convert_to_json_value(value) for name, value in values.items()}
@@ -286,23 +307,29 @@ def make_toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
 
 
 def convert_to_json_value(value: Any) -> Any:
+    """Return a field's value as a JSON value; other values
+    than tuples, holes and hardware are returned unchanged.
+    """
     if isinstance(value, tuple):
         return [convert_to_json_value(one) for one in value]
-    if isinstance(value, Flat):
+    if isinstance(value, PegFlat):
         return asdict(value)
     if isinstance(value, (SupportPads, TopClamp, PinLimits)):
         return {name: convert_to_json_value(one) for name, one in asdict(value).items() if one is not None}
-    return value.name if isinstance(value, Holes) else value
+    return value.name if isinstance(value, HoleSelection) else value
 
 
-def load_entry(load: Load) -> dict[str, Any]:
-    """Return a load as it is written: N, N mm, mm and degrees."""
+def make_load_entry(load: Load) -> dict[str, Any]:
+    """Return a load as a JSON object: N, N mm, mm and degrees;
+    zero or unknown heights and upward forces are left out.
+    """
     entry = {"name": load.name} | asdict(load)
     # What stands in no plane is written where it is said.
     return {key: value for key, value in entry.items() if key not in ("upward", "height") or value}
 
 
-def make_proof_entry(proof: Proof) -> dict[str, Any]:
+def make_proof_entry(proof: ProofReport) -> dict[str, Any]:
+    """Return the account of the search as a JSON object."""
     return {
         "cells": int(proof.cells),
         "candidates": int(proof.candidates),

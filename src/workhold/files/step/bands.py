@@ -1,16 +1,18 @@
 """Bands: the heights at which a peg may press on each piece of an outline, from the solid's upright faces.
 
-Over a point of the outline's border upright faces cover runs of height. A piece of the border lies between
-all places at which a run can begin, end, split, merge or jump, and where one passes an end of the heights
-that pegs reach. So over a piece there are the same runs from end to end, and each of their ends follows one
-edge of a wall.
+Upright faces cover ranges of height above each point of the outline's border. The border is cut into pieces
+at all places where such a range can begin, end, split, merge or jump, and where one of its ends passes the
+lowest or highest height that pegs reach. So the number of ranges is the same all along a piece, and each of
+their ends follows one edge of a wall.
 
 Glossary
 --------
+carrier : the infinite line or the whole circle that a segment lies on. A position on it is in mm along a line
+    and in radians around a circle.
 wall : an upright face of the solid.
 run : a range of heights, as long as can be, at all of which walls stand over a place.
-branch : a part of a wall's edge over which the place on the wall's line or circle only grows or only falls.
-steep : where an edge stands upright, or so nearly that rounding hides it, so that the end of a run jumps.
+branch : a part of a wall's edge over which the position on the carrier only grows or only falls.
+steep : where an edge is upright, or so nearly that rounding hides it, so that the end of a run jumps.
 """
 
 from __future__ import annotations
@@ -39,10 +41,10 @@ from workhold.files.step.edge_curves import (
 from workhold.files.step.faces import SolidFace
 from workhold.files.step.library import occ
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.geometry.subdivision import BorderPiece, CutCarrier
+from workhold.geometry.subdivision import BorderPiece, CutCurve
 from workhold.model.solid import Band
 
-__all__ = ["Covered", "End", "KnownWalls", "Run", "WallEdge", "Walls", "measure_band"]
+__all__ = ["CoveredPiece", "RunEnd", "KnownWalls", "WallRun", "WallEdge", "WallsByCarrier", "measure_band"]
 
 # Edges this far from a carrier in mm, and farther, are not asked whether they lie on it.
 NEAR = 1e-4
@@ -69,13 +71,15 @@ def measure_band(band: Band) -> float:
 
 @frozen(eq=False, slots=False)
 class WallEdge:
-    """An edge of a wall that is not upright, with all points at which it turns.
+    """An edge of a wall that is not upright, with points at all places where it turns.
 
     Parameters
     ----------
-    edge : it projects to a line or an arc; between two of its points it neither turns back nor up or down.
-    branches : its points' numbers (first, last) of each branch.
-    steep : numbers of points at which it is steep.
+    edge : it projects to a line or an arc; between two of its points its position along the segment and its
+        height are both monotonic.
+    segment : the line or arc that the edge projects to.
+    branches : indices (first, last) of the points at the ends of each branch.
+    steep : indices of the points at which the edge is steep.
     """
 
     edge: EdgeCurve
@@ -85,11 +89,16 @@ class WallEdge:
 
     @property
     def is_level(self) -> bool:
-        """Whether it neither rises nor falls."""
+        """Whether all points of the edge have the same height."""
         return self.edge.high - self.edge.low <= ONE_HEIGHT
 
     @classmethod
     def from_edge(cls, edge: EdgeCurve, segment: Segment) -> WallEdge:
+        """Make the wall edge of an edge that projects to
+        ``segment``, with points added at all places where it turns.
+
+        It turns where its position along the segment or its height changes from growing to falling or back.
+        """
         last = len(edge.points) - 1
         if last == 1:
             rise = abs(float(edge.points[1, 2] - edge.points[0, 2]))
@@ -112,10 +121,12 @@ class WallEdge:
         )
 
     def find_cut_points(self, low: float, high: float) -> Iterator[Point]:
-        """Yield the points at which an outline is to be cut: ends of branches, and where the edge passes or
-        only just reaches an end of the heights of pegs.
+        """Yield the points (x, y) in mm at which an outline
+        between two z in mm must be cut because of this edge.
 
-        Where it passes the lower end the outline is cut in any case.
+        These are the ends of its branches (stretches over which its position along the segment is monotonic),
+        and the places where it crosses ``high`` or has a point within rounding of ``low`` or ``high``.
+        Crossings of ``low`` are left out: the outline is cut there in any case. None for a level edge.
         """
         points = self.edge.points
         if self.is_level:
@@ -127,17 +138,22 @@ class WallEdge:
 
 
 def compute_positions_along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the positions (N,) of points (N, 3) along a segment's line or circle, on a circle without jumps."""
-    found = np.array([segment.parameter((x, y)) for x, y in points[:, :2].tolist()])
+    """Return the positions (N,) of points (N, 3) along a
+    segment's line (mm) or circle (radians, without jumps).
+    """
+    found = np.array([segment.find_parameter((x, y)) for x, y in points[:, :2].tolist()])
     return found if isinstance(segment, Line) else np.unwrap(found)
 
 
 def split_into_branches(
     places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]
 ) -> Iterator[tuple[int, int]]:
-    """Yield the numbers (first, last) of the points of each branch of an edge.
+    """Yield the indices (first, last) of an edge's points between which its position is monotonic.
 
-    At the points that ``cuts`` numbers a branch ends in any case.
+    Parameters
+    ----------
+    places : (N,) positions of the points along the edge's projection.
+    cuts : indices of points at which a stretch ends in any case.
     """
     steps = np.diff(places)
     first, way = 0, 0.0
@@ -152,7 +168,10 @@ def split_into_branches(
 
 
 def compute_slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple[float, float]:
-    """Return how far an edge goes along its segment, and up, as shares of its length at a parameter."""
+    """Return the components along the segment and upward of the edge's unit tangent at a parameter.
+
+    The tangent points in the direction of growing parameters.
+    """
     point, step = occ.gp_Pnt(), occ.gp_Vec()
     edge.curve.D1(parameter, point, step)
     if step.Magnitude() <= ONE_HEIGHT:
@@ -170,10 +189,12 @@ def compute_slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple
 
 
 def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[float]]:
-    """Return an edge with points wherever it turns, and the parameters at which it is steep or turns back.
+    """Return an edge with points added wherever it turns, and
+    the parameters at which it stands upright or turns back.
 
-    Its direction is looked at rather than its points: one that turns between its last two points, as a closed
-    edge does that begins near its lowest point, shows nothing of that by its points.
+    It turns where the tangent's component along the segment or upward changes its sign. The tangent is
+    evaluated because points are not enough: a closed edge that begins near its lowest point turns between its
+    last two.
     """
     parameters = edge.parameters
     if edge.curve.GetType() == occ.GeomAbs_BSplineCurve:
@@ -181,6 +202,7 @@ def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozen
         parameters = np.union1d(parameters, np.linspace(parameters[0], parameters[-1], count))
 
     def slope(kind: int, parameter: float) -> float:
+        """Return the tangent's component along the segment (kind 0) or upward (kind 1) at a parameter."""
         return compute_slopes(edge, segment, parameter)[kind]
 
     values = np.array([compute_slopes(edge, segment, t) for t in parameters.tolist()])
@@ -217,9 +239,10 @@ def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozen
 
 @frozen
 class Conic:
-    """A circle or an ellipse in space, whose points are centre + along cos t + across sin t.
+    """A circle or an ellipse in space, whose points are center + along cos t + across sin t.
 
-    Where it passes an upright wall's place is known at once, which takes a library's curve twenty questions.
+    Its height over a place on a carrier has a closed form; on a curve of the library it takes some twenty
+    evaluations.
 
     Parameters
     ----------
@@ -232,7 +255,7 @@ class Conic:
 
     @classmethod
     def from_curve(cls, curve: Any) -> Conic | None:
-        """Make the conic of a curve of Open CASCADE; None for curves of other kinds."""
+        """Return the conic of a curve of Open CASCADE; None for curves of other kinds."""
         kind = curve.GetType()
         if kind not in (occ.GeomAbs_Circle, occ.GeomAbs_Ellipse):
             return None
@@ -247,10 +270,18 @@ class Conic:
         return cls((place.X(), place.Y(), place.Z()), along, across)
 
     def compute_height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
-        """Return the z in mm at which it passes a place on a carrier, between two parameters.
+        """Return the z in mm at which the conic passes a position
+        on a line or circle, between two of its parameters t.
 
-        They are less than half a turn apart. The place is in mm on a line and in radians on a circle. None
-        where it is not passed between them.
+        Parameters
+        ----------
+        carrier : a segment of the line or circle, from whose middle positions are measured.
+        place : the position, in mm along a line; on a circle in radians from its segment's middle angle.
+        first, last : in radians, less than half a turn apart, in any order.
+
+        Returns
+        -------
+        None where the conic does not pass the position between them.
         """
         if isinstance(carrier, Line):
             (px, py), (nx, ny), off = carrier.middle, carrier.tangent, place
@@ -275,18 +306,18 @@ class Conic:
 
 
 @frozen(eq=False, slots=False)
-class Branch:
+class EdgeBranch:
     """A branch of a wall's edge over the wall's carrier.
 
     Parameters
     ----------
     edge : see :class:`WallEdge`.
-    carrier : a segment of its line or circle, which fixes positions.
-    parameters : (N,) of the edge's curve.
+    carrier : a segment of the wall's line or circle, from which positions are measured.
+    parameters : (N,) of the edge's curve, rising or falling.
     places : (N,) positions on the carrier there, rising, on a circle without jumps.
-    heights : (N,) z in mm there; between two of them the edge only rises or only falls.
-    steep : whether it is steep at its first and its last place.
-    known : heights in mm by place, once they were asked for.
+    heights : (N,) z in mm there; between two neighbours the height is monotonic.
+    steep : whether it is steep at its first and its last position.
+    known : cache of heights in mm by position.
     """
 
     edge: EdgeCurve
@@ -298,7 +329,11 @@ class Branch:
     known: dict[float, float] = field(init=False, factory=dict)
 
     @classmethod
-    def make_branches(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[Branch]:
+    def make_branches(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[EdgeBranch]:
+        """Yield the pieces of a wall's edge over each of which its position along the wall is monotonic.
+
+        ``carrier`` is a segment of the wall's line or circle, from which positions are measured.
+        """
         edge = wall_edge.edge
         places = compute_positions_along(carrier, edge.points)
         for first, last in wall_edge.branches:
@@ -312,12 +347,17 @@ class Branch:
 
     @cached_property
     def level(self) -> float | None:
-        """The z in mm of a level edge; None of others."""
+        """z in mm of a level edge piece; None when it rises or falls."""
         least, greatest = float(self.heights.min()), float(self.heights.max())
         return float(self.heights[0]) if greatest - least <= ONE_HEIGHT else None
 
     def list_turns_to_add(self, position: float) -> list[float]:
-        """Return what is added to a position to find it among its places: whole turns on a circle."""
+        """Return the offsets that bring a position on the line
+        or circle into the range of positions of this edge piece.
+
+        On a circle the offsets are whole turns in radians, and there may be several; on a line the only one
+        is 0. The list is empty where the piece does not lie over the position.
+        """
         first, last = float(self.places[0]), float(self.places[-1])
         if isinstance(self.carrier, Arc) and abs(last - first - tau) <= WHOLE_TURN:
             return [first + (position - first) % tau - position]
@@ -325,7 +365,7 @@ class Branch:
         return [turn for turn in around if first < position + turn < last]
 
     def compute_height_at(self, place: float) -> float:
-        """Return the z in mm at a place; beyond an end that of the end."""
+        """Return the z in mm of the edge piece at a position; beyond its ends that of the nearer end."""
         if self.level is not None:
             return self.level
         places, heights = self.listed
@@ -344,11 +384,15 @@ class Branch:
 
     @cached_property
     def listed(self) -> tuple[list[float], list[float]]:
-        """Its places and heights as plain numbers, of which one is asked for much faster."""
+        """Its positions and heights as lists of floats,
+        whose elements are read much faster than an array's.
+        """
         return self.places.tolist(), self.heights.tolist()
 
     def refine_height(self, k: int, place: float) -> float:
-        """Return the z in mm at which a curved edge passes a place between its points k and k + 1."""
+        """Return the z in mm at which a curved edge passes
+        a position between those of its points k and k + 1.
+        """
         if self.conic is not None:
             z = self.conic.compute_height_at(self.carrier, place, *self.parameters[k : k + 2].tolist())
             if z is not None:
@@ -360,14 +404,18 @@ class Branch:
             (px, py), (tx, ty) = carrier.middle, carrier.tangent
 
             def value(parameter: float) -> float:
+                """Return the position of a point of the curve along the line, less the one wanted, in mm."""
                 find(parameter, point)
                 return float((x_of() - px) * tx + (y_of() - py) * ty - place)
 
         else:
 
             def value(parameter: float) -> float:
+                """Return the position of a point of the curve
+                around the circle, less the one wanted, in radians.
+                """
                 find(parameter, point)
-                found = carrier.parameter((x_of(), y_of()))
+                found = carrier.find_parameter((x_of(), y_of()))
                 return near + (found - near + pi) % tau - pi - place
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
@@ -376,16 +424,16 @@ class Branch:
         )
 
     def clamp_height(self, k: int, z: float) -> float:
-        """Return a z in mm, no farther than the heights of the points k and k + 1."""
+        """Return a z in mm, limited to the range between the heights of the points k and k + 1."""
         return min(max(z, float(self.heights[k : k + 2].min())), float(self.heights[k : k + 2].max()))
 
     @cached_property
     def conic(self) -> Conic | None:
-        """The circle or the ellipse that the edge is a piece of; None of other curves."""
+        """The circle or ellipse that the edge is a piece of; None for other curves."""
         return Conic.from_curve(self.edge.curve)
 
     def compute_height_range(self, low: float, high: float) -> Band:
-        """Return the least and the greatest z in mm between two places."""
+        """Return the least and the greatest z in mm of the edge piece between two positions, low < high."""
         if self.level is not None:
             return self.level, self.level
         inner = self.heights[(self.places > low) & (self.places < high)].tolist()
@@ -394,39 +442,57 @@ class Branch:
 
 
 @frozen(eq=False)
-class End:
-    """An end of a run over a piece: the height of a branch, within the heights of pegs.
+class RunEnd:
+    """The lower or upper end of a run over a piece: the height of a branch, limited to the heights of pegs.
 
     Parameters
     ----------
     branch : whose height it is.
-    turn : what is added to a position of the piece to have its place on the branch.
+    turn : offset to add to a position of the piece to get its position on the branch.
     low, high : z in mm between which a peg may press.
     """
 
-    branch: Branch
+    branch: EdgeBranch
     turn: float
     low: float
     high: float
 
     def compute_height_at(self, position: float) -> float:
-        """Return the z in mm at a position of the piece."""
+        """Return the z in mm of this end of a range of touchable
+        heights at a position, limited to the heights of pegs.
+        """
         return min(max(self.branch.compute_height_at(position + self.turn), self.low), self.high)
 
     def compute_height_range(self, low: float, high: float) -> Band:
-        """Return the least and the greatest z in mm between two positions of the piece."""
+        """Return the least and greatest z in mm of this end of
+        a range of heights between two positions of the piece.
+
+        Both are limited to the heights of pegs.
+        """
         least, greatest = self.branch.compute_height_range(low + self.turn, high + self.turn)
         return min(max(least, self.low), self.high), min(max(greatest, self.low), self.high)
 
     def list_inner_positions(self, low: float, high: float) -> list[float]:
-        """Return the positions between two others at which it may turn, and some between; none of a level end."""
+        """Return the positions strictly between two others at
+        which the edge's height may turn; none for a level edge.
+
+        Between neighbours of these the height is monotonic.
+        """
         if self.branch.level is not None:
             return []
         places = self.branch.places - self.turn
         return [float(place) for place in places[(places > low) & (places < high)]]
 
     def is_steep_at(self, position: float, beside: float, slack: float) -> bool:
-        """Return whether the branch is steep where it has an end at a position, seen from a position beside."""
+        """Return whether this end of a range of heights jumps
+        at a position, because its edge ends upright there.
+
+        Parameters
+        ----------
+        beside : position at which the height is checked; where it is not strictly within the heights of pegs,
+            the limit hides the jump, and the answer is False.
+        slack : largest distance of the edge piece's end from the position.
+        """
         places = self.branch.places[[0, -1]] - self.turn
         steep = any(
             is_steep and abs(float(place) - position) <= slack
@@ -436,7 +502,7 @@ class End:
 
 
 @frozen(eq=False)
-class Run:
+class WallRun:
     """A run over a piece of the border.
 
     Parameters
@@ -444,66 +510,75 @@ class Run:
     lower, upper : its ends.
     """
 
-    lower: End
-    upper: End
+    lower: RunEnd
+    upper: RunEnd
 
     def compute_heights_at(self, position: float) -> Band:
+        """Return the lower and the upper z in mm of the
+        covered range of heights at a position of the piece.
+        """
         return self.lower.compute_height_at(position), self.upper.compute_height_at(position)
 
     def compute_common_band(self, low: float, high: float) -> Band:
-        """Return the heights that it has at every position between two; of negative length if there are no
-        such heights.
+        """Return the heights (z0, z1) in mm that this range covers
+        at every position between two; z1 < z0 if there are none.
         """
         return self.lower.compute_height_range(low, high)[1], self.upper.compute_height_range(low, high)[0]
 
     def bound_length(self, low: float, high: float) -> float:
-        """Return a length in mm that it has nowhere more than between two positions, if not the most it has."""
+        """Return an upper bound in mm of the height of this
+        range (upper minus lower z) at any position between two.
+        """
         return self.upper.compute_height_range(low, high)[1] - self.lower.compute_height_range(low, high)[0]
 
 
 @frozen(eq=False)
-class Covered:
+class CoveredPiece:
     """A piece of the border, or a part of one, with the runs over it.
 
     Parameters
     ----------
     piece : of the border.
     low, high : positions on its carrier.
-    runs : the lowest first.
-    faces : numbers of the walls over it.
+    runs : from the lowest up.
+    faces : indices of the walls over it, sorted.
     """
 
     piece: BorderPiece
     low: float
     high: float
-    runs: tuple[Run, ...]
+    runs: tuple[WallRun, ...]
     faces: tuple[int, ...]
 
     @property
     def size(self) -> float:
-        """How far it runs, in mm on a line and radians on a circle."""
+        """Its length, in mm on a line and in radians on a circle."""
         return self.high - self.low
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Its first and its last position in the direction of the border."""
+        """Its positions at the start and the end in the direction of the border."""
         return (self.low, self.high) if self.piece.forward else (self.high, self.low)
 
-    def cut_between(self, low: float, high: float) -> Covered:
-        """Return what lies between two positions."""
+    def cut_between(self, low: float, high: float) -> CoveredPiece:
+        """Return the part of the piece between two positions, with all height ranges and faces."""
         return evolve(self, low=low, high=high)
 
-    def cut_at(self, positions: Sequence[float]) -> list[Covered]:
-        """Cut it at some positions; the pieces follow the direction of the border."""
+    def cut_at(self, positions: Sequence[float]) -> list[CoveredPiece]:
+        """Return the parts of the piece between the given positions, in the direction of the border."""
         found = [self.cut_between(a, b) for a, b in pairwise([self.low, *sorted(positions), self.high])]
         return found if self.piece.forward else found[::-1]
 
     def measure_longest_run_at(self, position: float) -> float:
-        """Return the length in mm of the longest run at a position."""
+        """Return the height in mm (upper minus lower z) of the
+        longest range that walls cover at a position; 0 without any.
+        """
         return max((measure_band(run.compute_heights_at(position)) for run in self.runs), default=0.0)
 
     def list_inner_positions(self) -> list[float]:
-        """Return the positions within it at which a run may be longest or shortest around, and some between; sorted."""
+        """Return the sorted positions within the piece between
+        which the ends of every covered height range are monotonic.
+        """
         found = {
             place
             for run in self.runs
@@ -514,8 +589,8 @@ class Covered:
 
 
 @frozen(eq=False)
-class Wall:
-    """An upright face over a carrier.
+class UprightWall:
+    """A wall over a carrier.
 
     Parameters
     ----------
@@ -524,20 +599,27 @@ class Wall:
     """
 
     index: int
-    branches: tuple[Branch, ...]
+    branches: tuple[EdgeBranch, ...]
 
-    def list_covered_ranges(self, position: float, low: float, high: float) -> list[tuple[float, float, Run]]:
-        """Return the ranges of z in mm that the face covers at a position between two heights, the lowest first."""
+    def list_covered_ranges(
+        self, position: float, low: float, high: float
+    ) -> list[tuple[float, float, WallRun]]:
+        """Return the ranges of height that the wall covers above
+        a position, from the lowest up, as (z0, z1, run), z in mm.
+
+        The ranges are limited to the heights ``low`` to ``high``, and those shorter than ``LEAST_GAP`` are
+        left out. The run gives the same range at other positions of the piece.
+        """
         passed = sorted(
             (
-                (branch.compute_height_at(position + turn), End(branch, turn, low, high))
+                (branch.compute_height_at(position + turn), RunEnd(branch, turn, low, high))
                 for branch in self.branches
                 for turn in branch.list_turns_to_add(position)
             ),
             key=lambda one: one[0],
         )
         return [
-            (max(a, low), min(b, high), Run(lower, upper))
+            (max(a, low), min(b, high), WallRun(lower, upper))
             for (a, lower), (b, upper) in zip(passed[0::2], passed[1::2], strict=False)
             if min(b, high) - max(a, low) > LEAST_GAP
         ]
@@ -545,28 +627,30 @@ class Wall:
 
 @frozen(eq=False)
 class KnownWalls:
-    """What is known of a solid's walls at whatever heights pegs reach.
+    """Cache of a solid's wall edges and branches, which are the same for all heights of pegs.
 
     Parameters
     ----------
-    edges : edges of walls by their points' identity.
-    branches : of each over a segment of its carrier.
+    edges : edges of walls by the identity of their points.
+    branches : branches by the identity of the edge's curve and a segment of its carrier.
     """
 
     edges: dict[int, WallEdge] = field(factory=dict)
-    branches: dict[tuple[int, Segment], tuple[Branch, ...]] = field(factory=dict)
+    branches: dict[tuple[int, Segment], tuple[EdgeBranch, ...]] = field(factory=dict)
 
-    def find_branches_over(self, carrier: Segment, wall_edge: WallEdge) -> tuple[Branch, ...]:
-        """Return the branches of an edge over a carrier that holds it, with all heights that they were asked for."""
+    def find_branches_over(self, carrier: Segment, wall_edge: WallEdge) -> tuple[EdgeBranch, ...]:
+        """Return the monotonic pieces of a wall's edge over a line
+        or circle; they are made once and keep computed heights.
+        """
         key = id(wall_edge.edge.curve), carrier
         if key not in self.branches:
-            self.branches[key] = tuple(Branch.make_branches(carrier, wall_edge))
+            self.branches[key] = tuple(EdgeBranch.make_branches(carrier, wall_edge))
         return self.branches[key]
 
 
 @define
-class Walls:
-    """The upright faces of a solid by the carrier that they stand on.
+class WallsByCarrier:
+    """The upright faces of a solid, looked up by the carrier that they stand on.
 
     Parameters
     ----------
@@ -583,7 +667,7 @@ class Walls:
     upright: list[WallEdge] = field(init=False)
     # Of each of them (x, y) of both ends and a radius of 0, or those of an arc's centre twice and its radius.
     places: NDArray[np.float64] = field(init=False)
-    found: dict[int, list[Wall]] = field(init=False, factory=dict)
+    found: dict[int, list[UprightWall]] = field(init=False, factory=dict)
     known: KnownWalls = field(factory=KnownWalls)
 
     def __attrs_post_init__(self) -> None:
@@ -601,7 +685,9 @@ class Walls:
         self.places = np.array(places, np.float64).reshape(-1, 5)
 
     def find_wall_edge(self, edge: EdgeCurve, segment: Segment) -> WallEdge:
-        """Return an edge of a wall; two walls that have it have the same curve."""
+        """Return the wall edge of an edge whose projection is
+        ``segment``; it is made once for the two walls it borders.
+        """
         key = id(edge.points)
         if key not in self.known.edges:
             self.known.edges[key] = WallEdge.from_edge(edge, segment)
@@ -609,29 +695,41 @@ class Walls:
         return same if same.edge.face == edge.face else evolve(same, edge=evolve(same.edge, face=edge.face))
 
     def find_cut_points(self) -> list[tuple[Segment, Point]]:
-        """Return the points at which an outline is to be cut, because the runs there may change."""
+        """Return (segment, point) for all points (x, y) at which an outline must be cut.
+
+        There the ranges of height that upright faces cover may change.
+        """
         return [
             (one.segment, point) for one in self.upright for point in one.find_cut_points(self.low, self.high)
         ]
 
     def find_level_edge_ends(self) -> Iterator[tuple[Segment, Point]]:
-        """Yield where level edges end: a subdivision that has the edges themselves is cut there."""
+        """Yield (segment, point) for both end points (x, y) of each
+        level edge of an upright face, except for whole circles.
+
+        They are needed as cuts only where the edges themselves are no segments of the subdivision.
+        """
         for one in self.upright:
             if one.is_level and not (isinstance(one.segment, Arc) and one.segment.is_full):
                 yield from ((one.segment, one.segment.start), (one.segment, one.segment.end))
 
-    def find_walls_over(self, carrier: CutCarrier) -> list[Wall]:
+    def find_walls_over(self, carrier: CutCurve) -> list[UprightWall]:
+        """Return the upright faces that stand on a line or
+        circle, each with the pieces of its edges over it.
+        """
         if id(carrier) not in self.found:
-            branches: defaultdict[int, list[Branch]] = defaultdict(list)
+            branches: defaultdict[int, list[EdgeBranch]] = defaultdict(list)
             for k in self.find_near_edges(carrier.segment).tolist():
                 one = self.upright[k]
-                if carrier.holds(one.segment):
+                if carrier.is_carrier_of(one.segment):
                     branches[one.edge.face] += self.known.find_branches_over(carrier.segment, one)
-            self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in branches.items()]
+            self.found[id(carrier)] = [UprightWall(index, tuple(own)) for index, own in branches.items()]
         return self.found[id(carrier)]
 
     def find_near_edges(self, segment: Segment) -> NDArray[np.intp]:
-        """Return the numbers of upright faces' edges that may lie on a segment's line or circle."""
+        """Return the indices in ``upright`` of edges that,
+        by their ends, lie near a segment's line or circle.
+        """
         radius = self.places[:, 4]
         if isinstance(segment, Arc):
             away = np.abs(self.places[:, [0, 1, 4]] - (*segment.center, segment.radius)).max(
@@ -642,13 +740,15 @@ class Walls:
         across = np.abs((self.places[:, 0:4:2] - x) * ty - (self.places[:, 1:4:2] - y) * tx)
         return np.flatnonzero((radius == 0.0) & (across.max(axis=1, initial=0) <= NEAR))
 
-    def find_covered(self, piece: BorderPiece) -> Covered:
-        """Return a piece of the border with the runs over it.
+    def find_covered(self, piece: BorderPiece) -> CoveredPiece:
+        """Return a piece of the border with the ranges of height that upright faces cover over it.
 
-        No wall there has its material on the other side: a peg would meet that, and the piece were no border.
+        The ranges are limited to the heights of pegs; those of several faces that touch or overlap are one.
+        All faces over the piece have their material on the same side: otherwise a peg would meet material,
+        and the piece would be no border.
         """
         walls = self.find_walls_over(piece.carrier)
-        middle = clear_place(piece, [branch for wall in walls for branch in wall.branches])
+        middle = find_clear_place(piece, [branch for wall in walls for branch in wall.branches])
         ranges = sorted(
             (
                 (low, high, wall.index, run)
@@ -657,25 +757,29 @@ class Walls:
             ),
             key=lambda one: one[:3],
         )
-        runs: list[tuple[float, Run]] = []
+        runs: list[tuple[float, WallRun]] = []
         for low, high, _, run in ranges:
             if runs and low <= runs[-1][0] + LEAST_GAP:
                 if high > runs[-1][0]:
-                    runs[-1] = high, Run(runs[-1][1].lower, run.upper)
+                    runs[-1] = high, WallRun(runs[-1][1].lower, run.upper)
             else:
                 runs.append((high, run))
         faces = tuple(sorted({one[2] for one in ranges}))
-        return Covered(piece, piece.low, piece.high, tuple(run for _, run in runs), faces)
+        return CoveredPiece(piece, piece.low, piece.high, tuple(run for _, run in runs), faces)
 
 
-def clear_place(piece: BorderPiece, branches: Sequence[Branch]) -> float:
-    """Return a position of a piece at which no branch ends.
+def find_clear_place(piece: BorderPiece, branches: Sequence[EdgeBranch]) -> float:
+    """Return a position of a piece, near its middle, at which no edge piece ends.
 
-    Edges beyond the heights of pegs may end anywhere along it.
+    Edges beyond the heights of pegs may end anywhere along the piece. Where every position tried is too near
+    to an end, the one farthest from all ends is returned.
     """
     ends = np.array([branch.places[[0, -1]] for branch in branches]).ravel()
 
     def room(position: float) -> float:
+        """Return the distance of a position from the nearest
+        end of an edge piece; inf where there are none.
+        """
         away = ends - position
         if isinstance(piece.carrier.segment, Arc):
             away = (away + pi) % tau - pi

@@ -39,7 +39,7 @@ from workhold.files.step.solids import (
     list_solids_of_shapes,
     read_solids,
 )
-from workhold.files.step.usual_height import UsualHeight, choose_usual_height
+from workhold.files.step.usual_height import UsualPegHeight, choose_usual_height
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 
 __all__ = [
@@ -58,17 +58,18 @@ MOST_SECTIONS = 3_000
 
 @frozen
 class HeightView:
-    """How a solid is looked at.
+    """The choices by which a solid is seen at the height of the pegs.
 
     Parameters
     ----------
     axis : direction of the file that points up; z when None.
     peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when
         None.
-    head_room, least_band : in mm.
-    heights : from which to which carriers with heights of their own reach, in mm, by their role.
-    peg_diameter : of the pegs in mm, which then are no higher than they must be where ``peg_height`` is None;
-        None where it is not known.
+    head_room : what is kept free above the pegs, in mm.
+    least_band : shortest band that may be touched, in mm.
+    heights : lowest and highest z in mm over which carriers with heights of their own reach, by their role.
+    peg_diameter : of the pegs in mm, by which a height is chosen where ``peg_height`` is None; None where it
+        is not known.
     part_number : number or name of the solid to take of several; the largest when None.
     """
 
@@ -104,7 +105,7 @@ class HeightDrawing:
     heights : what other heights of the pegs offer.
     own : what carriers with heights of their own meet.
     solids : all of the file, the largest first.
-    usual : how high pegs are taken to be where nobody says so; None where somebody does, or does not know pegs.
+    usual : height of pegs that was chosen; None where the user gave one, or the pegs' diameter is not known.
     """
 
     loops: tuple[NDArray[np.float64], ...]
@@ -113,20 +114,22 @@ class HeightDrawing:
     heights: tuple[HeightRow, ...]
     own: tuple[OwnDrawing, ...] = ()
     solids: tuple[FileSolid, ...] = ()
-    usual: UsualHeight | None = None
+    usual: UsualPegHeight | None = None
 
 
 def read_by_height_apart(
     content: bytes, view: HeightView, or_silhouette: bool = False
 ) -> HeightDrawing | Drawing:
-    """Run :func:`read_by_height` in a process of its own: damaged files crash or hang the library."""
+    """Return what :func:`read_by_height` returns, read in a
+    child process: damaged files crash or hang the library.
+    """
     options = {"view": asdict(view), "or_silhouette": or_silhouette}
     by_height, answered = run_apart(__name__, content, options, "the STEP file")
     return restore_height_drawing(answered) if by_height else restore_drawing(answered)
 
 
 def restore_height_drawing(answered: Any) -> HeightDrawing:
-    """Return the drawing of what :func:`convert_height_drawing_to_data` makes."""
+    """Return the drawing from the plain data that :func:`convert_height_drawing_to_data` returns."""
     loops, solid, remarks, rows, own, solids, usual = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
@@ -135,15 +138,15 @@ def restore_height_drawing(answered: Any) -> HeightDrawing:
         tuple(HeightRow(*row) for row in rows),
         tuple(OwnDrawing(name, tuple(map(np.array, lines)), SolidOutline(*of)) for name, lines, of in own),
         tuple(FileSolid(*one) for one in solids),
-        None if usual is None else UsualHeight(*usual),
+        None if usual is None else UsualPegHeight(*usual),
     )
 
 
 def read_as_plain_data(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
-    """Return what :func:`read_by_height` reads as plain data, and before it whether that is an outline by
-    height.
+    """Return (is by height, plain data) of what :func:`read_by_height` returns; called in the child process.
 
-    Refuses a file over which the library or the arithmetic after it fails, too.
+    The flag is False for a silhouette. Raises InputError also where the library, or the arithmetic after it,
+    fails over the file.
     """
     found = read_guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
     return (
@@ -154,10 +157,11 @@ def read_as_plain_data(content: bytes, view: dict[str, Any], or_silhouette: bool
 
 
 def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
-    """Return the outline for pegs as high as the part; the silhouette if such pegs can touch nothing.
+    """Return the outline by height of one of the solids; its silhouette instead where the outline is refused.
 
-    The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
-    may be touched.
+    That is where such pegs can touch nothing, or the border has a curve that is neither line nor arc. The
+    silhouette has proposed lines and arcs instead of such curves. It has no heights, and leaning faces may be
+    touched.
     """
     chosen = choose_solid(solids, view.part_number)
     solid = read_guarded(lambda: turn_solid_up(chosen, view))
@@ -188,13 +192,15 @@ def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightD
 
 
 def takes_long_by_sections(solid: StandingSolid) -> bool:
-    """Return whether a silhouette made of sections would take the library too long."""
+    """Return whether the library would take too long to make a solid's silhouette from sections."""
     heights = {round(z, 5) for face in solid.faces if face.lie != "upright" for z in (face.low, face.high)}
     return len(heights) * len(solid.faces) > MOST_SECTIONS
 
 
 def convert_height_drawing_to_data(drawing: HeightDrawing) -> Any:
-    """Return an outline by height as plain data, see :func:`restore_height_drawing`."""
+    """Return an outline by height as nested lists, from
+    which :func:`restore_height_drawing` makes it again.
+    """
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
     own = [(one.role, [loop.tolist() for loop in one.loops], astuple(one.solid)) for one in drawing.own]
@@ -206,8 +212,11 @@ def convert_height_drawing_to_data(drawing: HeightDrawing) -> Any:
 def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False) -> HeightDrawing | Drawing:
     """Return the outline of a solid in a STEP file at the height of the pegs.
 
-    Where nobody says how high the pegs are, ``or_silhouette`` is for :func:`draw_at_usual_height`. Refuses outlines
-    that are not made of lines and arcs.
+    Raises InputError for files that cannot be read, and outlines that are not made of lines and arcs.
+
+    Parameters
+    ----------
+    or_silhouette : return the silhouette where there is no such outline, see :func:`draw_at_usual_height`.
     """
     solids = read_solids(content)
     found = draw_at_usual_height(solids, view) if or_silhouette else draw_by_height(solids, view)
@@ -216,9 +225,9 @@ def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False
 
 
 def draw_shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
-    """Return the outline of one of some shapes of Open CASCADE at the height of the pegs.
+    """Return the outline of one solid of Open CASCADE's shapes at the height of the pegs.
 
-    Refuses shapes without a solid.
+    Raises InputError for shapes without a solid.
     """
     solids = list_solids_of_shapes(shapes)
     if not solids:
@@ -227,14 +236,15 @@ def draw_shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDraw
 
 
 def draw_shapes_at_usual_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
-    """Return what :func:`draw_at_usual_height` makes of some shapes of Open CASCADE; None for shapes without
-    a solid.
+    """Return :func:`draw_at_usual_height` of the solids in
+    Open CASCADE's shapes; None for shapes without a solid.
     """
     solids = list_solids_of_shapes(shapes)
     return draw_at_usual_height(solids, view) if solids else None
 
 
 def draw_by_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
+    """Return the outline by height of the solid that the view chooses, with a remark on the others."""
     chosen = choose_solid(solids, view.part_number)
     drawing = draw_solid_by_height(chosen.shape, turn_solid_up(chosen, view), view)
     return evolve(
@@ -243,7 +253,9 @@ def draw_by_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing
 
 
 def turn_solid_up(chosen: Solid, view: HeightView) -> StandingSolid:
-    """Return a solid as it is looked at; raise InputError for an axis that there is not."""
+    """Return a solid moved and turned as a view has it, its
+    lowest point at z = 0; raise InputError for an unknown axis.
+    """
     axis = check_axis_name(view.axis)
     # Along z it is not turned, and its box is known.
     return stand_solid(turn_axis_up(chosen.shape, axis), chosen.low[2] if axis == "z" else None)
@@ -257,16 +269,21 @@ def draw_solid_by_height(
     is_advised: bool = True,
     has_table: bool = True,
 ) -> HeightDrawing:
-    """Return the outline of a solid, with remarks on what may be touched and on a height that offers more.
+    """Return the outline of a solid at the height of the pegs, with remarks on what may be touched.
 
-    The shape is the solid as the file has it. ``is_advised`` says whether a refusal names a height that
-    helps, and ``has_table`` whether what other heights offer is listed; many heights are looked at for
-    either.
+    Raises InputError for an outline that cannot be made or has nothing to touch.
+
+    Parameters
+    ----------
+    shape : the solid as the file has it.
+    solid : the same, standing.
+    is_advised : whether a refusal names a height that helps.
+    has_table : whether ``heights`` is filled. Both try many heights, which takes time.
     """
     axis, room, least = check_axis_name(view.axis), view.head_room, view.least_band
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = list[HeightRow]()
-    usual: UsualHeight | None = None
+    usual: UsualPegHeight | None = None
     if view.peg_height is None and view.peg_diameter is not None:
         rows = [] if plain_prism else tabulate_peg_heights(solid, room, least)
         usual = choose_usual_height(solid, rows, view.peg_diameter, room, least, plain_prism)
@@ -294,12 +311,13 @@ def draw_solid_by_height(
 
 
 def add_height_advice(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
+    """Return the error with advice on another height of pegs appended."""
     instead = advise_on_height(solid, view.head_room, view.least_band)
     return InputError(f"{str(refusal).removesuffix('.')}; {instead}.")
 
 
 def is_prism(solid: StandingSolid) -> bool:
-    """Return whether a solid has the same section at every height."""
+    """Return whether a solid has only upright faces and level ones at its bottom and top."""
     ends = (0.0, solid.height)
     return all(
         face.lie == "upright" or (face.lie == "level" and min(abs(face.low - z) for z in ends) <= SAME_HEIGHT)

@@ -22,27 +22,27 @@ from workhold.files.outline.chain import list_first_items
 from workhold.files.outline.joining import make_closed_loop
 from workhold.files.outline.nesting import DrawnPart, nest_loops
 from workhold.files.questions import AXIS, SECTION
-from workhold.files.step.faces import Layer, SolidFace, classify_lie, sample_surface_points
+from workhold.files.step.faces import HeightRange, SolidFace, classify_lie, sample_surface_points
 from workhold.files.step.library import AXES, list_sub_shapes, occ
-from workhold.files.step.regions import Borders, cut_solid_at_height, measure_area
-from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
-from workhold.geometry.segment import segment_rows
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.files.step.regions import RegionBorders, cut_solid_at_height, measure_area
+from workhold.geometry.loop import compute_signed_area, make_loop_segments, reverse_vertices
+from workhold.geometry.segment import make_segment_rows
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 
-__all__ = ["Outline", "describe_departures", "suggest_other_axis", "refuse_overhang"]
+__all__ = ["FoundOutline", "describe_departures", "suggest_other_axis", "refuse_overhang"]
 
 
 @frozen
-class Outline:
-    """The outline found, and how every face of the solid lies to it.
+class FoundOutline:
+    """The outline of a solid, and how far each of its faces is inside or outside of it.
 
     Parameters
     ----------
     area : in mm².
     low, high : z of the solid's lowest and highest point, in mm.
-    insets, overhangs : of each face, in mm.
-    departure : how far lines and arcs may be from curves of the border, in mm; a face may lie off them by as
-        much.
+    insets, overhangs : of each face, in mm; 0 where it does not go inside, or outside.
+    departure : largest distance in mm of lines and arcs from curves of the border; a face may lie off them by
+        as much.
     """
 
     area: float
@@ -53,8 +53,10 @@ class Outline:
     departure: float = 0.0
 
     @classmethod
-    def from_borders(cls, edges: Borders, area: float, faces: Sequence[SolidFace]) -> Outline:
-        """Measure faces against the outline that the borders of a region of some area make.
+    def from_borders(cls, edges: RegionBorders, area: float, faces: Sequence[SolidFace]) -> FoundOutline:
+        """Measure faces against the outline that the borders of a region make.
+
+        ``area`` is the region's, in mm².
 
         Raises
         ------
@@ -67,7 +69,7 @@ class Outline:
             segment.length
             for part in parts
             for loop in part.loops
-            for segment in loop_segments(loop.vertices)
+            for segment in make_loop_segments(loop.vertices)
         )
         allowed = (FREE_AREA if edges.curves else 1e-6) * area + edges.departure * border
         if len(parts) != 1 or abs(parts[0].area - area) > allowed:
@@ -79,7 +81,7 @@ class Outline:
         insets, overhangs = [], []
         for face in faces:
             points = sample_surface_points(face)
-            away = outline_distances(points, rows)
+            away = measure_outline_distances(points, rows)
             inside = np.array([bool(is_inside(x, y, rows)) for x, y in points])
             insets.append(float(np.where(inside, away, 0.0).max(initial=0.0)))
             overhangs.append(float(np.where(inside, 0.0, away).max(initial=0.0)))
@@ -88,18 +90,25 @@ class Outline:
 
 
 def make_oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
-    """Return the kernel rows of all loops of a part, material on the left of each."""
+    """Return the kernel rows of all loops of a part, turned so that the material is on the left.
+
+    The first loop of the part is its outer one.
+    """
     rows = []
     for k, loop in enumerate(part.loops):
-        segments = loop_segments(loop.vertices)
+        segments = make_loop_segments(loop.vertices)
         if (compute_signed_area(segments) > 0) != (k == 0):
-            segments = loop_segments(reverse_vertices(loop.vertices))
-        rows.append(segment_rows(segments))
+            segments = make_loop_segments(reverse_vertices(loop.vertices))
+        rows.append(make_segment_rows(segments))
     return np.concatenate(rows)
 
 
-def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
-    """Refuse a silhouette that some face reaches out of: its true border is not made of lines and circles."""
+def refuse_overhang(outline: FoundOutline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
+    """Raise InputError if a face reaches out of the silhouette:
+    then its true border is not made of lines and circles.
+
+    ``solid`` is the one in the file's position, ``axis`` the direction that points up; for advice.
+    """
     worst = int(np.argmax(outline.overhangs))
     if outline.overhangs[worst] <= OVERHANG + outline.departure:
         return
@@ -115,15 +124,24 @@ def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, ax
 
 
 def describe_departures(
-    outline: Outline,
+    outline: FoundOutline,
     faces: Sequence[SolidFace],
-    layers: Sequence[Layer],
+    layers: Sequence[HeightRange],
     shape: Any,
     solid: Any,
     axis: str,
     section_height: float | None,
 ) -> list[str]:
-    """Return what is not prismatic about a part, its departure, and where pegs have to touch; empty for a prism."""
+    """Return sentences on how a part differs from a prism, and where pegs have to touch; [] for a prism.
+
+    A section of a prism gives one sentence that says so.
+
+    Parameters
+    ----------
+    layers : of the faces, see :func:`workhold.files.step.faces.make_layers`.
+    shape, solid : the solid with its axis up, and as the file has it.
+    section_height : height in mm of the section that was chosen; None for the silhouette.
+    """
     groups = list_departures(outline, faces)
     chosen = section_height is not None
     if not groups and max(outline.overhangs) <= OVERHANG + outline.departure:
@@ -147,15 +165,19 @@ def describe_departures(
 
 
 def suggest_other_axis(solid: Any, axis: str) -> list[str]:
-    """Return a sentence on another axis along which no face of a solid leans, where there is one."""
+    """Return one sentence on another axis along which all faces
+    of a solid are level or upright; [] where there is none.
+    """
     name = find_other_axis(solid, axis)
     return (
         [f"Along {name} no face leans: give {AXIS} {name} if the pegs are parallel to that."] if name else []
     )
 
 
-def list_departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
-    """Return the faces that are no part of the outline, alike ones together, deepest first."""
+def list_departures(outline: FoundOutline, faces: Sequence[SolidFace]) -> list[str]:
+    """Return phrases on the faces that are no part of the
+    outline, alike ones together, the farthest off first.
+    """
     together: dict[tuple[str, str], list[float]] = defaultdict(list)
     for face, inset, overhang in zip(faces, outline.insets, outline.overhangs, strict=True):
         if face.lie != "level" and (face.lie == "leaning" or inset > DEPARTS + outline.departure):
@@ -168,18 +190,21 @@ def list_departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
     ]
 
 
-def describe_face_heights(outline: Outline, face: SolidFace) -> str:
+def describe_face_heights(outline: FoundOutline, face: SolidFace) -> str:
+    """Return "heights a to b mm" for a face, above the solid's lowest point."""
     return f"heights {describe_height_range(outline, face.low, face.high)}"
 
 
-def describe_height_range(outline: Outline, low: float, high: float) -> str:
-    """Return two z as heights, in words; rounding of the coordinates does not show."""
+def describe_height_range(outline: FoundOutline, low: float, high: float) -> str:
+    """Return two z in mm as heights above the solid's lowest point, "a to b mm", without rounding errors."""
     first, last = (round(z - outline.low, 6) + 0.0 for z in (low, high))
     return f"{first:.6g} to {last:.6g} mm"
 
 
-def describe_silhouette(outline: Outline, layers: Sequence[Layer], shape: Any) -> str:
-    """Return where the section is the whole silhouette, and how much the smallest section lacks."""
+def describe_silhouette(outline: FoundOutline, layers: Sequence[HeightRange], shape: Any) -> str:
+    """Return a sentence on the heights at which the section is
+    the whole silhouette, and what the smallest section lacks.
+    """
     whole: list[tuple[float, float]] = []
     lacks: list[tuple[float, float]] = []
     for layer in layers:
@@ -206,7 +231,9 @@ def describe_silhouette(outline: Outline, layers: Sequence[Layer], shape: Any) -
 
 
 def find_other_axis(solid: Any, axis: str) -> str:
-    """Return another axis along which no face of a solid leans; empty if there is no such axis."""
+    """Return "x", "y" or "z", other than ``axis``, along which
+    all faces of a solid are level or upright; "" for none.
+    """
     surfaces = [occ.BRepAdaptor_Surface(face) for face in list_sub_shapes(solid, "FACE")]
     for name, (_, _, up) in AXES.items():
         if name != axis.lstrip("-") and all(classify_lie(surface, up) != "leaning" for surface in surfaces):

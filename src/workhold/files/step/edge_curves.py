@@ -1,7 +1,8 @@
-"""The edges of a solid seen from above: the line or arc that each projects to, where it rises, and crossings.
+"""The edges of a solid seen from above: the line or arc that each projects to, its heights, and its
+crossings.
 
-Each point of a curve is a call of the library. So a bracket of where a value along it passes zero is narrowed
-by false position first, and bisection then asks only within it.
+Each point of a curve is a call of the library. So a bracket of a zero of a function along the curve is
+narrowed by false position first, and bisection then evaluates the function only within the narrower bracket.
 
 Reference: M. Dowell and P. Jarratt, *A modified regula falsi method for computing the root of an equation*,
 BIT 11 (1971).
@@ -68,8 +69,8 @@ class EdgeCurve:
     ----------
     face : index of the face.
     segment : the line or arc that it projects to; None for an upright edge and for any other curve.
-    parameters : (N,) parameters of Open CASCADE's curve, rising; between two of them the edge neither turns
-        back along its segment nor up or down.
+    parameters : (N,) parameters of Open CASCADE's curve, rising; between two of them the position along the
+        segment and the height are both monotonic.
     points : (N, 3) the points there in mm.
     is_other : whether it projects to a curve that is neither line nor arc.
     curve : Open CASCADE's curve.
@@ -95,12 +96,12 @@ class EdgeCurve:
         return float(self.points[:, 2].max())
 
     def find_point_where(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
-        """Return the point between the points k and k + 1 at which a value that runs monotonically is as
-        wanted.
+        """Return the point (x, y, z) between the points k and
+        k + 1 at which a function equals ``wanted``; cached.
 
         Parameters
         ----------
-        value : the height, or the place along the edge's own segment.
+        value : the height, or the position along the edge's own segment; monotonic between the two points.
         """
         key = k, wanted, value is get_height
         if key not in self.known:
@@ -108,7 +109,7 @@ class EdgeCurve:
         return self.known[key]
 
     def search_point_where(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
-        """Find what :meth:`find_point_where` returns."""
+        """Return what :meth:`find_point_where` returns, without the cache."""
         a, b = float(self.parameters[k]), float(self.parameters[k + 1])
         first, last = value(make_point3(self.points[k])), value(make_point3(self.points[k + 1]))
         if len(self.points) == 2:
@@ -125,7 +126,9 @@ class EdgeCurve:
         )
 
     def find_crossings_with_height(self, z: float) -> list[Point]:
-        """Return the points (x, y) at which the edge passes a height."""
+        """Return the points (x, y) at which the edge crosses a height;
+        its ends and points where it only touches do not count.
+        """
         heights = self.points[:, 2] - z
         passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
         at_points = 1 + np.flatnonzero((heights[1:-1] == 0.0) & (heights[:-2] * heights[2:] < 0))
@@ -135,7 +138,9 @@ class EdgeCurve:
         ]
 
     def find_turning_points(self) -> list[Point]:
-        """Return the points (x, y) within the edge at which it is highest or lowest around."""
+        """Return the points (x, y) strictly within the edge
+        at which its height has a local maximum or minimum.
+        """
         rises = np.diff(self.points[:, 2])
         # An extreme found beside a point of its own makes a step that neither rises nor falls.
         steps = np.flatnonzero(np.abs(rises) > ONE_HEIGHT)
@@ -144,13 +149,19 @@ class EdgeCurve:
 
 
 def list_edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
-    """Return the edges of all faces, each as often as a face has it."""
+    """Return the edges of all faces, in the order of the
+    faces; an edge between two faces is there once for each.
+
+    Both entries share one curve and its points; ``face`` is the index in ``faces``. Degenerate edges, and
+    edges inside a face that bound nothing, are left out.
+    """
     # Edges that are the same whichever way a face runs them, by hash: the library's own map of shapes has
     # another name in every version.
     known: dict[int, list[tuple[Any, int]]] = {}
     fresh = count()
 
     def number_of(edge: Any) -> int:
+        """Return the number of an edge, the same for both directions of it."""
         same = known.setdefault(hash(edge), [])
         for other, number in same:
             if other.IsSame(edge):
@@ -179,7 +190,7 @@ def list_edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
 
 
 def find_wall_carrier(face: SolidFace) -> Segment | None:
-    """Return a piece of the line or the circle over which an upright face stands; None for a free-form one."""
+    """Return a segment of the line or circle over which an upright face stands; None for a free-form face."""
     surface = find_surface(face.shape)
     if surface.GetType() == occ.GeomAbs_Plane:
         place, normal = surface.Plane().Location(), surface.Plane().Axis().Direction()
@@ -191,13 +202,16 @@ def find_wall_carrier(face: SolidFace) -> Segment | None:
 
 
 def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
-    """Return an edge of a wall put on the wall, where it is off by no more than a disguise.
+    """Return an edge with its projection replaced by a segment
+    of the wall's line or circle, if it is nearly on it.
 
-    Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less. And the
-    circle that fits a short arc best is not the wall's within rounding: edges of one wall would lie on
-    circles of their own.
+    Edges farther than ``DISGUISE`` from it are returned unchanged. Where a leaning face meets a wall,
+    programs write a spline off by up to 0.001 mm. And the circle that best fits a short arc is not the wall's
+    within rounding, so that edges of one wall would lie on different circles.
 
-    The carrier is that of :func:`find_wall_carrier`; None for an edge of no wall.
+    Parameters
+    ----------
+    carrier : of :func:`find_wall_carrier`; None for an edge of no wall.
     """
     if carrier is None or (edge.segment is None and not edge.is_other):
         return edge
@@ -230,7 +244,10 @@ def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
 
 
 def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
-    """Return whether an edge, ``off`` mm from its wall, has the wall's line or circle within rounding."""
+    """Return whether a segment has the same line or circle as a wall within rounding.
+
+    ``carrier`` is a segment of the wall's line or circle, ``off`` the edge's distance from it in mm.
+    """
     if isinstance(segment, Arc) and isinstance(carrier, Arc):
         away = max(dist(segment.center, carrier.center), abs(segment.radius - carrier.radius))
         return away <= ONE_HEIGHT
@@ -238,7 +255,7 @@ def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
 
 
 def make_edge_curve(face: int, curve: Any) -> EdgeCurve:
-    """Return one edge seen from above."""
+    """Return an edge of the face with index ``face`` from Open CASCADE's curve of it."""
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
     if kind == occ.GeomAbs_Line:
@@ -273,11 +290,15 @@ def make_edge_curve(face: int, curve: Any) -> EdgeCurve:
 
 
 def get_height(point: Point3) -> float:
+    """Return the z of a point."""
     return point[2]
 
 
 def make_position_function(segment: Segment) -> Callable[[Point3], float]:
-    return lambda point: segment.parameter((point[0], point[1]))
+    """Return a function that gives the position along a segment
+    (mm or radians) of a point (x, y, z) seen from above.
+    """
+    return lambda point: segment.find_parameter((point[0], point[1]))
 
 
 def find_extremes(
@@ -286,7 +307,15 @@ def find_extremes(
     values: Sequence[float],
     value: Callable[[Point3], float],
 ) -> list[float]:
-    """Return the parameters at which a value along a curve is largest or smallest around, by golden section."""
+    """Return the parameters of the local maxima and minima
+    of a function along a curve, by golden section search.
+
+    Parameters
+    ----------
+    parameters : (N,) rising; an extreme is looked for around each at which the values change direction.
+    values : N values of the function there.
+    value : the function, of a point (x, y, z).
+    """
     found = []
     rises = np.diff(np.array(values))
     for k in np.flatnonzero(rises[:-1] * rises[1:] < 0):
@@ -303,28 +332,34 @@ def find_extremes(
 
 
 def compute_curve_point(curve: Any, parameter: float) -> Point3:
-    """Return a point of Open CASCADE's curve in mm."""
+    """Return the point (x, y, z) in mm of Open CASCADE's curve at a parameter."""
     value = curve.Value(parameter)
     return value.X(), value.Y(), value.Z()
 
 
 def make_point3(row: NDArray[np.float64]) -> Point3:
+    """Return a row of an array (N, 3) as a tuple of floats."""
     return float(row[0]), float(row[1]), float(row[2])
 
 
 def compute_points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the points (N, 3) of a curve in mm."""
+    """Return the points (N, 3) in mm of Open CASCADE's curve at N parameters."""
     return np.array([compute_curve_point(curve, float(t)) for t in parameters])
 
 
 def make_arc_between_angles(center: Point, radius: float, low: float, high: float) -> Arc:
-    """Return the arc between two angles in radians; a whole circle where it lacks no more than rounding."""
+    """Return the counter-clockwise arc between two angles in
+    radians, low < high; a full circle within rounding of a turn.
+    """
     half = (high - low) / 2
     return Arc(center, radius, (low + high) / 2, pi if half > pi - WHOLE_TURN else half, 1.0)
 
 
 def make_level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
-    """Return a level circle's arc between two parameters, seen from above."""
+    """Return the arc that a level circle of Open CASCADE has between two parameters, seen from above.
+
+    ``points`` (N, 3) lie along the arc at equal steps; the middle one fixes the arc's middle angle.
+    """
     center = circle.Location()
     x, y, _ = points[len(points) // 2]
     middle, half = atan2(y - center.Y(), x - center.X()), (last - first) / 2
@@ -333,9 +368,10 @@ def make_level_arc(circle: Any, first: float, last: float, points: NDArray[np.fl
 
 
 def flatten_points(points: NDArray[np.float64]) -> Segment | None:
-    """Return the line over which points (N, 2) lie, or the arc; None for any other curve.
+    """Return the line or the counter-clockwise arc on which
+    points (N, 2) in running order lie, within 1e-7 mm.
 
-    An upright curve on a wall projects to a line or, on a round wall, to an arc.
+    None where they lie on neither, all in one place, or on an arc of a radius above 1e5 mm.
     """
     middle = points.mean(axis=0)
     _, sizes, axes = np.linalg.svd(points - middle, full_matrices=False)
@@ -359,9 +395,10 @@ def flatten_points(points: NDArray[np.float64]) -> Segment | None:
 
 
 def find_zero_crossing(value: Function, low: Known, high: Known) -> float:
-    """Return the place at which a value that is below 0 at one end and not at the other passes 0.
+    """Return the argument at which a function changes from below 0 to 0 or more.
 
-    The end with the value below 0 comes first; it may be the greater one.
+    ``low`` and ``high`` are (argument, value) at both ends: below 0 first. The first argument may be the
+    greater one.
     """
     a, b = low[0], high[0]
     first, last = narrow_zero_crossing(value, low, high)
@@ -371,10 +408,15 @@ def find_zero_crossing(value: Function, low: Known, high: Known) -> float:
 def bisect_condition(
     low: float, high: float, holds: Callable[[float], bool], known: tuple[float, float], steps: int
 ) -> tuple[float, float]:
-    """Return the ends of the last interval of a bisection for the place from which on something holds.
+    """Return the last interval (low, high) of a bisection for the place from which on a condition holds.
 
-    It does not hold at ``low``, and does at ``high``. ``known`` are two places between them: it does not hold
-    up to the first, and does from the second on.
+    The condition does not hold at ``low`` and holds at ``high``; ``low`` may be the greater number.
+
+    Parameters
+    ----------
+    known : two places between: the condition does not hold up to the first and holds from the second on, so
+        it is evaluated only between them.
+    steps : most halvings.
     """
     turn = 1.0 if high >= low else -1.0
     before, after = turn * known[0], turn * known[1]
@@ -393,7 +435,11 @@ def bisect_condition(
 
 
 def narrow_zero_crossing(value: Function, low: Known, high: Known) -> tuple[float, float]:
-    """Return two near places between which a value passes 0: it is below 0 at the first, not at the second."""
+    """Return two near arguments (a, b) with the function below 0 at a and 0 or more at b, by false position.
+
+    ``low`` and ``high`` are as in :func:`find_zero_crossing`; where their values are not so, their arguments
+    are returned.
+    """
     (a, fa), (b, fb) = low, high
     beside = NARROW * (b - a)
     if not (fa < 0.0 <= fb):

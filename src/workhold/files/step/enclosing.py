@@ -1,8 +1,8 @@
-"""Curves seen from above that are neither line nor arc, within convex polygons that surely hold them.
+"""Curves seen from above that are neither line nor arc, enclosed in convex polygons.
 
 A rational Bézier curve lies in the convex hull of its control points. So a curve is cut until each piece is
 near to its chord, and the hulls of the pieces hold all of it. A fold of a free-form face is only known by
-where the normal changes the side to which it leans: small boxes around such places hold it.
+where the vertical component of the normal changes its sign: small squares around such places enclose it.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ Squares = dict[tuple[int, float], set[tuple[int, int]]]
 
 @define(eq=False)
 class Enclosure:
-    """What bounds something seen from above: lines and arcs, and polygons that hold all else.
+    """The bounds of something seen from above: lines and arcs, and polygons that enclose all other curves.
 
     Parameters
     ----------
@@ -66,12 +66,17 @@ class Enclosure:
     boxes: Array | None = field(init=False, default=None)
 
     def add(self, other: Enclosure) -> None:
+        """Add the segments and polygons of another enclosure to this one."""
         self.segments += other.segments
         self.polygons += other.polygons
         self.boxes = None
 
     def add_points(self, points: Iterable[Point], safe: float = SAFE) -> None:
-        """Add the hull of some points, see :func:`simplify_hull`; a line where it is as thin as one."""
+        """Add the convex hull of points along a curve, simplified;
+        as a line from first to last point if it is that thin.
+
+        For ``safe`` see :func:`simplify_hull`. Points all in one place add nothing.
+        """
         every = list(points)
         corners = simplify_hull(
             np.array(compute_convex_hull(every)).reshape(-1, 2), every[0], every[-1], safe
@@ -89,7 +94,7 @@ class Enclosure:
 
     @property
     def lines(self) -> list[Segment]:
-        """All segments, with the sides of the polygons."""
+        """All segments, and the sides of all polygons."""
         sides = [
             Line((float(a[0]), float(a[1])), (float(b[0]), float(b[1])))
             for polygon in self.polygons
@@ -99,6 +104,9 @@ class Enclosure:
         return [*self.segments, *sides]
 
     def may_hold(self, point: Point) -> bool:
+        """Return whether a point is in one of the polygons,
+        where it is not known on which side of a curve it lies.
+        """
         if not self.polygons:
             return False
         if self.boxes is None:
@@ -109,17 +117,18 @@ class Enclosure:
 
 
 def is_within(point: Point, polygon: Array) -> bool:
-    """Return whether a point lies in a convex polygon (N, 2) that runs counter-clockwise."""
+    """Return whether a point lies in a convex polygon (N, 2) that runs counter-clockwise, border included."""
     ahead = np.roll(polygon, -1, axis=0) - polygon
     away = np.array(point) - polygon
     return bool((ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0] >= 0.0).all())
 
 
 def simplify_hull(hull: Array, start: Point, end: Point, safe: float = SAFE) -> Array:
-    """Return a convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a
-    chord.
+    """Return a convex polygon (N, 2) around a hull with at
+    most one corner on each side of the chord start to end.
 
-    ``safe`` is half of how far in mm the corner may be from the chord.
+    A side is simplified only if its new corner is at most 2 * ``safe`` mm from the chord; a hull in which
+    start and end are not both corners is returned unchanged.
     """
     ends = [k for k, corner in enumerate(hull.tolist()) if tuple(corner) in (start, end)]
     if len(ends) != 2 or len(hull) < 4:
@@ -143,7 +152,7 @@ def compute_cross_product(a: Array, b: Array) -> float:
 
 
 def intersect_lines(a: Array, b: Array, c: Array, d: Array) -> Array | None:
-    """Return where the line through two points crosses that through two others; None of parallel ones."""
+    """Return where the line through a and b crosses the line through c and d; None for parallel ones."""
     one, other = b - a, d - c
     turn = compute_cross_product(one, other)
     if abs(turn) <= SHORTEST * float(np.hypot(*one) * np.hypot(*other)):
@@ -152,10 +161,10 @@ def intersect_lines(a: Array, b: Array, c: Array, d: Array) -> Array | None:
 
 
 def split_near_chords(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
-    """Yield the control points (N, 2) of runs of a curve in running order, each near to its chord and ahead
-    along it.
+    """Yield the control points (N, 2) of consecutive runs of a curve, each within ``safe`` mm of its chord.
 
-    They may be ``safe`` mm from the chord. Refuses a curve that takes too many.
+    Along the chord the points only move ahead. Runs are as long as can be. Raises InputError for a curve that
+    takes more than ``MOST_PIECES``.
     """
     run: Array | None = None
     for control in split_each_piece(pieces, safe):
@@ -169,7 +178,9 @@ def split_near_chords(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
 
 
 def is_near_chord(control: Array, safe: float) -> bool:
-    """Return whether points (N, 2) are near to the chord of the first and the last, and run ahead along it."""
+    """Return whether points (N, 2) are within ``safe`` mm of
+    the chord from first to last and never move back along it.
+    """
     chord = control[-1] - control[0]
     size = hypot(*chord)
     if size <= SHORTEST:
@@ -180,7 +191,9 @@ def is_near_chord(control: Array, safe: float) -> bool:
 
 
 def split_each_piece(pieces: Pieces, safe: float) -> Iterator[Array]:
-    """Yield what :func:`split_near_chords` yields, for each piece of a curve by itself."""
+    """Yield control points as :func:`split_near_chords`, but
+    without joining neighbouring pieces into longer runs.
+    """
     waiting, found = [pieces[k : k + 1] for k in reversed(range(len(pieces)))], 0
     while waiting:
         piece = waiting.pop()
@@ -205,13 +218,19 @@ def enclose_curves(
     squares: Squares,
     is_there: Callable[[Point], bool],
 ) -> Enclosure:
-    """Return what holds the curves that are neither line nor arc of all that can bound a slab of a solid from
-    above.
+    """Return lines and polygons that enclose all curves, neither
+    line nor arc, that can bound a part of a solid from above.
 
-    The slab is between two z in mm. For ``folds_of`` see
-    :func:`workhold.files.step.projected.list_projected_curves`. The squares are those that hold the folds of
-    free-form faces, kept for other slabs. ``is_there`` says whether a point belongs to what is bounded; folds
-    are only where some points around do. Refuses curves that take too many pieces.
+    Raises InputError for curves that take too many pieces.
+
+    Parameters
+    ----------
+    low, high : z in mm between which the part of the solid lies.
+    folds_of : see :func:`workhold.files.step.projected.list_projected_curves`.
+    squares : raster squares that enclose the curves along which free-form faces stand upright, by face index
+        and size in mm; extended in place, for other heights of the same solid.
+    is_there : returns whether a point belongs to the region that is bounded; enclosures with the region
+        nowhere or everywhere around them are left out.
     """
     boxes = list[Array]()
     leaning = [*list_leaning_faces_between(faces, low, high)]
@@ -226,8 +245,8 @@ def enclose_curves(
         face = faces[index]
         if index in free:
             if (index, size) not in squares:
-                squares[index, size] = fold_squares(find_surface(face.shape), size)
-            boxes += fold_boxes(squares[index, size], size, is_there)
+                squares[index, size] = find_fold_squares(find_surface(face.shape), size)
+            boxes += list_fold_boxes(squares[index, size], size, is_there)
         for z in (low, high):
             if face.low < z < face.high and any(
                 isinstance(one, np.ndarray) for one in cut_face_at_height(face, z)
@@ -250,7 +269,9 @@ def enclose_curves(
 
 
 def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
-    """Return whether something is on one side of a convex polygon and not on another."""
+    """Return whether points just outside a convex polygon
+    (N, 2) differ in whether they belong to the region.
+    """
     corners = np.concatenate([polygon, (polygon + np.roll(polygon, -1, axis=0)) / 2])
     away = corners - polygon.mean(axis=0)
     size = np.hypot(*away.T)[:, None]
@@ -260,10 +281,13 @@ def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
 
 
 def enclose_edge(found: Enclosure, edge: Any, points: Array | None, safe: float) -> None:
-    """Add what holds an edge.
+    """Add polygons or lines that enclose an edge of Open CASCADE, seen from above, to ``found``.
 
-    Boxes are made of points (N, 2) along it where the library knows no curve of the edge. For ``safe`` see
-    :func:`split_near_chords`.
+    Parameters
+    ----------
+    points : (N, 2) along the edge. Where the library has no curve of the edge, boxes around their steps
+        enclose it; None raises InputError then.
+    safe : see :func:`split_near_chords`.
     """
     try:
         pieces = convert_edge_to_pieces(edge)
@@ -280,23 +304,30 @@ def enclose_edge(found: Enclosure, edge: Any, points: Array | None, safe: float)
 
 
 def list_box_corners(low: Array, high: Array) -> list[Point]:
-    """Return the corners of a box, counter-clockwise."""
+    """Return the four corners of the box between its least and greatest corner (2,), counter-clockwise."""
     (x0, y0), (x1, y1) = low.tolist(), high.tolist()
     return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
 
 
-def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]) -> list[Array]:
-    """Return the boxes that hold a fold where there is something at it: rows of squares, larger ones of a
-    long fold.
+def list_fold_boxes(
+    squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]
+) -> list[Array]:
+    """Return boxes (4, 2) that enclose a curve along which a
+    face stands upright, where some of the region is at it.
 
-    The squares of a raster that hold it are given by column and row, their size is in mm. For ``is_there``
-    see :func:`enclose_curves`.
+    Parameters
+    ----------
+    squares : (column, row) of the raster squares that enclose the curve; of a long one four are merged at a
+        time.
+    size : of a square, in mm.
+    is_there : see :func:`enclose_curves`.
     """
     while len(squares) > MOST_SQUARES:
         size *= 2.0
         squares = {(i // 2, j // 2) for i, j in squares}
 
     def is_met(square: tuple[int, int]) -> bool:
+        """Return whether a place at or around a square belongs to the region."""
         # Not only where something is beside it: a gap between two outlines that cross is narrower than places.
         i, j = square
         places = [
@@ -321,8 +352,10 @@ def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[P
     ]
 
 
-def fold_squares(surface: Any, size: float) -> set[tuple[int, int]]:
-    """Return the squares of a raster, by column and row, in which a surface may stand upright, seen from above."""
+def find_fold_squares(surface: Any, size: float) -> set[tuple[int, int]]:
+    """Return the squares (column, row) of a raster of ``size``
+    mm in which a surface may stand upright, seen from above.
+    """
     u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), CELLS + 1)
     v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), CELLS + 1)
     waiting = [(u0, u1, v0, v1, 0) for u0, u1 in pairwise(u.tolist()) for v0, v1 in pairwise(v.tolist())]

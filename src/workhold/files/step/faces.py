@@ -28,7 +28,7 @@ from workhold.geometry.subdivision import sort_distinct
 
 __all__ = [
     "SLOPING",
-    "Layer",
+    "HeightRange",
     "SolidFace",
     "is_level",
     "is_upright",
@@ -58,13 +58,14 @@ class SolidFace:
     ----------
     shape : Open CASCADE's face.
     lie : how it lies to the axis.
-    kind : what it is in words, such as ``sloping plane``.
+    kind : its kind in words, such as ``sloping plane``.
     low, high : its lowest and highest z in mm.
-    fold : z at which a leaning face turns over, where it may reach farthest out; None without one.
+    fold : z at which a leaning face stands upright along a horizontal curve, where it may reach farthest out;
+        None where it has no such curve.
     upward : whether a level face looks up.
     box : (x0, y0, x1, y1) around it, seen from above, in mm.
-    is_free : whether its surface is written as a spline, also where that is a plane or a quadric, or as a curve
-        that is extruded or turned. The library finds the volume of what has such walls roughly.
+    is_free : whether its surface is written as a spline, also where that is a plane or a quadric, or as a
+        curve that is extruded or turned. The library computes volumes of solids with such walls only roughly.
     """
 
     shape: Any
@@ -79,7 +80,7 @@ class SolidFace:
 
 
 @frozen
-class Layer:
+class HeightRange:
     """A range of z in mm; ``prismatic`` when no leaning face is in it."""
 
     low: float
@@ -88,23 +89,24 @@ class Layer:
 
     @property
     def middle(self) -> float:
-        """z halfway."""
+        """z in mm halfway between low and high."""
         return (self.low + self.high) / 2
 
 
 def list_solid_faces(shape: Any) -> list[SolidFace]:
-    """Return every face of a solid whose axis points up."""
+    """Return all faces of a solid whose axis points along z, in the library's order."""
     return [make_solid_face(face) for face in list_sub_shapes(shape, "FACE")]
 
 
 def make_solid_face(face: Any) -> SolidFace:
+    """Return the description of Open CASCADE's face."""
     low, high = compute_bounding_box(face)
     written, surface = occ.BRepAdaptor_Surface(face), find_surface(face)
     lie = classify_lie(surface, 2)
     bottom, top = low[2], high[2]
     if (z := compute_plane_height(surface)) is not None:
         bottom = top = z
-    fold = fold_of(surface) if lie == "leaning" else None
+    fold = find_fold_height(surface) if lie == "leaning" else None
     upward = False
     if lie == "level":
         turned = face.Orientation() == occ.TopAbs_REVERSED
@@ -130,10 +132,11 @@ def make_solid_face(face: Any) -> SolidFace:
 
 
 def find_surface(face: Any) -> Any:
-    """Return the surface of a face as the library's adaptor; a spline that is a plane or a quadric as that.
+    """Return the surface of a face as the library's adaptor;
+    a spline that is a plane or a quadric as that surface.
 
-    Some programs write every surface as a spline. Of what is found the bounds are those of the face's box, at
-    least: more of it does no harm where folds and cuts are looked for.
+    Some programs write every surface as a spline. The parameter ranges of a converted surface may reach
+    beyond the face, which does no harm where folds and cuts are looked for.
     """
     surface = occ.BRepAdaptor_Surface(face)
     if surface.GetType() not in (occ.GeomAbs_BSplineSurface, occ.GeomAbs_BezierSurface):
@@ -159,7 +162,9 @@ def find_surface(face: Any) -> Any:
 
 
 def measure_span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
-    """Return how far a face's box reaches along a direction from a place, at least and at most."""
+    """Return the least and greatest coordinate of a face's
+    bounding box along a direction, from the origin of a position.
+    """
     start = place.Location()
     along = [
         (x - start.X()) * direction.X() + (y - start.Y()) * direction.Y() + (z - start.Z()) * direction.Z()
@@ -169,7 +174,9 @@ def measure_span_along(place: Any, direction: Any, face: Any) -> tuple[float, fl
 
 
 def compute_plane_height(surface: Any) -> float | None:
-    """Return the z in mm of a level plane, without what the library adds to a box; None for any other surface."""
+    """Return the z in mm of a level plane; None for any
+    other surface. Unlike a box, it has no tolerance added.
+    """
     if surface.GetType() != occ.GeomAbs_Plane or classify_lie(surface, 2) != "level":
         return None
     # The middle of the face, because a plane that is level but for rounding is higher far from it.
@@ -178,7 +185,10 @@ def compute_plane_height(surface: Any) -> float | None:
 
 
 def classify_lie(surface: Any, axis: int) -> Lie:
-    """Return how a surface lies to the axis of number 0 (x), 1 (y) or 2 (z)."""
+    """Return "level", "upright" (parallel to the axis everywhere) or "leaning" for a surface.
+
+    ``axis`` is the index of the upward axis: 0 (x), 1 (y) or 2 (z).
+    """
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
         inward, across = split_direction(surface.Plane().Axis().Direction(), axis)
@@ -196,20 +206,21 @@ def classify_lie(surface: Any, axis: int) -> Lie:
 
 
 def split_direction(direction: Any, axis: int) -> tuple[float, float]:
-    """Return the sizes of a unit vector's part along an axis and of its part across."""
+    """Return the lengths of a unit vector's components along an axis (0 to 2) and across it."""
     values = [direction.X(), direction.Y(), direction.Z()]
     inward = values.pop(axis)
     return abs(inward), hypot(*values)
 
 
 def make_parameter_grid(surface: Any) -> Iterator[tuple[float, float]]:
+    """Yield the parameters (u, v) of a grid of ``GRID_POINTS`` by ``GRID_POINTS`` points over a surface."""
     us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS)
     vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS)
     return product(us.tolist(), vs.tolist())
 
 
 def sample_normals(surface: Any) -> list[Any]:
-    """Return the unit normals of a surface at a grid of points, without those where it has none."""
+    """Return Open CASCADE's unit normals of a surface on a grid, leaving out points without a normal."""
     normals = []
     for u, v in make_parameter_grid(surface):
         point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
@@ -221,7 +232,7 @@ def sample_normals(surface: Any) -> list[Any]:
 
 
 def describe_face_kind(surface: Any, lie: Lie) -> str:
-    """Return a face in words, in the singular."""
+    """Return a face's kind in words, in the singular and without an article."""
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
         return {"level": "level plane", "upright": "wall", "leaning": SLOPING}[lie]
@@ -239,19 +250,20 @@ def describe_face_kind(surface: Any, lie: Lie) -> str:
 
 
 def is_upright(axis: Any) -> bool:
-    """Return whether an axis of the library is parallel to z."""
+    """Return whether Open CASCADE's axis is parallel to z."""
     return split_direction(axis.Direction(), 2)[1] <= ALIGNED
 
 
 def is_level(axis: Any) -> bool:
-    """Return whether an axis of the library is square to z."""
+    """Return whether Open CASCADE's axis is perpendicular to z."""
     return split_direction(axis.Direction(), 2)[0] <= ALIGNED
 
 
-def fold_of(surface: Any) -> float | None:
-    """Return the height at which a leaning surface stands upright all along a horizontal line.
+def find_fold_height(surface: Any) -> float | None:
+    """Return the z in mm at which a curved surface stands
+    upright all along a horizontal curve; None if there is none.
 
-    It is the equator of a sphere, an upright torus or a lying cylinder.
+    It is the equator of a sphere or of a torus with an upright axis, or the level of a lying cylinder's axis.
     """
     kind = surface.GetType()
     if kind == occ.GeomAbs_Sphere:
@@ -263,20 +275,26 @@ def fold_of(surface: Any) -> float | None:
     return None
 
 
-def make_layers(faces: Sequence[SolidFace]) -> list[Layer]:
-    """Return the layers between the heights where level and leaning faces begin or end, from the lowest up."""
+def make_layers(faces: Sequence[SolidFace]) -> list[HeightRange]:
+    """Return the ranges between the heights at which level
+    and leaning faces begin or end, from the lowest up.
+
+    A leaning face is neither level nor upright; a range without one inside is prismatic.
+    """
     leaning = np.array([(face.low, face.high) for face in faces if face.lie == "leaning"]).reshape(-1, 2)
     ends = [z for face in faces if face.lie != "upright" for z in (face.low, face.high)]
     levels = sort_distinct(np.array(ends), SAME_HEIGHT)
     layers = []
     for low, high in pairwise(levels):
         inside = (leaning[:, 0] < high - SAME_HEIGHT) & (leaning[:, 1] > low + SAME_HEIGHT)
-        layers.append(Layer(low, high, not inside.any()))
+        layers.append(HeightRange(low, high, not inside.any()))
     return layers
 
 
 def sample_surface_points(face: SolidFace) -> NDArray[np.float64]:
-    """Return (N, 2) points (x, y) of a face: along its edges, and all over it when it is curved and leans."""
+    """Return points (N, 2), x and y in mm, along the edges
+    of a face; of a curved leaning face also all over it.
+    """
     points = []
     for edge in list_sub_shapes(face.shape, "EDGE"):
         curve = occ.BRepAdaptor_Curve(edge)

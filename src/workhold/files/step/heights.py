@@ -1,8 +1,8 @@
 """Outlines by height: what pegs that reach over some heights may run into, and what they may touch.
 
-The outline U(a, p) is the projection of what a solid has between two heights. Its border consists of edges,
-folds and cuts (see ``files.step.projected``); which pieces of these it has is decided by the material beside
-them.
+The outline U(a, p) is the projection of the solid's part between the heights a and p. Its border consists of
+edges, folds and cuts (see ``files.step.projected``); the material beside them decides which pieces belong to
+it.
 
 Glossary
 --------
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT, SECTION
-from workhold.files.step.bands import KnownWalls, Walls
+from workhold.files.step.bands import KnownWalls, WallsByCarrier
 from workhold.files.step.edge_curves import EdgeCurve, Found, list_edge_curves
 from workhold.files.step.faces import SolidFace, compute_plane_height, list_solid_faces
 from workhold.files.step.library import compute_bounding_box, list_sub_shapes, occ, raise_shape
@@ -42,7 +42,7 @@ from workhold.files.step.projected import (
     refuse_others,
 )
 from workhold.files.step.strips import Strip, make_strips, run_rows
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Arc, Line, Segment, are_parallel_lines
 from workhold.geometry.subdivision import (
     BorderPiece,
@@ -73,7 +73,7 @@ HEAD_ROOM, LEAST_BAND = 0.5, 1.0
 
 @define(frozen=True, slots=False, eq=False)
 class HeightOutline:
-    """The outline between two heights with what may be touched of it.
+    """The outline between two heights, with the band of heights that may be touched at each segment.
 
     Parameters
     ----------
@@ -88,40 +88,46 @@ class HeightOutline:
 
     @cached_property
     def ordered(self) -> list[tuple[Strip, ...]]:
-        """Outer loops first, the largest of them before all."""
+        """The loops by signed area, from the largest down, so that outer ones come first."""
         return sorted(
-            self.loops, key=lambda loop: -compute_signed_area(loop_segments(collect_vertices(loop)))
+            self.loops, key=lambda loop: -compute_signed_area(make_loop_segments(collect_vertices(loop)))
         )
 
     @property
     def vertices(self) -> tuple[NDArray[np.float64], ...]:
-        """Vertices (N, 3) in mm of each loop, in order."""
+        """Vertices (N, 3) of each loop of ``ordered``: x and y in mm, and the bulge."""
         return tuple(collect_vertices(loop) for loop in self.ordered)
 
     @property
     def bands(self) -> tuple[Band | None, ...]:
-        """The band of every segment of the loops in order, as ``SolidOutline`` has them."""
+        """The heights (z0, z1) in mm touchable all along each
+        segment, loop by loop as in ``ordered``; None for none.
+        """
         return tuple(strip.band for loop in self.ordered for strip in loop)
 
     @property
     def faces(self) -> tuple[tuple[int, ...], ...]:
-        """The faces over every segment of the loops in order, as ``SolidOutline`` has them."""
+        """The indices of the upright faces over every segment, loop by loop as in ``ordered``."""
         return tuple(strip.faces for loop in self.ordered for strip in loop)
 
     @property
     def runs(self) -> tuple[RunRows, ...]:
-        """The run that holds the band of every segment, as ``SolidOutline`` has them."""
+        """For every segment the covered height range that holds
+        its band, as :func:`run_rows`; () when all are empty.
+        """
         found = tuple(run_rows(strip) for loop in self.ordered for strip in loop)
         return found if any(found) else ()
 
     @property
     def feet(self) -> int:
-        """How many loops are outer ones."""
-        return sum(compute_signed_area(loop_segments(loop)) > 0 for loop in self.vertices)
+        """Number of outer loops: separate pieces of the part at these heights."""
+        return sum(compute_signed_area(make_loop_segments(loop)) > 0 for loop in self.vertices)
 
 
 def collect_vertices(loop: Sequence[Any]) -> NDArray[np.float64]:
-    """Return the vertices (N, 3) of a loop of strips, each running to the next."""
+    """Return the vertices (N, 3), x and y in mm and bulge,
+    of a loop of strips, each of which runs to the next.
+    """
     return np.array([(*strip.start, strip.bulge) for strip in loop])
 
 
@@ -159,21 +165,29 @@ class StandingSolid:
 
     @property
     def height(self) -> float:
-        """Height of its highest point in mm; of a level face there, if there is one."""
+        """z in mm of the highest level face if that is at
+        the top within rounding, else of the highest point.
+        """
         top = max(face.high for face in self.faces)
         level = [face.high for face in self.faces if face.lie == "level" and top - face.high <= SAME_HEIGHT]
         return max(level, default=top)
 
     @cached_property
     def plain(self) -> PlainCurves:
-        """Lines and arcs that may be the border of outlines of every height."""
+        """All lines and arcs among the projected edges, and
+        the curves along which leaning faces stand upright.
+
+        They may border the outlines of any height.
+        """
         edges = [edge.segment for edge in self.edges if edge.segment is not None]
         leaning = [index for index, face in enumerate(self.faces) if face.lie == "leaning"]
         every = [one for index in leaning for one in self.find_folds_of_face(index)]
         return PlainCurves.from_segments([*edges, *(one for one in every if isinstance(one, Line | Arc))])
 
     def find_folds_of_face(self, index: int) -> list[Found]:
-        """Return where the face of a number stands upright, seen from above; found once."""
+        """Return the curves along which a leaning face stands upright,
+        seen from above; ``index`` is the face's. Computed once.
+        """
         if index not in self.folds:
             self.folds[index] = find_folds(self.faces[index])
         return self.folds[index]
@@ -186,20 +200,21 @@ class StandingSolid:
         low: float = 0.0,
         silhouette: Sequence[Segment] = (),
     ) -> HeightOutline:
-        """Return the outline of pegs that reach from below up to a height, or from another height.
+        """Return the outline that pegs meet, with the bands that they may touch.
 
         Parameters
         ----------
-        peg_height : in mm; the solid's height when None.
+        peg_height : up to which pegs reach, in mm; the solid's height when None.
         head_room : kept free above the pegs, in mm.
         least_band : shortest band in mm that may be touched.
-        low : from which pegs reach, in mm; 0 is from below.
-        silhouette : its border, where the outline is known to be the silhouette.
+        low : from which pegs reach, in mm; for 0 or less they reach from below the part.
+        silhouette : segments of the border, where it is known that the outline is the silhouette; else empty.
 
         Raises
         ------
         InputError
-            For heights that leave nothing, and where the outline has a curve that is neither line nor arc.
+            When there is no material between the heights, and where the outline has a curve that is neither
+            line nor arc.
         """
         top = self.height if peg_height is None else peg_height
         key = top, head_room, least_band, low
@@ -213,12 +228,19 @@ class StandingSolid:
             self.known_outlines[key] = outline
         return outline
 
-    def make_walls(self, top: float, low: float = 0.0) -> Walls:
-        """Return the upright faces as pegs between two heights in mm meet them."""
-        return Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.known_walls)
+    def make_walls(self, top: float, low: float = 0.0) -> WallsByCarrier:
+        """Return the upright faces, with heights limited to
+        those between ``low`` and ``top`` in mm and to the solid.
+        """
+        return WallsByCarrier(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.known_walls)
 
     def measure_outline_area(self, peg_height: float, head_room: float) -> float | None:
-        """Return the area in mm² of the outline of pegs that reach from below up to a height; None if it is refused."""
+        """Return the area in mm² of the outline of pegs that
+        reach from below the part up to ``peg_height`` mm.
+
+        ``head_room`` mm above are kept free. None if the outline is refused; the face that refused it is then
+        remembered in ``suspect`` and tested first in the next call.
+        """
         high = peg_height + head_room
         suspect = self.suspect
         try:
@@ -233,26 +255,30 @@ class StandingSolid:
             return None
         except InputError:
             return None
-        return sum(compute_signed_area(loop_segments(collect_vertices(loop))) for loop in loops)
+        return sum(compute_signed_area(make_loop_segments(collect_vertices(loop))) for loop in loops)
 
     def make_inside_test(self, low: float, high: float) -> Inside:
-        """Return a function that says over which points (x, y) the solid has material between two heights in mm."""
+        """Return a function that says for points (x, y) whether
+        the solid has material over each between two z in mm.
+        """
         return lambda points: self.material.lies_between(points, low, high)
 
     def find_border(
-        self, low: float, high: float, walls: Walls | None = None, silhouette: Sequence[Segment] = ()
+        self, low: float, high: float, walls: WallsByCarrier | None = None, silhouette: Sequence[Segment] = ()
     ) -> list[list[BorderPiece]]:
-        """Return the loops of U(low, high), heights in mm.
+        """Return the loops of the solid's projection between
+        two z in mm, as border pieces; -inf is below the solid.
 
         Parameters
         ----------
-        walls : whose runs cut it too.
+        walls : upright faces whose covered height ranges also cut the border; None for no such cuts.
         silhouette : see :meth:`make_outline`.
 
         Raises
         ------
         InputError
-            Naming the face whose border is neither line nor arc.
+            When there is no material between the heights, or naming the face whose border is neither line nor
+            arc.
         """
         low, high = max(low, -1.0), min(high, self.height + 1.0)
         inside = self.make_inside_test(low, high)
@@ -281,17 +307,18 @@ class StandingSolid:
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:
-        """The z in mm of all places at which an edge ends, or is highest or lowest."""
+        """Sorted z in mm of the ends, the lowest and the highest points of all edges."""
         ends = [(*edge.points[[0, -1], 2].tolist(), edge.low, edge.high) for edge in self.edges]
         return np.unique(np.array(ends, np.float64))
 
     def close_loops(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
-        """Return the loops of a border's pieces.
+        """Return the loops that the pieces of a border make.
 
         Raises
         ------
         InputError
-            When they do not close, naming the face whose border is neither line nor arc, if there is one.
+            When they do not close; the error is an OtherCurveError with the face if there are curves that are
+            neither line nor arc.
         """
         try:
             return join_border_loops(pieces)
@@ -303,9 +330,10 @@ class StandingSolid:
 
 
 def stand_solid(shape: Any, low: float | None = None) -> StandingSolid:
-    """Return a solid moved so that its lowest point is at height 0, and turned right side out.
+    """Return the first solid of a shape, moved along z so
+    that its lowest point is at height 0, and right side out.
 
-    ``low`` is z in mm of its bounding box, where that is known.
+    The shape's axis points up already. ``low`` is the least z in mm of its bounding box, computed when None.
     """
     shape = list_sub_shapes(shape, "SOLID")[0]
     occ.BRepLib.OrientClosedSolid_s(shape)
@@ -313,12 +341,9 @@ def stand_solid(shape: Any, low: float | None = None) -> StandingSolid:
 
 
 def find_foot_height(shape: Any, low: float | None = None) -> float:
-    """Return the height of a shape's lowest point in mm, with the very number of a level face that lies
-    there.
+    """Return the z in mm of a shape's lowest point; where a level face lies there, exactly that face's z.
 
-    Parameters
-    ----------
-    low : see :func:`stand_solid`.
+    ``low`` is the least z of the bounding box, computed when None.
     """
     low = compute_bounding_box(shape)[0][2] if low is None else low
     level = [compute_plane_height(occ.BRepAdaptor_Surface(face)) for face in list_sub_shapes(shape, "FACE")]
@@ -337,11 +362,13 @@ WHOLE = 1e-9
 
 
 def measure_outline(outline: HeightOutline) -> tuple[float, float, float, float]:
-    """Return the area, border, touchable border and shortest band of an outline, in mm² and mm."""
+    """Return the area in mm² of an outline, and in mm its
+    border, its touchable border and its shortest band (or 0).
+    """
     border = touchable = area = 0.0
     bands = []
     for loop in outline.loops:
-        segments = loop_segments(collect_vertices(loop))
+        segments = make_loop_segments(collect_vertices(loop))
         area += compute_signed_area(segments)
         border += sum(segment.length for segment in segments)
         for segment, strip in zip(segments, loop, strict=True):
@@ -352,21 +379,26 @@ def measure_outline(outline: HeightOutline) -> tuple[float, float, float, float]
 
 
 def is_parallel_only(outline: HeightOutline) -> bool:
-    """Return whether all that may be touched of an outline are lines parallel to one another."""
+    """Return whether the touchable segments of an outline are all parallel lines."""
     strips = [
         (segment, strip)
         for loop in outline.loops
-        for segment, strip in zip(loop_segments(collect_vertices(loop)), loop, strict=True)
+        for segment, strip in zip(make_loop_segments(collect_vertices(loop)), loop, strict=True)
     ]
     return are_parallel_lines(segment for segment, strip in strips if strip.band is not None)
 
 
 def tabulate_peg_heights(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
-    """Return the ranges of peg heights with what their outlines offer, without those whose outline is
-    refused.
+    """Return ranges of peg heights, from the lowest up, each with
+    area and touchable border of the outline at its upper end.
 
-    A range ends where a face begins or ends, or meets what is kept free above the pegs, and where a wall has
-    come to be high enough to be touched.
+    Ranges end where a face begins or ends, or meets the head room, and where a wall becomes high enough to be
+    touched. Ranges with the same outline are one; those whose outline is refused are left out.
+
+    Parameters
+    ----------
+    room : head room kept free above the pegs, in mm.
+    least : shortest range of heights in mm that may be touched.
     """
     levels = {round(z, 6) for face in solid.faces for z in (face.low, face.high)}
     starts = {face.low if face.lie == "upright" else face.high for face in solid.faces}
@@ -406,12 +438,14 @@ def tabulate_peg_heights(solid: StandingSolid, room: float, least: float) -> lis
 
 @frozen
 class WholeOutline:
-    """The outline of the highest pegs: outlines grow with the height, so one of its area is the same.
+    """The outline of the highest pegs.
+
+    Outlines grow with the height of the pegs, so a lower one of the same area is the same outline.
 
     Parameters
     ----------
     row : what it offers.
-    border : its pieces.
+    border : segments of its border.
     """
 
     row: HeightRow
@@ -421,7 +455,10 @@ class WholeOutline:
     def from_height(
         cls, solid: StandingSolid, height: float, room: float, least: float
     ) -> WholeOutline | None:
-        """Return the outline of pegs of a height in mm; None where it is refused."""
+        """Return the outline of pegs of a height in mm; None where it is refused.
+
+        ``room`` is the head room, ``least`` the shortest band that may be touched, both in mm.
+        """
         # Heights of the table are rounded, and that of the solid was most likely asked for before.
         asked = None if abs(height - solid.height) <= SAME_HEIGHT else height
         try:
@@ -429,11 +466,11 @@ class WholeOutline:
         except InputError:
             return None
         pieces = [one for loop in outline.loops for strip in loop for one in strip.covered]
-        border = tuple(one.piece.carrier.segment.part(one.low, one.high) for one in pieces)
+        border = tuple(one.piece.carrier.segment.cut_part(one.low, one.high) for one in pieces)
         return cls(HeightRow(0.0, height, *measure_outline(outline), is_parallel_only(outline)), border)
 
     def has_area(self, area: float) -> bool:
-        """Return whether an outline of some area in mm² is the whole of it."""
+        """Return whether an area in mm² is that of this outline, within rounding."""
         return abs(self.row.area - area) <= WHOLE * self.row.area
 
 
@@ -446,9 +483,14 @@ def make_height_row(
     before: float = 0.0,
     border: Sequence[Segment] = (),
 ) -> HeightRow | None:
-    """Return the range between two heights, with what pegs touch of the upper one, or of one that much lower.
+    """Return the range from ``low`` to ``high`` in mm with what pegs of height ``high - before`` touch.
 
-    For the border see :meth:`StandingSolid.make_outline`.
+    None where their outline is refused.
+
+    Parameters
+    ----------
+    room, least : see :func:`tabulate_peg_heights`.
+    border : see ``silhouette`` of :meth:`StandingSolid.make_outline`.
     """
     try:
         outline = solid.make_outline(high - before, room, least, silhouette=border)
@@ -466,10 +508,17 @@ def list_height_rows_between(
     whole: WholeOutline | None,
     is_whole: bool,
 ) -> Iterator[HeightRow]:
-    """Yield the ranges between two heights at which no face begins or ends, with what their outlines offer.
+    """Yield the parts of a range of peg heights, ``low``
+    to ``high`` in mm, in which the outline is not refused.
 
-    A face that is cut in curves which are neither lines nor arcs may be refused over some of them.
-    ``is_whole`` says whether the outline is known to be the silhouette at all heights between.
+    Within the range no face begins or ends. A face cut in curves that are neither lines nor arcs may be
+    refused in parts of it; their ends are found by bisection.
+
+    Parameters
+    ----------
+    room, least : see :func:`tabulate_peg_heights`.
+    whole : outline of the highest pegs, if there is one.
+    is_whole : whether that is known to be the outline at all heights of the range.
     """
     if is_whole or not any(
         face.lie == "leaning"
@@ -520,13 +569,15 @@ def list_height_rows_between(
 
 
 def is_like(a: HeightRow, b: HeightRow) -> bool:
-    """Return whether two ranges offer the same outline, as far as its figures show."""
+    """Return whether area, border and touchable length of two ranges agree to a millionth."""
     pairs = ((a.area, b.area), (a.border, b.border), (a.touchable, b.touchable))
     return all(abs(one - other) <= 1e-6 * max(one, 1.0) for one, other in pairs)
 
 
 def find_longest_row(rows: Sequence[HeightRow]) -> HeightRow | None:
-    """Return the range with the longest touchable border; if several are equal, the one for the highest pegs."""
+    """Return the range with the longest touchable border, of
+    equal ones the highest; None where nothing is touchable.
+    """
     most = max((row.touchable for row in rows), default=0.0)
     return max(
         (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),
@@ -536,6 +587,11 @@ def find_longest_row(rows: Sequence[HeightRow]) -> HeightRow | None:
 
 
 def advise_on_height(solid: StandingSolid, room: float, least: float) -> str:
+    """Return advice for an error message: the peg height
+    with the longest touchable border, or another remedy.
+
+    ``room`` and ``least`` are as in :func:`tabulate_peg_heights`.
+    """
     best = find_longest_row(tabulate_peg_heights(solid, room, least))
     if best is None:
         return f"give another axis, or {SECTION}"
@@ -545,6 +601,13 @@ def advise_on_height(solid: StandingSolid, room: float, least: float) -> str:
 def describe_outline_by_height(
     outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]
 ) -> list[str]:
+    """Return remarks, a sentence each, on the part's height and how much of the outline can be touched.
+
+    Parameters
+    ----------
+    found : the solid of the outline.
+    rows : ranges of peg heights of :func:`tabulate_peg_heights`, for a hint at a better one.
+    """
     _, border, touchable, band = measure_outline(outline)
     reach = (
         "pegs are taken to reach as high"
@@ -566,7 +629,10 @@ def describe_outline_by_height(
 
 
 def suggest_better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
-    """Return a sentence on the height of pegs that could touch most, if that is more than a length in mm."""
+    """Return one sentence naming the peg height at which most can be touched, or [].
+
+    ``touchable`` is the length in mm touchable now; there is a sentence only if another height has more.
+    """
     best = find_longest_row(rows)
     if best is None or slides_at_every_height(rows) or best.touchable <= touchable * (1 + 1e-6):
         return []
@@ -575,7 +641,13 @@ def suggest_better_height(rows: Sequence[HeightRow], touchable: float) -> list[s
 
 @frozen(eq=False)
 class OwnDrawing:
-    """What carriers of a role meet of a solid: loops (N, 3) in mm, and the solid with their bands."""
+    """The outline that carriers with heights of their own meet: loops (N, 3), and the solid with their bands.
+
+    Parameters
+    ----------
+    role : of the carriers.
+    loops : vertices, x and y in mm and bulge.
+    """
 
     role: str
     loops: tuple[NDArray[np.float64], ...]
@@ -585,10 +657,17 @@ class OwnDrawing:
 def draw_own_outlines(
     solid: StandingSolid, heights: Mapping[str, Sequence[float]], found: SolidOutline
 ) -> Iterator[OwnDrawing]:
-    """Yield what carriers with heights of their own, in mm by role, meet.
+    """Yield the outline that the carriers of each role meet.
 
-    ``found`` is the solid as all other pegs meet it. Refuses, naming the role, an outline that cannot be made
-    or has nothing to touch.
+    Parameters
+    ----------
+    heights : lowest and highest z in mm over which the carriers reach, by role.
+    found : the solid as all other pegs meet it.
+
+    Raises
+    ------
+    InputError
+        Naming the role, for an outline that cannot be made or has nothing to touch.
     """
     for role, (low, high) in heights.items():
         where = f"along {found.axis}, from {low:g} to {high:g} mm, where the {role} reaches"

@@ -1,18 +1,20 @@
-"""The level faces of a standing solid that supports and a clamp on top may touch.
+"""The level faces of a standing solid that supports from below and a clamp on top may touch.
 
-Of an upper face that is what is open to the sky: all of it over which nothing of the solid lies. With it
-stands what rises above each height, of which the head of a clamp keeps off, and which parts of the faces hang:
-under these the material does not reach down to the plane on which the part lies.
+Of an upper face only the open parts count: those over which nothing of the solid lies. Computed besides are
+the regions of the solid above the height of the face, which the head of a clamp must not enter, and the
+hanging parts of the faces, under which the material does not reach down to the plane on which the part lies.
 
-All are regions of a planar subdivision. The border of a face, and what bounds the solid above or below it,
-are cut where they meet. On which side of each piece the region lies is asked beside it. Of curves that are
-neither line nor arc, such as the mouth of a bore aslant, what polygons around them hold is no part of a face.
+All are regions of a planar subdivision. The border of a face, and the curves that bound the solid above or
+below it, are cut where they cross. Points beside each piece decide on which side of it the region lies.
+Curves that are neither line nor arc, such as the mouth of an inclined bore, are enclosed in polygons; no
+polygon counts as part of a face.
 
 Glossary
 --------
 open : of a face, that nothing of the solid lies above it.
 rising : what the solid has above a height, seen from above.
 hanging : of a face, that an upright line leaves the material between the face and the lying plane.
+lying plane : the plane z = 0 on which the part lies.
 """
 
 from __future__ import annotations
@@ -35,15 +37,15 @@ from workhold.files.step.faces import SolidFace
 from workhold.files.step.heights import StandingSolid
 from workhold.files.step.projected import list_projected_curves
 from workhold.files.step.regions import make_level_region, trace_borders
-from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
-from workhold.geometry.rational import Pieces, point_at, points_along
+from workhold.geometry.loop import compute_signed_area, make_loop_segments, reverse_vertices
+from workhold.geometry.rational import Pieces, compute_point, sample_points
 from workhold.geometry.segment import (
     Line,
     Point,
     Segment,
-    bounding_box,
+    compute_bounding_box,
     make_segment_from_bulge,
-    segment_rows,
+    make_segment_rows,
 )
 from workhold.geometry.subdivision import BorderPiece, find_border_pieces, join_border_loops, subdivide
 from workhold.kernels.base.distance import is_inside
@@ -64,7 +66,10 @@ SLIVER = 1e-6
 
 @frozen(eq=False)
 class LevelTop:
-    """What a clamp on top has to know of the level faces of one height; loops (N, 3) of vertices.
+    """The level upper faces of one height and what is around
+    them, for clamps on top; all loops are vertices (N, 3).
+
+    Each vertex is x and y in mm and the bulge of the segment that follows.
 
     Parameters
     ----------
@@ -88,8 +93,8 @@ class FaceBorder:
 
     Parameters
     ----------
-    loops : its vertices (N, 3), the face on the left; chords stand in the place of curves.
-    bounds : its lines and arcs, and polygons that hold its curves.
+    loops : its vertices (N, 3), the face on the left; chords replace curves that are neither line nor arc.
+    bounds : its lines and arcs, and polygons that enclose its other curves.
     """
 
     loops: list[Array]
@@ -97,12 +102,17 @@ class FaceBorder:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it has no curves."""
+        """Whether it consists of lines and arcs only."""
         return not self.bounds.polygons
 
 
 def collect_level_faces(solid: StandingSolid) -> dict[str, list[Any]]:
-    """Return the level faces of a solid by the names that ``SolidOutline`` has for them."""
+    """Return the level faces of a solid as the fields of ``SolidOutline`` by name.
+
+    These are ``bottom``, ``top`` (with nothing above), ``rising`` (material above a face's height) and
+    ``hanging`` (parts of ``top`` without material down to z = 0) with loops as nested lists, ``top_heights``
+    and so on with a height in mm for each loop, and ``unclear_heights``.
+    """
     found: dict[str, list[Any]] = {"bottom": [loop.tolist() for loop in find_bottom_loops(solid)]}
     every = find_level_tops(solid)
     tops = [top for top in every if top.open]
@@ -115,26 +125,30 @@ def collect_level_faces(solid: StandingSolid) -> dict[str, list[Any]]:
 
 
 def find_bottom_loops(solid: StandingSolid) -> list[Array]:
-    """Return the loops (N, 3) of the faces on which the part lies: outer ones counter-clockwise, openings clockwise."""
+    """Return the loops (N, 3) of the faces on which the part
+    lies: outer ones counter-clockwise, openings clockwise.
+    """
     return trace_region_of_faces(find_lying_borders(solid))
 
 
 def find_lying_borders(solid: StandingSolid) -> list[FaceBorder]:
+    """Return the borders of the level faces at z = 0 that look down, on which the part lies."""
     return read_borders(
         [face for face in solid.faces if face.lie == "level" and not face.upward and face.low <= SAME_HEIGHT]
     )
 
 
 def find_open_level_tops(solid: StandingSolid) -> list[LevelTop]:
-    """Return the open parts of the level faces of a solid, by height in the order of its faces.
+    """Return the upper level faces of each height that have nothing of the solid above some of them.
 
-    Faces of one height that lie side by side are one face; those of other heights stay faces of their own.
+    They are in the order of the solid's faces. Faces of one height that lie side by side are one face; those
+    of other heights stay faces of their own.
     """
     return [top for top in find_level_tops(solid) if top.open]
 
 
 def find_level_tops(solid: StandingSolid) -> list[LevelTop]:
-    """Return the tops of :func:`find_open_level_tops`, with the heights at which nothing is open."""
+    """Return the upper level faces of every height, also where material covers all of them."""
     groups: list[list[SolidFace]] = []
     for face in solid.faces:
         if face.lie == "level" and face.upward:
@@ -150,12 +164,18 @@ def find_level_tops(solid: StandingSolid) -> list[LevelTop]:
 def make_level_top(
     solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool], places: Budget
 ) -> LevelTop:
-    """Return what is open of some upper faces of one height, with what rises beside them, and what of them
-    hangs.
+    """Return the open parts of upper faces of one height,
+    the solid above that height, and which open parts hang.
 
-    Nothing is open where what rises cannot be told, or takes more than may be asked. ``lies_on`` says whether
-    a point is surely on a face on which the solid lies, ``places`` at how many it may still be asked what
-    lies above and below.
+    A part is open where nothing of the solid lies above, and hangs where the material below does not reach
+    down to z = 0. Nothing is open, and ``is_unclear`` is set, where a border cannot be traced or the budget
+    runs out.
+
+    Parameters
+    ----------
+    faces : all at the same height.
+    lies_on : returns whether a point is surely on a face on which the solid lies.
+    places : budget of points at which the material above and below may still be asked for; it is spent.
     """
     height, box = faces[0].low, compute_box_around(faces)
     face_borders = read_borders(faces)
@@ -172,6 +192,7 @@ def make_level_top(
             rising = trace_region(bounds.lines, lambda point: bounds.may_hold(point) or is_above(point), cuts)
 
             def inside(point: Point) -> bool:
+                """Return whether a point is on one of the faces with surely nothing of the solid above."""
                 return is_on(point) and not bounds.may_hold(point) and not is_above(point)
 
             if any(boxes_overlap(one.box, box) for one in above):
@@ -190,14 +211,20 @@ def make_level_top(
 def make_rises_above_test(
     solid: StandingSolid, height: float, is_on: Callable[[Point], bool], places: Budget
 ) -> Callable[[Point], bool]:
-    """Return whether a solid has something above a height over a point, as a function.
+    """Return a function that says whether the solid has material above a height over a point (x, y).
 
-    Beside its foot a fillet is hardly above the level face that it runs into. ``is_on`` says whether a point
-    is surely on a level face of that height; for ``places`` see :func:`make_level_top`.
+    At its lower edge a fillet is hardly above the level face that it runs into; there the point counts as on
+    the face.
+
+    Parameters
+    ----------
+    is_on : returns whether a point is surely on a level face of that height.
+    places : budget, of which each call spends one.
     """
     are_above = solid.make_inside_test(height, solid.height + 1.0)
 
     def rises(point: Point) -> bool:
+        """Return whether the solid has material above the height over a point."""
         places.spend()
         if are_above([point])[0]:
             return True
@@ -210,10 +237,15 @@ def make_rises_above_test(
 def find_bounds_between(
     solid: StandingSolid, low: float, high: float, is_there: Callable[[Point], bool]
 ) -> tuple[Enclosure, list[tuple[Segment, Point]]]:
-    """Return what can bound a slab of a solid, seen from above, and points at which segments are to be cut
-    besides.
+    """Return all curves that can bound the part of a solid
+    between two z, seen from above, and points to cut them at.
 
-    For ``is_there`` see :func:`enclosed_curves`.
+    Curves that are neither line nor arc are enclosed in polygons. The points are (segment, point).
+
+    Parameters
+    ----------
+    low, high : z in mm.
+    is_there : see :func:`enclose_curves`.
     """
     curves = list_projected_curves(solid.faces, solid.edges, low, high, solid.find_folds_of_face)
     bounds = Enclosure([*curves.segments])
@@ -233,12 +265,18 @@ def find_hanging_loops(
     lies_on: Callable[[Point], bool],
     places: Budget,
 ) -> list[Array]:
-    """Return the loops of what hangs of the open parts of upper faces of one height.
+    """Return the loops (N, 3) of those parts of open faces
+    under which the material does not reach down to z = 0.
 
-    For ``lies_on`` and ``places`` see :func:`make_level_top`. Refuses loops that do not close.
+    For ``lies_on`` and ``places`` see :func:`make_level_top`. Raises InputError for loops that do not close.
+
+    Parameters
+    ----------
+    open_ : loops of the open parts.
+    height : of the faces, in mm.
     """
     segments = make_segments(open_)
-    boxes = np.array([bounding_box(one) for one in segments])
+    boxes = np.array([compute_bounding_box(one) for one in segments])
     box: Box = (*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
     below = (
         one
@@ -249,9 +287,10 @@ def find_hanging_loops(
     )
     if not any(boxes_overlap(one.box, box) for one in below):
         return []
-    rows = segment_rows(segments)
+    rows = make_segment_rows(segments)
 
     def reaches_down(point: Point) -> bool:
+        """Return whether the material under a point reaches from the height of the faces down to z = 0."""
         places.spend()
         intervals = solid.material.find_material_intervals(point)
         if not intervals or intervals[0][1] < height - SAME_HEIGHT:
@@ -263,6 +302,9 @@ def find_hanging_loops(
     near = list_lines_near(bounds, box)
 
     def hangs(point: Point) -> bool:
+        """Return whether a point is in the open parts and
+        not surely over material that reaches down to z = 0.
+        """
         return is_inside(*point, rows) and (bounds.may_hold(point) or not reaches_down(point))
 
     return trace_region([*segments, *near], hangs, cuts)
@@ -273,25 +315,31 @@ def trace_region(
     inside: Callable[[Point], bool],
     cuts: Sequence[tuple[Segment, Point]] = (),
 ) -> list[Array]:
-    """Return the loops (N, 3) around a region, which lies on their left; outer ones first, the largest before
-    all.
+    """Return the loops (N, 3) around a region, which lies
+    on their left, by signed area from the largest down.
 
-    The segments hold all of its border, and ``inside`` says whether a point that lies on none of them belongs
-    to it. Cuts are further points at which the carriers of segments are to be cut. Refuses a border that does
-    not close.
+    So outer loops come first. Loops around less than ``SLIVER`` are left out. Raises InputError for a border
+    that does not close.
+
+    Parameters
+    ----------
+    segments : they contain all of the region's border.
+    inside : returns whether a point that lies on none of them belongs to the region.
+    cuts : further points at which the carriers of segments are cut.
     """
     pieces = find_border_pieces(
         subdivide(segments, cuts), lambda points: list(map(inside, points)), NEAR_BESIDE
     )
     loops = [merge_border_pieces(loop) for loop in join_border_loops(pieces)]
-    sizes = [(compute_signed_area(loop_segments(loop)), loop) for loop in loops]
+    sizes = [(compute_signed_area(make_loop_segments(loop)), loop) for loop in loops]
     return [loop for size, loop in sorted(sizes, key=lambda one: -one[0]) if abs(size) > SLIVER]
 
 
 def trace_region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
-    """Return the loops (N, 3) of level faces of one height, without the edges along which they touch.
+    """Return the loops (N, 3) around the union of level faces of one height.
 
-    CAD programs split a face where a line was once imprinted on it. One face without curves stays as it is.
+    CAD programs split a face where a line was once imprinted on it; such edges are left out. A single face
+    without free-form curves keeps its loops. No loops where the border cannot be traced.
     """
     if len(face_borders) == 1 and face_borders[0].is_plain:
         return face_borders[0].loops
@@ -305,11 +353,15 @@ def trace_region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
 
 
 def make_on_faces_test(face_borders: Sequence[FaceBorder]) -> Callable[[Point], bool]:
-    """Return whether a point surely lies on one of some faces, as a function."""
-    rows = [segment_rows(make_segments(one.loops)) for one in face_borders]
+    """Return a function that says whether a point surely lies on one of some faces.
+
+    Points in polygons that enclose curves of the border are not surely on a face.
+    """
+    rows = [make_segment_rows(make_segments(one.loops)) for one in face_borders]
     bounds = [one.bounds for one in face_borders]
 
     def is_on(point: Point) -> bool:
+        """Return whether a point surely lies on one of the faces."""
         # Curves along which two faces touch are lost, as polygons hold them on both sides.
         return any(is_inside(*point, own) for own in rows) and not any(one.may_hold(point) for one in bounds)
 
@@ -317,35 +369,40 @@ def make_on_faces_test(face_borders: Sequence[FaceBorder]) -> Callable[[Point], 
 
 
 def list_border_segments(face_borders: Sequence[FaceBorder]) -> list[Segment]:
-    """Return the segments and the polygons' sides of some borders."""
+    """Return the lines and arcs of some borders, with the sides of the polygons that enclose other curves."""
     return [one for border in face_borders for one in border.bounds.lines]
 
 
 def list_lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
+    """Yield the segments and polygon sides of an enclosure whose bounding boxes overlap or touch a box."""
     x0, y0, x1, y1 = box
     for one in bounds.lines:
-        low_x, low_y, high_x, high_y = bounding_box(one)
+        low_x, low_y, high_x, high_y = compute_bounding_box(one)
         if low_x <= x1 + OFF and high_x >= x0 - OFF and low_y <= y1 + OFF and high_y >= y0 - OFF:
             yield one
 
 
 def compute_box_around(faces: Sequence[SolidFace]) -> Box:
-    """Return the box around some faces, seen from above."""
+    """Return the bounding box (x0, y0, x1, y1) in mm of some faces, seen from above."""
     x0, y0, x1, y1 = np.array([face.box for face in faces]).T
     return float(x0.min()), float(y0.min()), float(x1.max()), float(y1.max())
 
 
 def boxes_overlap(a: Box, b: Box) -> bool:
-    """Return whether two boxes have more than a border in common."""
+    """Return whether two boxes (x0, y0, x1, y1) overlap by more than ``OFF`` in both directions."""
     return a[0] < b[2] - OFF and b[0] < a[2] - OFF and a[1] < b[3] - OFF and b[1] < a[3] - OFF
 
 
 def make_segments(loops: Sequence[Array]) -> list[Segment]:
-    return [segment for loop in loops for segment in loop_segments(loop)]
+    """Return the segments of all loops (N, 3), loop by loop."""
+    return [segment for loop in loops for segment in make_loop_segments(loop)]
 
 
 def merge_border_pieces(loop: Sequence[BorderPiece]) -> Array:
-    """Return the vertices (N, 3) of a border's loop, where pieces that continue one line or half a circle are one."""
+    """Return the vertices (N, 3) of a border's loop, with neighbouring pieces of one line or circle merged.
+
+    Arcs are merged up to half a circle.
+    """
     first = next((k for k in range(len(loop)) if not continues_piece(loop[k - 1], loop[k])), 0)
     runs: list[list[BorderPiece]] = []
     for piece in [*loop[first:], *loop[:first]]:
@@ -363,18 +420,19 @@ def merge_border_pieces(loop: Sequence[BorderPiece]) -> Array:
 
 
 def continues_piece(before: BorderPiece, after: BorderPiece) -> bool:
+    """Return whether two pieces lie on the same line or circle."""
     return before.carrier is after.carrier
 
 
 def compute_sweep(run: Sequence[BorderPiece]) -> float:
-    """Return the angle over which pieces of one circle run, in radians; 0 on a line."""
+    """Return the total angle in radians of pieces of one circle; 0 for pieces of a line."""
     if isinstance(run[0].carrier.segment, Line):
         return 0.0
     return sum(piece.high - piece.low for piece in run)
 
 
 def read_borders(faces: Sequence[SolidFace]) -> list[FaceBorder]:
-    """Return the borders of level faces; without those that the library cannot tell."""
+    """Return the borders of level faces, leaving out faces whose border cannot be read."""
     return [border for face in faces if (border := find_face_border(face)) is not None]
 
 
@@ -386,16 +444,18 @@ def find_face_border(face: SolidFace) -> FaceBorder | None:
             # The section has curves of its own near the face's, which are exact.
             edges = trace_borders(face.shape)
         chains = [make_closed_loop(chain).vertices for chain in edges.chains]
-        order = sorted(range(len(chains)), key=lambda k: -abs(compute_signed_area(loop_segments(chains[k]))))
+        order = sorted(
+            range(len(chains)), key=lambda k: -abs(compute_signed_area(make_loop_segments(chains[k])))
+        )
         true = {label: one.pieces for label, one in edges.curves.items() if not one.is_disguise}
         bounds, loops = Enclosure(), list[Array]()
         for number, k in enumerate(order):
             loop = chains[k]
             if true.keys().isdisjoint(edges.chains[k].labels):
-                bounds.segments += loop_segments(loop)
+                bounds.segments += make_loop_segments(loop)
             else:
                 loop = replace_curves_by_chords(edges.chains[k], true, bounds)
-            is_turned = (compute_signed_area(loop_segments(chains[k])) > 0) != (number == 0)
+            is_turned = (compute_signed_area(make_loop_segments(chains[k])) > 0) != (number == 0)
             loops.append(reverse_vertices(loop) if is_turned else loop)
     except InputError:
         return None
@@ -403,11 +463,15 @@ def find_face_border(face: SolidFace) -> FaceBorder | None:
 
 
 def replace_curves_by_chords(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Array:
-    """Return the vertices (N, 3) of a face's border with chords in the place of its curves.
+    """Return the vertices (N, 3) of a border with its curves replaced by chords.
 
-    The chain is the border with some lines and arcs in their place, and ``curves`` has the pieces of each by
-    its label. Added to the bounds are its lines and arcs, and polygons that hold its curves. Refuses a curve
-    that takes too many chords.
+    Raises InputError for a curve that takes too many chords.
+
+    Parameters
+    ----------
+    chain : the border, with lines and arcs that approximate its curves.
+    curves : exact pieces of each curve by the label that the chain has for it.
+    bounds : extended in place by the border's lines and arcs, and by polygons that enclose its curves.
     """
     vertices: list[tuple[float, float, float]] = []
     count, done = len(chain.bulges), set[str]()
@@ -433,14 +497,14 @@ def replace_curves_by_chords(chain: Chain, curves: Mapping[str, Pieces], bounds:
 
 
 def runs_backwards(pieces: Pieces, run: Sequence[Point]) -> bool:
-    """Return whether points along a curve run from its end to its start."""
-    start, end = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
+    """Return whether points along a curve, closed or open, run from its end to its start."""
+    start, end = compute_point(pieces, 0.0), compute_point(pieces, float(len(pieces)))
     if dist(start, end) > SHORTEST:
         return dist(run[0], end) < dist(run[0], start)
-    return (measure_enclosed_area(points_along(pieces, 8)) > 0) != (measure_enclosed_area(np.array(run)) > 0)
+    return (measure_enclosed_area(sample_points(pieces, 8)) > 0) != (measure_enclosed_area(np.array(run)) > 0)
 
 
 def measure_enclosed_area(points: Array) -> float:
-    """Return the area in mm² within points (N, 2) in running order, positive where that is counter-clockwise."""
+    """Return the area in mm² of the polygon of points (N, 2), positive when they run counter-clockwise."""
     x, y = points.T
     return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2

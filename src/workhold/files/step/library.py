@@ -40,9 +40,9 @@ SYSTEM_PACKAGES = {"libGL.so.1": "libgl1", "libX11.so.6": "libx11-6"}
 
 
 class OpenCascade:
-    """Whatever the library has, by its name alone: what stands before the first underscore names its package.
+    """The library's names as attributes, imported when they are first asked for, as ``occ.gp_Pnt``.
 
-    It is looked for when it is asked for the first time, as ``occ.gp_Pnt``, and kept then.
+    The part of a name before its first underscore is the package of ``OCP`` that has it.
     """
 
     def __getattr__(self, name: str) -> Any:
@@ -75,6 +75,7 @@ def load_step_library() -> None:
 
 
 def explain_missing_library(error: ImportError) -> str:
+    """Return a sentence on why the library cannot be imported, with the remedy."""
     if isinstance(error, ModuleNotFoundError):
         return f"STEP files need a library that is not installed: pip install '{REQUIREMENT}'."
     missing = re.match(r"(lib\S+?\.so[.\d]*): cannot open shared object file", str(error))
@@ -89,9 +90,10 @@ def explain_missing_library(error: ImportError) -> str:
 
 
 def read_guarded(read: Callable[[], T], *further: type[Exception]) -> T:
-    """Return what some reading returns; ``further`` are errors that come of a damaged file as well.
+    """Return ``read()``; raise InputError where the library,
+    or the arithmetic after it, fails over a damaged file.
 
-    Refuses what the library, or the arithmetic after it, fails over.
+    ``further`` are exception types that count as such failures here; others, and InputError, pass unchanged.
     """
     try:
         return read()
@@ -105,7 +107,7 @@ def read_guarded(read: Callable[[], T], *further: type[Exception]) -> T:
 
 
 def list_sub_shapes(shape: Any, kind: str) -> list[Any]:
-    """Return the parts of one kind of a shape, each as often as it is used.
+    """Return the sub-shapes of one kind of a shape in the library's order, each as often as it is used.
 
     Parameters
     ----------
@@ -121,7 +123,9 @@ def list_sub_shapes(shape: Any, kind: str) -> list[Any]:
 
 
 def compute_bounding_box(shape: Any) -> tuple[Corner, Corner]:
-    """Return both corners of a shape's bounding box in mm, to rounding."""
+    """Return the least and the greatest corner (x, y, z) of
+    a shape's bounding box in mm, without a tolerance added.
+    """
     box = occ.Bnd_Box()
     occ.BRepBndLib.AddOptimal_s(shape, box, False, False)
     low, high = box.CornerMin(), box.CornerMax()
@@ -136,12 +140,12 @@ def raise_shape(shape: Any, height: float) -> Any:
 
 
 def check_axis_name(axis: str | None) -> str:
-    """Return the name of an axis, z for None.
+    """Return the name of an axis in lower case, without "+"; "z" for None.
 
     Raises
     ------
     InputError
-        When there is none of that name.
+        Unless the axis is x, y or z, with or without a sign.
     """
     name = "z" if axis is None else axis.strip().lower().removeprefix("+")
     if name.removeprefix("-") not in AXES:
@@ -155,9 +159,10 @@ def turn_axis_up(shape: Any, axis: str) -> Any:
 
 
 def turn_along(axis: str) -> Any:
-    """Return the turn that makes an axis of the file point up; coordinates only change places and signs.
+    """Return Open CASCADE's rotation that makes an axis of the file ("x" or "-x" …) point up.
 
-    With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
+    Coordinates only change places and signs. With a minus the part lies on its other side, turned over like a
+    page: what pointed to x points to -x.
     """
     signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
     sources = zip(signs, AXES[axis.lstrip("-")], strict=True)

@@ -1,10 +1,11 @@
-"""The material of a solid along upright lines: where a line through a point of the plane runs inside it.
+"""The material of a solid along upright lines: the intervals of z in which the line through a point (x, y) is
+inside.
 
-Most faces are met once: flat ones, and cones about an upright axis on one side of their tip. A line meets
-such a face where its border, seen from above, goes around the line's point. That is so when a ray from the
-point crosses the border an odd number of times (M. Shimrat, *Algorithm 112: position of point relative to
-polygon*, Communications of the ACM 5 (1962)). All these faces are asked at once, which is much faster than
-the library for faces with many edges.
+An upright line meets most faces at most once: flat ones, and cones about an upright axis on one side of their
+tip. It meets such a face where the face's border, seen from above, goes around the line's point: where a ray
+from the point crosses the border an odd number of times (M. Shimrat, *Algorithm 112: position of point
+relative to polygon*, Communications of the ACM 5 (1962)). All these faces are tested at once, which is much
+faster than the library for faces with many edges.
 
 Glossary
 --------
@@ -50,14 +51,14 @@ class PlaneFaces:
 
     Parameters
     ----------
-    planes : (F, 6) of each face: z in mm at the origin, and how much it rises along x and y. Of cones how
-        much they rise away from the axis, and x and y of the axis in mm.
-    lines : (L, 4) start and step of the straight edges, in mm.
-    line_ends : (F + 1,) where the edges of each face begin, and those of the last end.
-    arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges.
-    arc_ends : (F + 1,) where the round edges of each face begin, and those of the last end.
+    planes : (F, 6) of each face: z in mm at the origin, and the slope along x and y. Of cones the slope away
+        from the axis, and x and y of the axis in mm.
+    lines : (L, 4) start and step (x, y, dx, dy) of the straight edges, in mm, face by face.
+    line_ends : (F + 1,) row in ``lines`` at which the edges of each face begin, and the number of rows.
+    arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges, face by face.
+    arc_ends : (F + 1,) row in ``arcs`` at which the edges of each face begin, and the number of rows.
     boxes : (F, 4) least x and y, greatest x and y of each face, in mm.
-    known : whether faces hold points by both rays, once that was asked: all heights ask for the same points.
+    known : cache of :meth:`surely_contains` by face and point, because all heights ask for the same points.
     """
 
     planes: Array
@@ -72,7 +73,10 @@ class PlaneFaces:
     def from_faces(
         cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]
     ) -> tuple[PlaneFaces, list[int]]:
-        """Return the flat ones and the cones of some faces, and the indices of others that are not upright.
+        """Return the flat faces and cones among some faces,
+        and the indices of all others that are not upright.
+
+        Faces with an edge that is neither line nor arc seen from above are among the others.
 
         Parameters
         ----------
@@ -110,7 +114,7 @@ class PlaneFaces:
         return made, others
 
     def find_crossing_heights(self, point: Point) -> list[float]:
-        """Return the z in mm at which the upright line through a point meets the faces, in any order."""
+        """Return the z in mm, unsorted, at which the upright line through a point meets the faces."""
         near = np.flatnonzero(find_boxes_holding([point], self.boxes)).tolist() if len(self.boxes) else []
         if not near:
             return []
@@ -118,10 +122,10 @@ class PlaneFaces:
         return [float(levels[k]) for k in near if self.contains(k, point)]
 
     def find_any_crossing_heights(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """Return a z in mm between two others at which the upright line through each point meets a face, else
-        infinity.
+        """Return for each point some z in mm, strictly between two
+        others, at which its upright line meets a face, else inf.
 
-        Two rays must agree.
+        A face counts only if both rays find the point in it.
         """
         if not len(self.planes):
             return [inf] * len(points)
@@ -136,14 +140,16 @@ class PlaneFaces:
         ]
 
     def surely_contains(self, face: int, point: Point) -> bool:
-        """Return whether both rays find a point in a face of a number."""
+        """Return whether two rays in different directions both
+        find a point in the face with this index, seen from above.
+        """
         key = face, point
         if key not in self.known:
             self.known[key] = self.contains(face, point) and self.contains(face, point, OTHER_RAY)
         return self.known[key]
 
     def compute_heights_at(self, points: Sequence[Point]) -> Array:
-        """Return the z (N, F) in mm of each face's plane or cone at points."""
+        """Return the z (N, F) in mm of each face's whole plane or cone over N points."""
         origin, rise_x, rise_y, outward, axis_x, axis_y = self.planes.T
         x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
         away = np.hypot(x - axis_x, y - axis_y)
@@ -151,11 +157,11 @@ class PlaneFaces:
         return levels
 
     def contains(self, face: int, point: Point, ray: Point = RAY) -> bool:
-        """Return whether a face of a number holds a point, seen from above.
+        """Return whether the face with this index contains a point, seen from above.
 
         Parameters
         ----------
-        ray : unit vector, see the head of the file.
+        ray : unit vector of the ray from the point whose crossings with the border are counted.
         """
         (x, y), (dx, dy) = point, ray
         px, py, sx, sy = self.lines[self.line_ends[face] : self.line_ends[face + 1]].T
@@ -178,7 +184,10 @@ class PlaneFaces:
 
 
 def find_boxes_holding(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
-    """Return which boxes (F, 4 and more), larger by ``more`` mm on all sides, have points (N, 2) in them, (N, F)."""
+    """Return which boxes contain which points, (N, F), for points (N, 2) and boxes (F, 4 or more).
+
+    The boxes are x0, y0, x1, y1 in mm, and are widened by ``more`` mm on all sides.
+    """
     x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
     near: NDArray[np.bool_] = (boxes[:, 0] - more <= x) & (x <= boxes[:, 2] + more)
     near &= (boxes[:, 1] - more <= y) & (y <= boxes[:, 3] + more)
@@ -186,7 +195,9 @@ def find_boxes_holding(points: Sequence[Point], boxes: Array, more: float = 0.0)
 
 
 def find_plane(face: SolidFace) -> Sheet | None:
-    """Return a face's plane, see :class:`PlaneFaces`; None for an upright face and for one that is not flat."""
+    """Return a face's plane as a row of :class:`PlaneFaces`;
+    None for an upright face and for one that is not flat.
+    """
     surface: Any = find_surface(face.shape)
     if face.lie == "upright" or surface.GetType() != occ.GeomAbs_Plane:
         return None
@@ -198,7 +209,9 @@ def find_plane(face: SolidFace) -> Sheet | None:
 
 
 def find_cone(face: SolidFace) -> Sheet | None:
-    """Return a face's cone, see :class:`PlaneFaces`; None for others and for both sides of a tip."""
+    """Return a face's upright cone as a row of :class:`PlaneFaces`;
+    None for others and for one on both sides of its tip.
+    """
     surface = occ.BRepAdaptor_Surface(face.shape)
     if surface.GetType() != occ.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
         return None
@@ -216,7 +229,9 @@ def find_cone(face: SolidFace) -> Sheet | None:
 
 @define
 class Material:
-    """Answers where a solid's upright lines run inside it. Upright faces are not met by such lines.
+    """The intervals in which upright lines run inside a solid, found on demand and cached.
+
+    Upright faces are not met by such lines.
 
     Parameters
     ----------
@@ -257,10 +272,10 @@ class Material:
     def find_material_intervals(
         self, point: Point, near: Sequence[int] | None = None
     ) -> list[tuple[float, float]]:
-        """Return the intervals of the upright line through a point (x, y), from the lowest up.
+        """Return the intervals (z0, z1) in mm of the upright line through a point (x, y), from the lowest up.
 
-        ``near`` are the numbers of the faces that are not flat and may lie over the point, where they are
-        known.
+        ``near`` are indices in ``meeting`` of the faces that may lie over the point, where the caller knows
+        them.
         """
         if point not in self.known:
             near = np.flatnonzero(self.find_faces_near([point])).tolist() if near is None else near
@@ -279,7 +294,7 @@ class Material:
         return self.known[point]
 
     def is_inside(self, point: Point, z: float) -> bool:
-        """Return whether the solid has material at a point of the plane and a height."""
+        """Return whether the point (x, y, z) is inside the solid."""
         if self.classifier is None:
             # It looks at the whole solid first, which takes much longer than each of its answers.
             self.classifier = occ.BRepClass3d_SolidClassifier(self.shape)
@@ -287,8 +302,9 @@ class Material:
         return bool(self.classifier.State() == occ.TopAbs_IN)
 
     def find_crossing_heights(self, point: Point, near: Sequence[int]) -> list[float]:
-        """Return the sorted z in mm at which the upright line through a point passes a face, see
-        :meth:`find_material_intervals`.
+        """Return the sorted z in mm at which the upright line through a point meets a face.
+
+        ``near`` is as in :meth:`find_material_intervals`.
         """
         found = self.flat.find_crossing_heights(point)
         for index in near:
@@ -296,11 +312,11 @@ class Material:
         return sorted(found)
 
     def find_faces_near(self, points: Sequence[Point]) -> NDArray[np.bool_]:
-        """Return which faces (N, F) that are not flat may lie over points, seen by their boxes."""
+        """Return which faces of ``meeting`` may lie over which points by their boxes, (N, F)."""
         return find_boxes_holding(points, self.boxes, ON_FACE)
 
     def find_crossings_with_face(self, point: Point, index: int) -> list[float]:
-        """Return the z in mm at which the upright line through a point passes a face that is not flat."""
+        """Return the z in mm at which the upright line through a point meets the face ``meeting[index]``."""
         key = point, index
         if key not in self.hits:
             face = self.meeting[index]
@@ -312,7 +328,9 @@ class Material:
         return self.hits[key]
 
     def lies_between(self, points: Sequence[Point], low: float, high: float) -> list[bool]:
-        """Return whether some material over points lies strictly between two z in mm."""
+        """Return for each point whether the upright line
+        through it has material strictly between two z in mm.
+        """
         # Outlines of all heights ask for the same points, and what is reached stays so as the height grows.
         bounds = [self.reached.get((point, low), (inf, -inf)) for point in points]
         fresh = [point for point, (least, most) in zip(points, bounds, strict=True) if most < high < least]
@@ -328,7 +346,9 @@ class Material:
         return [high >= self.reached[point, low][0] for point in points]
 
     def find_within(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """Find what :meth:`lies_between` returns: an upper height from which on it is so, else infinity."""
+        """Return for each point an upper z in mm, at most ``high``,
+        from which on there is material above ``low``, else inf.
+        """
         # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
         # because they answer much faster.
         inner = low + 2 * SAME_HEIGHT, high - 2 * SAME_HEIGHT
@@ -351,7 +371,7 @@ class Material:
 
 
 def list_marked_columns(marked: NDArray[np.bool_]) -> list[list[int]]:
-    """Return the numbers of the columns (N, M) that are marked in each row."""
+    """Return for each row of an array (N, M) the sorted indices of the columns that are True."""
     found: list[list[int]] = [[] for _ in marked]
     for row, column in np.argwhere(marked).tolist():
         found[row].append(column)

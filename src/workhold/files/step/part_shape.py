@@ -1,7 +1,7 @@
-"""The shape of a result's part, read again from its STEP file: as a mesh, and as Open CASCADE keeps it.
+"""The shape of a result's part, read again from its STEP file: as a mesh, and in Open CASCADE's own form.
 
-A result file has the outline of a part and the heights of its faces, not its shape. The file that it was
-designed from has both, so it is asked for again, and looked at whether it gives the same outline.
+A result file has the outline of a part and the heights of its faces, not its shape. So the file that it was
+designed from is read again, and must give the same outline.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from workhold.files.step.by_height import HeightView, draw_solid_by_height, turn
 from workhold.files.step.library import list_sub_shapes, load_step_library, occ, read_guarded
 from workhold.files.step.reader import prepare
 from workhold.files.step.solids import read_solids
-from workhold.geometry.loop import compute_signed_area, loop_segments
+from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Point
 from workhold.model.pose import Pose
 from workhold.model.solid import SolidOutline
@@ -46,8 +46,8 @@ class PartShape:
     Parameters
     ----------
     positions, normals : (N, 3) vertices in mm and unit vectors outward.
-    triangles : (M, 3) numbers of vertices, counter-clockwise from outside.
-    kept : the shape in Open CASCADE's own form.
+    triangles : (M, 3) indices of vertices, counter-clockwise from outside.
+    kept : the shape as text in Open CASCADE's own format.
     """
 
     positions: Array
@@ -56,7 +56,7 @@ class PartShape:
     kept: str
 
     def place_solid(self, pose: Pose) -> Any:
-        """Open CASCADE's solid in the pose of a fixture."""
+        """Return Open CASCADE's solid in the pose of a fixture."""
         load_step_library()
         shape = occ.TopoDS_Shape()
         occ.BRepTools.Read_s(shape, BytesIO(self.kept.encode("ascii")), occ.BRep_Builder())
@@ -67,14 +67,14 @@ class PartShape:
         return list_sub_shapes(occ.BRepBuilderAPI_Transform(bare, move, True).Shape(), "SOLID")[0]
 
     def place_surface(self, pose: Pose) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Return the positions in mm, normals and triangles in the pose of a fixture."""
+        """Return the positions (N, 3) in mm, normals (N, 3) and triangles (M, 3) in the pose of a fixture."""
         (ux, uy), (vx, vy), (x, y) = compute_frame(pose)
         turn = np.array([[ux, uy, 0.0], [vx, vy, 0.0], [0.0, 0.0, 1.0]])
         return self.positions @ turn + (x, y, 0.0), self.normals @ turn, self.triangles
 
 
 def make_pose_move(pose: Pose) -> Any:
-    """Return the move of Open CASCADE that carries a part into a pose."""
+    """Return Open CASCADE's transformation from the part's frame to its pose."""
     (ux, uy), (vx, vy), (x, y) = compute_frame(pose)
     move = occ.gp_Trsf()
     move.SetValues(ux, vx, 0.0, x, uy, vy, 0.0, y, 0.0, 0.0, 1.0, 0.0)
@@ -82,7 +82,9 @@ def make_pose_move(pose: Pose) -> Any:
 
 
 def compute_frame(pose: Pose) -> tuple[Point, Point, Point]:
-    """Return the directions in which the part's x and y point in a pose, and where its origin is, in mm."""
+    """Return the unit vectors to which the part's x and
+    y point in a pose, and the place of its origin in mm.
+    """
     x, y = (float(one) for one in pose.apply(0.0, 0.0))
     ends = (pose.apply(1.0, 0.0), pose.apply(0.0, 1.0))
     along_x, along_y = ((float(a) - x, float(b) - y) for a, b in ends)
@@ -111,7 +113,10 @@ def make_part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
 
 
 def list_levels(solid: SolidOutline) -> Levels:
-    """Return the heights of bands, and those of level faces with the areas of their loops."""
+    """Return a solid's bands (z0, z1) and, for each loop of a level face, (z, signed area); in mm and mm².
+
+    ``faces`` is empty where the file does not say how high upper faces are.
+    """
     bands = [[*band] for band in solid.bands if band is not None]
     # Files of an older program do not say how high upper faces are.
     top = solid.top or ()
@@ -119,7 +124,8 @@ def list_levels(solid: SolidOutline) -> Levels:
         return {"bands": bands, "faces": []}
     faces = [*((0.0, loop) for loop in solid.bottom or ()), *zip(solid.top_heights, top, strict=True)]
     sizes = [
-        [float(height), float(compute_signed_area(loop_segments(np.array(loop))))] for height, loop in faces
+        [float(height), float(compute_signed_area(make_loop_segments(np.array(loop))))]
+        for height, loop in faces
     ]
     return {"bands": bands, "faces": sizes}
 
@@ -127,7 +133,9 @@ def list_levels(solid: SolidOutline) -> Levels:
 def read_as_plain_data(
     content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels
 ) -> Any:
-    """Mesh and shape of the solid that gives some loops, as plain data."""
+    """Return mesh and text of the solid that gives some loops;
+    called in the child process of :func:`make_part_shape`.
+    """
     wanted = [np.array(loop) for loop in loops]
     return read_guarded(
         lambda: find_shape_of_outline(content, HeightView(**view), wanted, height, levels), ValueError
@@ -137,9 +145,18 @@ def read_as_plain_data(
 def find_shape_of_outline(
     content: bytes, view: HeightView, loops: list[Array], height: float, levels: Levels
 ) -> Any:
-    """Mesh and keep the solid of a file that gives some loops and levels, see :func:`read_as_plain_data`.
+    """Return positions, normals, triangles and text of the
+    first solid of a file that gives some loops and levels.
 
-    Refuses a file of which no solid gives these loops.
+    Parameters
+    ----------
+    height : of the solid, in mm; solids of another height are passed over.
+    levels : see :func:`list_levels`.
+
+    Raises
+    ------
+    InputError
+        Where no solid of the file gives them.
     """
     for solid in read_solids(content):
         found = turn_solid_up(solid, view)
@@ -147,7 +164,7 @@ def find_shape_of_outline(
             continue
         with suppress(InputError):
             own = draw_solid_by_height(solid.shape, found, view, is_advised=False, has_table=False)
-            if is_same(loops, own.loops) and has_levels(levels, list_levels(own.solid)):
+            if are_same_loops(loops, own.loops) and has_levels(levels, list_levels(own.solid)):
                 return *mesh_shape(found.shape), write_shape_text(found.shape)
     raise InputError(
         "no solid of the STEP file gives the outline of the result, as of another part or after a change: "
@@ -155,17 +172,21 @@ def find_shape_of_outline(
     )
 
 
-def is_same(loops: list[Array], others: tuple[Array, ...]) -> bool:
-    """Return whether corners of some loops are among those of others, and both enclose the same area."""
+def are_same_loops(loops: list[Array], others: tuple[Array, ...]) -> bool:
+    """Return whether each corner of ``loops`` is near a
+    corner of ``others``, and both enclose the same area.
+    """
     corners = np.concatenate(others)[:, :2]
     ours = np.concatenate(loops)[:, :2]
     near = np.abs(ours[:, None, :] - corners[None, :, :]).max(axis=2).min(axis=1)
-    areas = [sum(compute_signed_area(loop_segments(loop)) for loop in every) for every in (loops, others)]
+    areas = [
+        sum(compute_signed_area(make_loop_segments(loop)) for loop in every) for every in (loops, others)
+    ]
     return bool(near.max() <= SAME_CORNER and abs(areas[0] - areas[1]) <= SAME_AREA * abs(areas[0]))
 
 
 def has_levels(levels: Levels, others: Levels) -> bool:
-    """Return whether some levels are others; faces count where both are known."""
+    """Return whether two solids have the same bands and level faces; faces are compared if both have some."""
     faces, other_faces = levels["faces"], others["faces"]
     if faces and other_faces and (len(faces) != len(other_faces) or not hold_same_pairs(faces, other_faces)):
         return False
@@ -173,7 +194,7 @@ def has_levels(levels: Levels, others: Levels) -> bool:
 
 
 def hold_same_pairs(one: list[list[float]], other: list[list[float]]) -> bool:
-    """Return whether each pair of numbers of two lists is in the other as well, as nearly as corners agree."""
+    """Return whether two lists of number pairs contain the same pairs within tolerance, in any order."""
     a, b = (np.array(pairs).reshape(-1, 2) for pairs in (one, other))
     off = np.abs(a[:, None] - b[None]) - SAME_AREA * np.abs(a[:, None])
     near = off.max(axis=2, initial=-inf) <= SAME_CORNER
@@ -181,7 +202,7 @@ def hold_same_pairs(one: list[list[float]], other: list[list[float]]) -> bool:
 
 
 def write_shape_text(shape: Any) -> str:
-    """Return a shape in Open CASCADE's own form, without its triangles."""
+    """Return a shape as text in Open CASCADE's own format; its triangles are removed in place first."""
     occ.BRepTools.Clean_s(shape)
     stream = BytesIO()
     occ.BRepTools.Write_s(shape, stream)
@@ -189,7 +210,11 @@ def write_shape_text(shape: Any) -> str:
 
 
 def mesh_shape(shape: Any) -> tuple[list[Any], list[Any], list[Any]]:
-    """Return the positions in mm, normals and triangles of a shape; each face has its own vertices."""
+    """Return positions in mm, outward normals and triangles
+    of a shape as lists; each face has its own vertices.
+
+    Triangles are indices from 0, counter-clockwise from outside.
+    """
     occ.BRepMesh_IncrementalMesh(shape, SAGITTA, False, TURN, False)
     positions: list[Any] = []
     normals: list[Any] = []

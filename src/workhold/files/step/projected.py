@@ -1,16 +1,20 @@
 """The curves of a solid that can bound its projection along the axis, as lines and arcs in the plane.
 
 A point on the border of a slab's projection lies on an edge, on a fold of a face, or on the cut at either end
-of the slab. Further curves do no harm, because only pieces with material on one side are taken. So curves are
-taken whole where that is simple. A curve of the border that is neither line nor arc is refused.
+of the slab. Too many curves do no harm, because only pieces with material on exactly one side are used. So
+curves are taken whole where that is simpler. A curve of the border that is neither line nor arc is refused.
 
-Folds and level cuts of a surface turned about an upright axis are circles, whatever is turned.
+Folds and level cuts of a surface turned about an upright axis are circles, whatever curve is turned.
 
 Glossary
 --------
-fold : where a leaning face stands upright, and so may bound what is seen of it from above. It is the contour
-    generator of computer vision (Cipolla and Giblin, "Visual Motion of Curves and Surfaces", 2000).
+slab : the part of a solid between two heights.
+leaning : of a face, neither level nor upright.
+fold : curve along which a leaning face stands upright, and so may bound what is seen of it from above. It is
+    the contour generator of computer vision (Cipolla and Giblin, "Visual Motion of Curves and Surfaces",
+    2000).
 turned surface : a curve turned about an axis, as of a part from the lathe.
+ring : a torus; it lies when its axis is level.
 """
 
 from __future__ import annotations
@@ -39,9 +43,16 @@ from workhold.files.step.edge_curves import (
 )
 from workhold.files.step.faces import SLOPING, SolidFace, find_surface, is_level, is_upright
 from workhold.files.step.library import list_sub_shapes, occ
-from workhold.geometry.segment import Arc, Line, Point, Segment, measure_distance_to_segment, segment_rows
+from workhold.geometry.segment import (
+    Arc,
+    Line,
+    Point,
+    Segment,
+    make_segment_rows,
+    measure_distance_to_segment,
+)
 from workhold.geometry.subdivision import Inside
-from workhold.kernels.base.distance import outline_distances
+from workhold.kernels.base.distance import measure_outline_distances
 
 __all__ = [
     "FLAT",
@@ -81,8 +92,8 @@ class ProjectedCurves:
     Parameters
     ----------
     segments : lines and arcs.
-    cuts : segments with points at which they are to be cut besides.
-    others : of curves that are neither, the face's index and (N, 2) points in mm.
+    cuts : (segment, point) for points at which segments must be cut besides where they cross.
+    others : (face index, points (N, 2) in mm) of curves that are neither line nor arc.
     """
 
     segments: tuple[Segment, ...]
@@ -97,9 +108,10 @@ def list_projected_curves(
     high: float,
     folds_of: Callable[[int], Sequence[Found]],
 ) -> ProjectedCurves:
-    """Return every curve that can bound the projection of the slab between two z in mm.
+    """Return every curve that can bound the projection along z of the solid between two z in mm.
 
-    ``folds_of`` gives the folds of the face of a number, see :func:`find_folds`; they are the same for all slabs.
+    ``folds_of`` returns the folds of the face with an index, see :func:`find_folds`; they are the same for
+    all heights.
     """
     segments: list[Segment] = []
     cuts: list[tuple[Segment, Point]] = []
@@ -126,7 +138,10 @@ def list_projected_curves(
 def list_bounding_edges(
     faces: Sequence[SolidFace], edges: Sequence[EdgeCurve], low: float, high: float
 ) -> Iterator[EdgeCurve]:
-    """Yield the edges that can bound the projection of the slab between two z in mm."""
+    """Yield the edges that can bound the projection along z of the solid between two z in mm.
+
+    These are the edges that reach between the heights, and all edges of an upright face that does.
+    """
     for edge in edges:
         # A wall that reaches up into the slab stands on edges below it.
         reaches_up = faces[edge.face].lie == "upright" and faces[edge.face].high > low + SAME_HEIGHT
@@ -135,14 +150,20 @@ def list_bounding_edges(
 
 
 def list_leaning_faces_between(faces: Sequence[SolidFace], low: float, high: float) -> Iterator[int]:
-    """Yield the numbers of leaning faces of which some may lie between two z in mm."""
+    """Yield the indices of faces, neither level nor upright,
+    whose heights reach into the range between two z in mm.
+    """
     for index, face in enumerate(faces):
         if face.lie == "leaning" and face.high >= low - SAME_HEIGHT and face.low <= high + SAME_HEIGHT:
             yield index
 
 
 def cut_face_at_height(face: SolidFace, z: float) -> list[Found]:
-    """Return the curves in which a level plane meets a leaning face's surface, seen from above."""
+    """Return the curves in which the level plane at z meets
+    the surface of a sloping or curved face, seen from above.
+
+    Lines and arcs may go on beyond the face.
+    """
     surface = find_surface(face.shape)
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
@@ -170,7 +191,7 @@ def cut_face_at_height(face: SolidFace, z: float) -> list[Found]:
 
 
 def has_plain_cuts(face: SolidFace) -> bool:
-    """Return whether a leaning face is cut at every height in lines and circles, see :func:`cut_face_at_height`."""
+    """Return whether level planes at all heights cut a sloping or curved face in lines and circles only."""
     surface = find_surface(face.shape)
     kind = surface.GetType()
     upright = {
@@ -186,7 +207,9 @@ def has_plain_cuts(face: SolidFace) -> bool:
 
 
 def cut_plane_at_height(plane: Any, face: SolidFace, z: float) -> list[Found]:
-    """Return the line in which a sloping plane passes a height, as long as the face is wide."""
+    """Return the line in which a sloping plane meets the level
+    plane at z, as far as the face's box reaches; [] outside.
+    """
     normal, place = plane.Axis().Direction(), plane.Location()
     across = hypot(normal.X(), normal.Y())
     nx, ny = normal.X() / across, normal.Y() / across
@@ -202,7 +225,10 @@ def cut_plane_at_height(plane: Any, face: SolidFace, z: float) -> list[Found]:
 
 
 def cut_lying_cylinder(surface: Any, cylinder: Any, z: float) -> list[Found]:
-    """Return the two rulings in which a lying cylinder passes a height."""
+    """Return the two straight lines in which a cylinder with a level axis meets the level plane at z.
+
+    One line where the plane touches the cylinder, none where it passes by.
+    """
     position = cylinder.Position()
     center = cylinder.Location()
     share = (z - center.Z()) / cylinder.Radius()
@@ -219,18 +245,18 @@ def cut_lying_cylinder(surface: Any, cylinder: Any, z: float) -> list[Found]:
 
 
 def is_open(ring: Any) -> bool:
-    """Return whether a ring has a hole, so that its tube does not run through itself."""
+    """Return whether a torus has a hole, so that its tube does not run through itself."""
     return bool(ring.MajorRadius() > ring.MinorRadius())
 
 
 def cut_lying_ring(surface: Any, z: float) -> list[Found]:
-    """Return the curves in which a ring with a level axis passes a height, over as much of its tube as a face
-    has.
+    """Return the curves in which a torus with a level axis meets
+    the level plane at z, within the tube's angles of a face.
 
-    With the axis d, the upward direction e, and b across both, a point of the ring is
-    c + (R + r cos v) (cos u b + sin u e) + r sin v d, so at a height h above c it is sin u = h / (R + r cos v).
-    Where it is one with the ring's fold, which is asked for besides, there is none; somewhat farther from it a
-    cut is no arc, though it looks like one: the two would cross each other where their fits have it.
+    With the axis d, the upward direction e, and b across both, a point of the torus is c + (R + r cos v) (cos
+    u b + sin u e) + r sin v d, so at a height h above c it is sin u = h / (R + r cos v). A cut that coincides
+    with the fold of the torus is left out. Near the fold a cut is returned as points even where an arc would
+    fit it: two such arcs would cross each other.
     """
     ring = surface.Torus()
     major, minor = ring.MajorRadius(), ring.MinorRadius()
@@ -260,7 +286,9 @@ def cut_lying_ring(surface: Any, z: float) -> list[Found]:
 
 
 def cut_edges(shape: Any, z: float) -> list[Found]:
-    """Return the curves in which a level plane cuts a face of any surface, by Open CASCADE."""
+    """Return the curves in which the level plane at z
+    cuts a face of any surface, computed by Open CASCADE.
+    """
     cut = occ.BRepAlgoAPI_Section(shape, occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0)))
     found: list[Found] = []
     for edge in list_sub_shapes(cut.Shape(), "EDGE"):
@@ -273,7 +301,10 @@ def cut_edges(shape: Any, z: float) -> list[Found]:
 
 
 def find_folds(face: SolidFace) -> list[Found]:
-    """Return where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
+    """Return the curves along which a curved face stands upright (its normal is level), seen from above.
+
+    They may go on beyond the face, which does no harm.
+    """
     surface = find_surface(face.shape)
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
@@ -295,12 +326,12 @@ def find_folds(face: SolidFace) -> list[Found]:
 
 
 def find_lying_ring_folds(surface: Any) -> list[Found]:
-    """Return where a ring with a level axis stands upright, seen from above, over as much of its tube as a
-    face has.
+    """Return the curves along which a torus with a level axis stands upright, seen from above.
 
-    With the axis d and the radial direction r(u), the normal at the angle v of the tube is
-    cos v r(u) + sin v d. It is level at cos v = 0, a line, and where r is level: at b and -b, across the axis,
-    an arc. More of an arc would run beside the fold of what it goes on into.
+    They are limited to the tube's angles of the face. With the axis d and the radial direction r(u), the
+    normal at the angle v of the tube is cos v r(u) + sin v d. It is level at cos v = 0, a line, and where r
+    is level: at b and -b, across the axis, an arc. An arc beyond those angles would run beside that of the
+    neighbouring face.
     """
     ring = surface.Torus()
     center, axis = ring.Location(), ring.Axis().Direction()
@@ -321,7 +352,7 @@ def find_lying_ring_folds(surface: Any) -> list[Found]:
 
 
 def find_ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
-    """Yield the rulings of a cylinder or a cone along which the normal is level.
+    """Yield the straight lines on a cylinder or a cone along which the normal is level, seen from above.
 
     The radial direction is r(u) = X cos u + Y sin u. With the axis d and half the cone's angle h, 0 of a
     cylinder, the normal is r(u) cos h - d sin h. It is level where r(u)_z cos h = d_z sin h.
@@ -345,7 +376,12 @@ def find_ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
 
 
 def find_free_form_folds(surface: Any, steps: int = 25) -> list[Found]:
-    """Return the points (N, 2) of a free-form face, or a tilted ring, at which its normal is level, found on a grid."""
+    """Return points (N, 2) of a surface at which its normal
+    is level, as one array in a list; [] where there are none.
+
+    They are found between neighbours of a grid of ``steps`` by ``steps`` parameters, by bisection, and are
+    ordered by grid line, not along the folds.
+    """
     us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), steps)
     vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), steps)
     values = np.array([[compute_normal_height(surface, u, v) for v in vs] for u in us])
@@ -364,33 +400,39 @@ def find_free_form_folds(surface: Any, steps: int = 25) -> list[Found]:
 
 
 def compute_normal_height(surface: Any, u: float, v: float) -> float:
-    """Return the z of a surface's normal, of any length."""
+    """Return the z component of a surface's normal at its
+    parameters u and v; the normal is not a unit vector.
+    """
     point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
     surface.D1(float(u), float(v), point, along_u, along_v)
     return float(along_u.X() * along_v.Y() - along_u.Y() * along_v.X())
 
 
 def make_circles(center: Any, *radii: float) -> list[Found]:
-    """Return the circles about a point of the library, seen from above, without those of no radius."""
+    """Return the full circles about Open CASCADE's point,
+    seen from above, one for each radius above ``SHORTEST``.
+    """
     return [Arc((center.X(), center.Y()), radius, 0.0, pi, 1.0) for radius in radii if radius > SHORTEST]
 
 
 @frozen
 class Meridian:
-    """The curve that a surface turns about an upright axis, asked as the library's curves are.
+    """The curve that a surface turns about an upright axis, with the interface of a library's curve.
 
     Parameters
     ----------
-    surface : Open CASCADE's.
+    surface : Open CASCADE's surface of revolution.
     """
 
     surface: Any
 
     def Value(self, parameter: float) -> Any:
+        """Return Open CASCADE's point of the curve at a parameter."""
         return self.surface.Value(self.surface.FirstUParameter(), parameter)
 
     @property
     def axis(self) -> Any:
+        """Open CASCADE's point on the axis."""
         return self.surface.AxeOfRevolution().Location()
 
     def measure_radius(self, point: Point3) -> float:
@@ -398,19 +440,21 @@ class Meridian:
         return hypot(point[0] - self.axis.X(), point[1] - self.axis.Y())
 
     def sample_points(self) -> tuple[NDArray[np.float64], list[Point3]]:
-        """Return the parameters (N,) from end to end, and the points there in mm."""
+        """Return ``SAMPLES`` evenly spaced parameters (N,)
+        from end to end, and the points (x, y, z) there in mm.
+        """
         parameters = np.linspace(self.surface.FirstVParameter(), self.surface.LastVParameter(), SAMPLES)
         return parameters, [compute_curve_point(self, float(t)) for t in parameters]
 
     def make_circles(self, parameters: Sequence[float]) -> list[Found]:
-        """Return the circles that some of its points run through."""
+        """Return the circles, seen from above, that the points at some parameters of the curve run along."""
         return make_circles(
             self.axis, *(self.measure_radius(compute_curve_point(self, t)) for t in parameters)
         )
 
 
 def find_folds_of_turned_surface(surface: Any) -> list[Found]:
-    """Return the circles at which a turned surface is widest or narrowest around."""
+    """Return the circles at which the radius of a turned surface has a local maximum or minimum."""
     curve = Meridian(surface)
     parameters, points = curve.sample_points()
     return curve.make_circles(
@@ -421,11 +465,13 @@ def find_folds_of_turned_surface(surface: Any) -> list[Found]:
 
 
 def cut_turned_surface(surface: Any, z: float) -> list[Found]:
+    """Return the circles in which a turned surface with an upright axis meets the level plane at z."""
     curve = Meridian(surface)
     parameters, points = curve.sample_points()
     away = np.array([get_height(point) - z for point in points])
 
     def passed(k: int) -> float:
+        """Return the parameter at which the curve crosses z between the samples k and k + 1."""
         sign = 1.0 if away[k] < 0 else -1.0
         low, high = ((float(parameters[m]), sign * float(away[m])) for m in (k, k + 1))
         return find_zero_crossing(lambda t: sign * (get_height(compute_curve_point(curve, t)) - z), low, high)
@@ -434,11 +480,11 @@ def cut_turned_surface(surface: Any, z: float) -> list[Found]:
 
 
 class OtherCurveError(InputError):
-    """The refusal of an outline for a face whose border in it is neither line nor arc.
+    """The refusal of an outline because a face's border in it is neither line nor arc.
 
     Parameters
     ----------
-    face : the one that makes the curve.
+    face : the face that makes the curve.
     """
 
     def __init__(self, face: SolidFace) -> None:
@@ -455,8 +501,8 @@ class PlainCurves:
 
     Parameters
     ----------
-    segments : of which some may be there twice.
-    rows : (N, 10) of them for the kernels.
+    segments : may contain duplicates.
+    rows : (N, 10) of the segments for the kernels.
     """
 
     segments: Sequence[Segment]
@@ -464,21 +510,27 @@ class PlainCurves:
 
     @classmethod
     def from_segments(cls, segments: Sequence[Segment]) -> PlainCurves:
-        return cls(segments, segment_rows(segments) if segments else np.zeros((0, 10)))
+        """Make the curves with their kernel rows; there may be no segments."""
+        return cls(segments, make_segment_rows(segments) if segments else np.zeros((0, 10)))
 
-    def all_on_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
-        """Return whether all places (N, 2) of another curve run so near to one of them that this one is the
-        border.
+    def are_all_on_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
+        """Return whether lines and arcs run so near to all places
+        (N, 2) of another curve that they are the border instead.
 
-        A lying ring or a sphere is cut beside where it is widest, nearer to the border than that can be looked at.
-        Then what lies between is asked; nothing is where they are nearer than curves that are one.
+        A torus or a sphere cut just beside its widest place has its cut too near to the line or arc there for
+        points between to be tested. Where a place is not within ``ONE_CURVE`` of a line or arc, the point
+        halfway between must be inside the region.
+
+        Parameters
+        ----------
+        inside : returns which of some points (x, y) belong to the outline's region.
         """
-        if len(self.rows) == 0 or outline_distances(places, self.rows).max() > BESIDE[-1]:
+        if len(self.rows) == 0 or measure_outline_distances(places, self.rows).max() > BESIDE[-1]:
             return False
         middles = []
         for x, y in places.tolist():
             own = min(self.segments, key=lambda one: measure_distance_to_segment((x, y), one))
-            fx, fy = own.at(own.parameter((x, y)))
+            fx, fy = own.compute_point(own.find_parameter((x, y)))
             if hypot(fx - x, fy - y) > ONE_CURVE:
                 middles.append(((x + fx) / 2, (y + fy) / 2))
         return not middles or all(inside(middles))
@@ -487,11 +539,16 @@ class PlainCurves:
 def refuse_others(
     others: Sequence[Other], faces: Sequence[SolidFace], inside: Inside, plain: PlainCurves | None = None
 ) -> None:
-    """Refuse a curve that is neither line nor arc where material lies on one side of it only.
+    """Raise OtherCurveError for a curve that is neither line nor arc and has material on exactly one side.
 
-    The points farthest out are looked at first: where there is such a curve, it is most likely there.
-    ``inside`` says which of some points (x, y) belong to the outline's region; ``plain`` has lines and arcs
-    that may be the border in its place. The error is an OtherCurveError that names the face.
+    Such a curve is part of the border. The points farthest out are tested first: there it is most likely
+    found.
+
+    Parameters
+    ----------
+    others : (face index, points (N, 2)) of such curves.
+    inside : returns which of some points (x, y) belong to the outline's region.
+    plain : lines and arcs that may be the border instead of a curve that runs along them.
     """
     if not others:
         return
@@ -499,6 +556,9 @@ def refuse_others(
     middle = (every.min(axis=0) + every.max(axis=0)) / 2
 
     def place(one: Other) -> tuple[bool, float]:
+        """Return a sort key: curves that curved faces make
+        first, and of those the ones that reach farthest out.
+        """
         # The face that makes the curve rather than the flat one that it cuts.
         return faces[one[0]].kind in FLAT, -float(np.hypot(*(one[1] - middle).T).max())
 
@@ -511,16 +571,20 @@ def refuse_others(
         for index, points in ordered.values():
             away = np.hypot(*(points[1:-1] - middle).T)
             found = find_border_places(points, np.argsort(-away, kind="stable")[::each] + 1, inside)
-            if len(found) and not (plain is not None and plain.all_on_border(found, inside)):
+            if len(found) and not (plain is not None and plain.are_all_on_border(found, inside)):
                 raise OtherCurveError(faces[index])
 
 
 def find_border_places(
     points: NDArray[np.float64], looked: NDArray[np.intp], inside: Inside
 ) -> NDArray[np.float64]:
-    """Return the points (N, 2) of a curve at which it has the region on one side only; none is an end of it.
+    """Return those points (N, 2) of a curve that have the region on exactly one side.
 
-    Of points (N, 2) along the curve, in mm, those that ``looked`` numbers are looked at.
+    Parameters
+    ----------
+    points : (N, 2) along the curve, in mm.
+    looked : indices of the points to test; none is the first or last.
+    inside : returns which of some points (x, y) belong to the region.
     """
     steps = points[looked + 1] - points[looked - 1]
     sizes = np.hypot(*steps.T)

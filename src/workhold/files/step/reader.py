@@ -1,11 +1,11 @@
 """Parts in STEP files, or in shapes of another library: the outline of a prismatic part, in mm.
 
-The outline is the silhouette along an axis: where some height of the part has material. Round pegs parallel
-to the axis touch a part just there. It is the union of the sections of all layers, of level faces, and of the
-sections where leaning faces meet or fold. Each of these lies in the silhouette, and afterwards every face is
-looked at whether it reaches out of the union. Or it is the section at a height that the user chose. Shapes of
-Open CASCADE that another library has made are solids seen along an axis, or flat faces, which are taken as
-they are.
+The outline is the silhouette along an axis: all (x, y) at which the part has material at some height. Round
+pegs parallel to the axis touch a part just there. It is computed as the union of the sections of all layers,
+of level faces, and of the sections where leaning faces meet or fold. Each of these lies in the silhouette,
+and afterwards every face is tested for points outside the union. Or the outline is the section at a height
+that the user chose. Shapes of Open CASCADE that another library has made are solids seen along an axis, or
+flat faces, which are taken as they are.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Chain, CurveReading, Drawing
 from workhold.files.questions import AXIS
-from workhold.files.step.departures import Outline, describe_departures, refuse_overhang
-from workhold.files.step.faces import Layer, SolidFace, list_solid_faces, make_layers
+from workhold.files.step.departures import FoundOutline, describe_departures, refuse_overhang
+from workhold.files.step.faces import HeightRange, SolidFace, list_solid_faces, make_layers
 from workhold.files.step.library import (
     AXES,
     check_axis_name,
@@ -49,8 +49,8 @@ from workhold.files.step.solids import (
     list_solids_of_shapes,
     read_solids,
 )
-from workhold.geometry.segment import Line, segment_rows
-from workhold.kernels.base.distance import is_inside, outline_distances
+from workhold.geometry.segment import Line, make_segment_rows
+from workhold.kernels.base.distance import is_inside, measure_outline_distances
 from workhold.model.solid import FileSolid
 
 __all__ = [
@@ -65,12 +65,14 @@ __all__ = [
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
-    """Run :func:`read_step` in a process of its own: damaged files crash or hang the library."""
+    """Return the drawing of :func:`read_step`, read in a
+    child process: damaged files crash or hang the library.
+    """
     return restore_drawing(run_apart(__name__, content, options, "the STEP file"))
 
 
 def restore_drawing(answered: Any) -> Drawing:
-    """Return the drawing of what :func:`convert_drawing_to_data` makes."""
+    """Return the drawing from the plain data that :func:`convert_drawing_to_data` returns."""
     chains = [
         Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels))
         for points, bulges, labels in answered[0]
@@ -84,25 +86,29 @@ def restore_drawing(answered: Any) -> Drawing:
 
 
 def prepare() -> None:
-    """Load the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
+    """Load the library and compile kernels in the child
+    process, see :func:`workhold.files.apart.run_apart`.
+    """
     load_step_library()
-    rows = segment_rows(
+    rows = make_segment_rows(
         [Line((0.0, 0.0), (1.0, 0.0)), Line((1.0, 0.0), (0.0, 1.0)), Line((0.0, 1.0), (0.0, 0.0))]
     )
     is_inside(0.2, 0.2, rows)
-    outline_distances(np.zeros((1, 2)), rows)
+    measure_outline_distances(np.zeros((1, 2)), rows)
 
 
 def read_as_plain_data(content: bytes, **options: Any) -> Any:
-    """Return the chains and remarks of :func:`read_step` as plain data.
+    """Return the drawing of :func:`read_step` as plain data; called in the child process.
 
-    Refuses a file over which the library or the arithmetic after it fails, too.
+    Raises InputError also where the library, or the arithmetic after it, fails over the file.
     """
     return read_guarded(lambda: convert_drawing_to_data(read_step(content, **options)))
 
 
 def convert_drawing_to_data(drawing: Drawing) -> Any:
-    """Return a drawing as plain data, see :func:`restore_drawing`."""
+    """Return a drawing as nested lists of numbers and text,
+    from which :func:`restore_drawing` makes it again.
+    """
     chains = [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains]
     curves = [
         [label, one.place, one.departure, one.is_disguise, one.pieces.tolist(), one.arcs]
@@ -119,7 +125,7 @@ def read_step(
     part_number: int | str | None = None,
     fit: float | None = None,
 ) -> Drawing:
-    """Read the outline of a solid in a STEP file.
+    """Return the outline of a solid in a STEP file.
 
     Parameters
     ----------
@@ -130,7 +136,7 @@ def read_step(
         silhouette.
     part_number : which solid to take of several, its number from 1 by decreasing volume, or its name; the
         largest when None.
-    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
+    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
         ``Drawing``.
 
     Raises
@@ -151,7 +157,7 @@ def read_solid(
     part_number: int | str | None,
     fit: float | None,
 ) -> Drawing:
-    """Return the outline of one of some solids, see :func:`read_step`."""
+    """Return the outline of one of a file's solids; arguments and errors are those of :func:`read_step`."""
     axis = check_axis_name(axis)
     solid = choose_solid(solids, part_number)
     shape = turn_axis_up(solid.shape, axis)
@@ -162,7 +168,7 @@ def read_solid(
     else:
         region = make_section_at_height(shape, faces, section_height)
     edges = trace_borders(region, fit)
-    outline = Outline.from_borders(edges, measure_area(region), faces)
+    outline = FoundOutline.from_borders(edges, measure_area(region), faces)
     if section_height is None:
         refuse_overhang(outline, faces, solid.shape, axis)
     remarks = [
@@ -173,10 +179,14 @@ def read_solid(
     return Drawing(edges.chains, tuple(remarks), edges.curves)
 
 
-def compute_silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
-    """Return the union of everything flat that the silhouette must hold.
+def compute_silhouette(
+    shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[HeightRange]
+) -> Any:
+    """Return the silhouette (the solid's projection along its
+    axis) as a region: the union of sections and level faces.
 
-    Refuses a solid that the library cannot cut, and sections that it cannot unite.
+    Raises InputError for a solid that the library cannot cut, or whose sections do not fill its ``volume`` in
+    mm³, and for sections that it cannot unite.
     """
     prismatic = [layer for layer in layers if layer.prismatic]
     regions = [cut_solid_at_height(shape, layer.middle) for layer in prismatic]
@@ -212,7 +222,10 @@ def compute_silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], la
 
 
 def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
-    """Refuse a solid whose sections do not fill it: it is open, or runs through itself. Volumes are in mm³."""
+    """Raise InputError for a solid whose sections do not fill it: it is open, or runs through itself.
+
+    ``swept`` and ``volume`` are in mm³, ``tolerance`` is a share.
+    """
     if abs(swept - volume) > tolerance * volume:
         raise InputError(
             f"the sections of the solid fill {swept:.6g} mm³, but it says to have {volume:.6g} mm³: repair "
@@ -220,8 +233,12 @@ def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None
         )
 
 
-def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
-    """Return whether a prismatic layer ends at z from below, or begins there, or holds z."""
+def has_layer(layers: Sequence[HeightRange], z: float, *, below: bool) -> bool:
+    """Return whether a prismatic layer contains z, or has its
+    upper end (``below``) or its lower end (not ``below``) there.
+
+    A layer is a range of heights; it is prismatic if its section is the same at all of them.
+    """
     return any(
         abs((layer.high if below else layer.low) - z) <= 2 * SAME_HEIGHT or layer.low < z < layer.high
         for layer in layers
@@ -230,9 +247,9 @@ def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
 
 
 def make_section_at_height(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
-    """Return the section at a height above the lowest point.
+    """Return the section at a height in mm above the solid's lowest point, as a region.
 
-    Refuses a height outside the part or at a level face, and a section that falls into pieces.
+    Raises InputError for a height outside the part or at a level face, and for a section in several pieces.
     """
     low, high = min(face.low for face in faces), max(face.high for face in faces)
     if not 0 < height < high - low:
@@ -263,11 +280,13 @@ def read_shapes(
     part_number: int | str | None = None,
     fit: float | None = None,
 ) -> tuple[Drawing, int | str | None]:
-    """Return the drawing of some shapes, and the number of the part that is still to be taken of it.
+    """Return the drawing of Open CASCADE's shapes in mm,
+    and the part number that still has to be chosen from it.
 
-    Shapes are those of Open CASCADE, in mm. For the choices see :func:`workhold.files.step.reader.read_step`;
-    faces that are level need no axis. Refuses shapes without solids and faces, and faces that are not flat,
-    or not at one height along an axis.
+    The number is None where there are solids, of which one has been chosen already; of flat faces it is
+    ``part_number``. For the choices see :func:`workhold.files.step.reader.read_step`; for flat faces the axis
+    is found when None. Raises InputError for shapes without solids and faces, and for faces that are not
+    flat, or not at one height along an axis.
     """
     solids = list_solids_of_shapes(shapes)
     if solids:
@@ -294,7 +313,7 @@ def read_shapes(
 
 
 def are_level_and_coplanar(faces: Sequence[Any]) -> bool:
-    """Return whether faces are flat and level, all at one height."""
+    """Return whether faces are flat, perpendicular to z, and all at one height."""
     surfaces = [occ.BRepAdaptor_Surface(face) for face in faces]
     if any(surface.GetType() != occ.GeomAbs_Plane for surface in surfaces):
         return False

@@ -23,7 +23,7 @@ from workhold.geometry.rational import Pieces, split_spline
 from workhold.geometry.segment import Point
 
 __all__ = [
-    "Borders",
+    "RegionBorders",
     "measure_area",
     "trace_borders",
     "convert_edge_to_pieces",
@@ -34,9 +34,9 @@ __all__ = [
 
 
 def convert_edge_to_pieces(edge: Any) -> Pieces:
-    """Return the pieces of an edge's curve, seen from above, in its own direction.
+    """Return an edge's curve, seen from above, as rational Bézier pieces in the direction of the curve.
 
-    Refuses an edge of which the library knows no curve, or none that can be used as a spline.
+    Raises InputError where the library has no curve of the edge, or none that can be used as a spline.
     """
     adaptor = occ.BRepAdaptor_Curve(edge)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
@@ -61,13 +61,13 @@ def convert_edge_to_pieces(edge: Any) -> Pieces:
 
 
 @frozen
-class Borders:
+class RegionBorders:
     """The borders of a region.
 
     Parameters
     ----------
     chains : closed chains in mm.
-    curves : how the edges that are curves were read, by their labels.
+    curves : readings of the edges that are neither line nor arc, by their labels in the chains.
     gap : largest gap between consecutive edges, in mm, that was closed.
     """
 
@@ -77,17 +77,20 @@ class Borders:
 
     @property
     def departure(self) -> float:
-        """How far the chains may be from the region's border, in mm."""
+        """Largest distance in mm between the chains and the region's border."""
         return max((one.departure for one in self.curves.values()), default=0.0)
 
     @property
     def remarks(self) -> tuple[str, ...]:
+        """A sentence for the user about closed gaps, if they are more than rounding."""
         closed = f"Closed gaps of up to {self.gap:.2g} mm between edges of the outline."
         return (closed,) if self.gap > EDGE_GAP else ()
 
 
 def cut_solid_at_height(solid: Any, z: float) -> Any:
-    """Return the region in which the plane at height z cuts a solid."""
+    """Return the region in which the plane at height z cuts
+    a solid, moved to z = 0; raise InputError if it is empty.
+    """
     (x0, y0, _), (x1, y1, _) = compute_bounding_box(solid)
     more = max(x1 - x0, y1 - y0)
     plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
@@ -101,9 +104,9 @@ def cut_solid_at_height(solid: Any, z: float) -> Any:
 
 
 def make_level_region(face: Any, z: float, upward: bool) -> Any:
-    """Return a level face at height z as a region: the section of the prism over it.
+    """Return a level face at height z as a region at z = 0: the section of the prism over it, or under it.
 
-    The face itself would not do. Faces that look different ways do not become one in a union.
+    The face itself would not do: faces that look in different directions are not merged in a union.
     """
     height = 1.0 if upward else -1.0
     return cut_solid_at_height(
@@ -112,17 +115,17 @@ def make_level_region(face: Any, z: float, upward: bool) -> Any:
 
 
 def measure_area(region: Any) -> float:
-    """Return the area in mm²."""
+    """Return the area of a region in mm²."""
     properties = occ.GProp_GProps()
     occ.BRepGProp.SurfaceProperties_s(region, properties)
     return abs(float(properties.Mass()))
 
 
 def unite_regions(regions: Sequence[Any]) -> Any:
-    """Return the union of regions.
+    """Return the union of one or more regions.
 
-    A region that holds all others is returned as it is, so that its curves stay untouched. Refuses areas that
-    do not add up: then the library's union cannot be right.
+    A region that contains all others is returned as it is, so that its curves stay untouched. Raises
+    InputError where the union's area is not that of its parts, because then the library's union is wrong.
     """
     ordered = sorted(regions, key=measure_area, reverse=True)
     whole = ordered[0]
@@ -142,10 +145,10 @@ def unite_regions(regions: Sequence[Any]) -> Any:
     return whole
 
 
-def trace_borders(region: Any, fit: float | None = None) -> Borders:
+def trace_borders(region: Any, fit: float | None = None) -> RegionBorders:
     """Return the borders of a region as closed chains of lines and arcs.
 
-    ``fit`` is how far they may be from curves that are neither, see ``files.outline.curves``.
+    ``fit`` is the largest distance in mm from curves that are neither, see ``files.outline.curves``.
     """
     chains: list[Chain] = []
     curves = CurveReader(fit)
@@ -165,7 +168,7 @@ def trace_borders(region: Any, fit: float | None = None) -> Borders:
         chain, chain_gap = close_pieces(pieces, len(chains))
         chains.append(chain)
         gap = max(gap, chain_gap)
-    return Borders(tuple(chains), curves.found, gap)
+    return RegionBorders(tuple(chains), curves.found, gap)
 
 
 # Points, bulges and what messages call the curve that they stand for; None for a line and an arc.
@@ -175,7 +178,8 @@ Piece = tuple[list[Point], list[float], str | None]
 def make_edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     """Return an edge in the direction its wire runs; None for an edge of zero length.
 
-    Refuses an edge that cannot be read.
+    ``label`` is the name that messages have for the edge, if it is neither line nor arc. Raises InputError
+    for a curve that cannot be read.
     """
     curve = occ.BRepAdaptor_Curve(edge)
     first, last = curve.FirstParameter(), curve.LastParameter()
@@ -200,13 +204,17 @@ def make_edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
 
 
 def compute_curve_points(curve: Any, parameters: Sequence[float]) -> list[Point]:
-    """Return the points (x, y) of a curve."""
+    """Return the points (x, y) in mm of Open CASCADE's curve at some parameters."""
     values = [curve.Value(float(t)) for t in parameters]
     return [(value.X(), value.Y()) for value in values]
 
 
 def close_pieces(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
-    """Return one closed chain of pieces in running order, and the largest gap closed; arcs keep their centres."""
+    """Return one closed chain of pieces in running order, and the largest gap in mm between two of them.
+
+    The end of each piece is moved onto the start of the next; arcs keep their centres. ``number`` is the
+    border's, for labels.
+    """
     points: list[Point] = []
     bulges: list[float] = []
     labels: list[str] = []

@@ -76,6 +76,7 @@ class Solid:
 
     @property
     def listed(self) -> FileSolid:
+        """The solid as a row of the list that users see: number, name, sizes and lowest corner."""
         size = tuple(b - a for a, b in zip(self.low, self.high, strict=True))
         return FileSolid(self.number, self.name, size, self.low)
 
@@ -83,7 +84,7 @@ class Solid:
 def read_solids(content: bytes) -> tuple[Solid, ...]:
     """Return every solid of a STEP file, wherever assemblies place it, by decreasing volume.
 
-    Refuses files that are no STEP, damaged, without a unit of length, or without a solid.
+    Raises InputError for files that are not STEP, damaged, without a unit of length, or without a solid.
     """
     load_step_library()
     refuse_other_formats(content)
@@ -104,21 +105,26 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
 
 
 def list_solids(content: bytes) -> tuple[FileSolid, ...]:
-    """Return the solids of the bytes of a STEP file, read in a process of its own."""
+    """Return the solids of the bytes of a STEP file, by decreasing volume; a child process reads them."""
     return tuple(FileSolid(*one) for one in run_apart(__name__, content, {}, "the STEP file"))
 
 
 def prepare() -> None:
-    """Load the library, see :func:`workhold.files.apart.run_apart`."""
+    """Load the library; called in the child process before a
+    file is read, see :func:`workhold.files.apart.run_apart`.
+    """
     load_step_library()
 
 
 def read_as_plain_data(content: bytes) -> Any:
+    """Return the solids of a STEP file as tuples; called in the child process of :func:`list_solids`."""
     return read_guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
 
 
 def number_solids(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
-    """Return the solids of Open CASCADE by decreasing volume, with their names where these are known."""
+    """Return Open CASCADE's solids with numbers from 1 by
+    decreasing volume; ``names`` has one for each, or none at all.
+    """
     called = names or [""] * len(shapes)
     found = [evolve(measure_solid(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
     solids = sorted(found, key=lambda solid: (-solid.volume, solid.low, solid.high))
@@ -126,18 +132,18 @@ def number_solids(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Sol
 
 
 def list_solids_of_shapes(shapes: Sequence[Any]) -> tuple[Solid, ...]:
-    """Return every solid of some shapes of Open CASCADE, by decreasing volume; none of shapes without one."""
+    """Return every solid inside some shapes of Open CASCADE, by decreasing volume; () where there is none."""
     load_step_library()
     return number_solids([solid for shape in shapes for solid in list_sub_shapes(shape, "SOLID")])
 
 
 def count_solids_in_text(content: bytes) -> int:
-    """Return how many solids stand in the text of a STEP file, before assemblies repeat them."""
+    """Return how many solids the text of a STEP file defines; one that assemblies repeat counts once."""
     return len(re.findall(rb"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP)\s*\(", content))
 
 
 def describe_lost_solids(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
-    """Return what to say about solids that the library could not make of the file's text."""
+    """Return one sentence if the file defines more solids than could be read, else []."""
     if count_solids_in_text(content) <= len(solids):
         return []
     return [
@@ -148,7 +154,9 @@ def describe_lost_solids(content: bytes, solids: tuple[Solid, ...]) -> list[str]
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuse what is plainly no STEP file, is cut short, or has no unit (the library would take mm)."""
+    """Raise InputError for a file that is not STEP, is cut
+    short, or has no unit (for which the library would take mm).
+    """
     if content.startswith(b"PK"):
         raise InputError("this is a compressed file, not a STEP file: unpack it first.")
     if b"ISO-10303-21" not in content[:4096]:
@@ -163,7 +171,9 @@ def refuse_other_formats(content: bytes) -> None:
 
 
 def read_through(content: bytes) -> Any:
-    """Return a reader of the library that has read the file, and has one shape of everything in it."""
+    """Return Open CASCADE's STEP reader that has read and
+    translated the file; raise InputError if it cannot.
+    """
     reader = occ.STEPControl_Reader()
     try:
         status = reader.ReadStream("part", BytesIO(content))
@@ -178,9 +188,9 @@ def read_through(content: bytes) -> Any:
 
 
 def measure_solid(shape: Any) -> Solid:
-    """Return a solid with its volume and bounding box; its number comes later.
+    """Return a solid with its volume and bounding box, and 0 for its number.
 
-    Refuses one that has no volume, or coordinates that leave no digits.
+    Raises InputError for a volume of 0 and for coordinates beyond ``MOST_LENGTH``.
     """
     properties = occ.GProp_GProps()
     occ.BRepGProp.VolumeProperties_s(shape, properties)
@@ -194,7 +204,10 @@ def measure_solid(shape: Any) -> Solid:
 
 
 def choose_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
-    """Return the solid of a number or a name, or the largest; refuse a name that several solids have."""
+    """Return the solid of a number (from 1) or a name; the largest for None.
+
+    Raises InputError for a number or a name that no solid has, and a name that several have.
+    """
     if number is None:
         return solids[0]
     if isinstance(number, str):
@@ -206,9 +219,10 @@ def choose_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
 
 
 def find_solid_by_name(solids: tuple[Solid, ...], name: str) -> Solid:
-    """Return the only solid of a name, as it is written, or else in any mixture of capitals.
+    """Return the only solid of a name; if none is written so, the only one in any mixture of capitals.
 
-    Where there is none the refusal names those that are close, and where there are several their numbers.
+    Raises InputError: where there is none naming close ones, where there are several naming their numbers,
+    and always for a file with a single solid.
     """
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
@@ -239,6 +253,10 @@ def find_solid_by_name(solids: tuple[Solid, ...], name: str) -> Solid:
 
 
 def describe_other_solids(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | None) -> list[str]:
+    """Return one sentence that lists the solids and says which is used; [] for a single solid.
+
+    ``asked`` is the number or name that the user gave; None for none.
+    """
     if len(solids) == 1:
         return []
     more = f"; and {len(solids) - SOLID_LIST} smaller ones" if len(solids) > SOLID_LIST else ""
@@ -248,9 +266,10 @@ def describe_other_solids(solids: tuple[Solid, ...], chosen: Solid, asked: int |
 
 
 def list_named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
-    """Return every solid of what a reader of STEP files has read, with its name; empty where it has none.
+    """Return (solid, name) for every solid that a STEP
+    reader has read; the name is "" where the file has none.
 
-    None where the library does not know: the solids are those of the reader then, without names.
+    None where the names cannot be read or belong to other solids than the reader's.
     """
     # Whatever fails over names, the solids are there without them.
     with suppress(Exception):
@@ -266,19 +285,22 @@ def list_named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
             if occ.XCAFDoc_ShapeTool.IsFree_s(label):
                 for product, names in list_places_under(label, occ.TopLoc_Location(), ()):
                     solids = list_sub_shapes(product, "SOLID")
-                    found += [(solid, name_of(solid, names, len(solids), process)) for solid in solids]
+                    found += [(solid, read_name(solid, names, len(solids), process)) for solid in solids]
         wanted = Counter(map(round_position, list_sub_shapes(reader.OneShape(), "SOLID")))
         return found if Counter(round_position(solid) for solid, _ in found) == wanted else None
     return None
 
 
 def round_position(shape: Any) -> tuple[float, ...]:
-    """Return where a solid is placed, rounded so that two readings of a file agree."""
+    """Return the rows of a solid's placement (rotation and
+    translation), rounded so that two readings of a file agree.
+    """
     move = shape.Location().Transformation()
     return tuple(round(move.Value(row, column), 6) for row in (1, 2, 3) for column in (1, 2, 3, 4))
 
 
 def list_child_labels(label: Any) -> Iterator[Any]:
+    """Yield the direct children of a label of Open CASCADE's document."""
     at = occ.TDF_ChildIterator(label, False)
     while at.More():
         yield at.Value()
@@ -288,10 +310,12 @@ def list_child_labels(label: Any) -> Iterator[Any]:
 def list_places_under(
     label: Any, moved: Any, names: tuple[str, ...]
 ) -> Iterator[tuple[Any, tuple[str, ...]]]:
-    """Yield every place in which a product without others in it is used, at a label or below.
+    """Yield (shape, names) for every use of a product that is no assembly, at a label or below.
 
-    The assemblies around it have names, and place it by ``moved``. Yields the product's shape there, and
-    names from the outermost assembly inward.
+    Parameters
+    ----------
+    moved : placement of the label by the assemblies around it.
+    names : of these, from the outermost inward; those of the label and its product are appended.
     """
     product = label
     if occ.XCAFDoc_ShapeTool.IsReference_s(label):
@@ -308,14 +332,14 @@ def list_places_under(
 
 
 def read_label_name(label: Any) -> str:
-    """Return the name at a label; empty where it says nothing."""
+    """Return the cleaned name at a label; "" where there is none."""
     name = occ.TDataStd_Name()
     has_name = label.FindAttribute(occ.TDataStd_Name.GetID_s(), name)
     return clean_name(name.Get().ToExtString()) if has_name else ""
 
 
 def clean_name(name: str) -> str:
-    """Return a name fit to be shown; empty where it says nothing.
+    """Return a name without surplus spaces and unprintable characters; "" for default names that say nothing.
 
     >>> clean_name(" base  plate "), clean_name("=>[0:1:1:3]"), clean_name("NONE"), clean_name("12")
     ('base plate', '', '', '')
@@ -324,7 +348,12 @@ def clean_name(name: str) -> str:
     return "" if NO_NAME.fullmatch(words) else words
 
 
-def name_of(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
+def read_name(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
+    """Return a solid's own name, or that of the innermost named product or assembly around it.
+
+    The product's name is preferred where it has one solid (``count`` is 1). ``names`` are those of
+    :func:`list_places_under`, ``process`` is Open CASCADE's transfer process.
+    """
     own = ""
     with suppress(Exception):
         # Solids are known to the reader without the place that assemblies give them.

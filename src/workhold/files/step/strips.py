@@ -1,12 +1,17 @@
-"""Strips: the segments of an outline by height, each with the band that all of its points have in common.
+"""Strips: the segments of an outline by height, each with the band of heights that all of its points have in
+common.
 
-A segment runs from one place to the next at which the border turns off, a run of heights begins, ends, splits,
-merges or jumps, or the longest run becomes long enough to be touched. It is halved until its band is at least
-half as long as the longest run over it. All of that is the same however the part lies in its file.
+A segment runs from one place to the next at which the border turns off, a run of heights begins, ends,
+splits, merges or jumps, or the longest run becomes long enough to be touched. It is halved until its band is
+at least half as long as the longest run over it. All of that is the same however the part lies in its file.
 
 Glossary
 --------
-stretch : neighbouring parts of pieces of one carrier over which no run jumps.
+run : a range of heights, as long as can be, at all of which walls stand over a place; see
+    ``files.step.bands``.
+band : a range of heights within one run at every place of a segment.
+stretch : neighbouring pieces of one carrier over which no run jumps.
+touched : where the longest run is at least as long as the shortest band that may be touched.
 """
 
 from __future__ import annotations
@@ -19,12 +24,12 @@ from math import pi, tan
 from attrs import frozen
 
 from workhold.conventions import SAME_HEIGHT
-from workhold.files.step.bands import Covered, Run, Walls, measure_band
+from workhold.files.step.bands import CoveredPiece, WallRun, WallsByCarrier, measure_band
 from workhold.files.step.edge_curves import ONE_HEIGHT, bisect_condition
 from workhold.geometry.loop import cut_into_runs
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
-from workhold.model.solid import Band, RunRows, run_at
+from workhold.model.solid import Band, RunRows, interpolate_run
 
 __all__ = ["Strip", "run_rows", "make_strips"]
 
@@ -40,7 +45,7 @@ SHORTEST_STRIP = 0.01
 CUBIC, SHORTEST_PIECE = 1e-6, 1e-5
 # Halvings in which a place is searched.
 HALVINGS = 50
-Stretch = Sequence[Covered]
+Stretch = Sequence[CoveredPiece]
 
 
 @frozen
@@ -52,8 +57,8 @@ class Strip:
     start, end : (x, y) in mm, run with the material on the left.
     bulge : of the segment.
     band : (z0, z1) in mm that all its points have in common; None where nothing may touch.
-    faces : indices of the solid's upright faces over it, in their order.
-    covered : what it consists of, in running order.
+    faces : sorted indices of the solid's upright faces over it; empty where nothing may touch.
+    covered : the pieces that it consists of, in running order.
     """
 
     start: Point
@@ -61,14 +66,21 @@ class Strip:
     bulge: float
     band: Band | None
     faces: tuple[int, ...]
-    covered: tuple[Covered, ...]
+    covered: tuple[CoveredPiece, ...]
 
 
-def make_strips(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
-    """Return the segments of a loop with their bands, in running order.
+def make_strips(loop: Sequence[BorderPiece], walls: WallsByCarrier, least: float) -> list[Strip]:
+    """Return the segments of an outline's loop, each with the heights that may be touched all along it.
 
-    So are the loop's pieces, see ``geometry.subdivision``. ``least`` is the shortest band in mm that may be
-    touched.
+    Parameters
+    ----------
+    loop : pieces of the border in running order, see ``geometry.subdivision``.
+    walls : the solid's upright faces.
+    least : shortest range of heights in mm that may be touched.
+
+    Returns
+    -------
+    Strips in running order.
     """
     pieces = [walls.find_covered(piece) for piece in loop]
     stretches: Sequence[Stretch] = cut_into_runs(pieces, lambda a, b: continues_piece(a, b, least))
@@ -77,11 +89,12 @@ def make_strips(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list
     return [strip for stretch in stretches for strip in cut_stretch_into_strips(stretch, least)]
 
 
-def continues_piece(before: Covered, after: Covered, least: float) -> bool:
-    """Return whether a piece continues another: the same carrier and direction, and no long run is cut.
+def continues_piece(before: CoveredPiece, after: CoveredPiece, least: float) -> bool:
+    """Return whether a piece of border continues the one before:
+    same line or circle and direction, and no range ends.
 
-    That is one which has none of the same ends on the other side, or an end that jumps. Shorter ones than may
-    be touched cut nothing.
+    Ranges of height that upright faces cover end there if they jump, or if none on the other side has the
+    same ends. Ranges shorter than ``least`` mm do not count.
     """
     if before.piece.carrier is not after.piece.carrier or before.piece.forward != after.piece.forward:
         return False
@@ -98,16 +111,21 @@ def continues_piece(before: Covered, after: Covered, least: float) -> bool:
     return True
 
 
-def list_runs_at_end(covered: Covered, end: int) -> list[tuple[Band, float, bool]]:
-    """Return the runs at an end of a piece, each with what its ends may be off in mm, and whether one jumps.
+def list_runs_at_end(covered: CoveredPiece, end: int) -> list[tuple[Band, float, bool]]:
+    """Return (band, tolerance, jumps) for each range of
+    height that upright faces cover at one end of a piece.
 
-    Places are known to what makes two points one, and the ends of a run move over that. The end is 0 for the
-    first in the direction of the border, 1 for the last.
+    The band is (z0, z1) in mm, and ``jumps`` says whether one of its ends jumps there. ``end`` is 0 for the
+    start in the direction of the border, 1 for the end. The tolerance in mm allows for heights that change
+    over the distance within which two points count as one.
     """
     position, carrier = covered.ends[end], covered.piece.carrier
     inward = 1.0 if position == covered.low else -1.0
 
     def beside(steps: float) -> float:
+        """Return the position ``steps`` point tolerances
+        inward from the end, at most a quarter of the piece.
+        """
         return position + inward * min(steps * carrier.slack, covered.size / 4)
 
     found: list[tuple[Band, float, bool]] = []
@@ -123,10 +141,11 @@ def list_runs_at_end(covered: Covered, end: int) -> list[tuple[Band, float, bool
 
 
 def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
-    """Yield a whole circle over which no run jumps, cut where its longest run is shortest, if it is to be
-    cut.
+    """Yield the pieces of a whole circle in groups, cut
+    where the longest range of covered heights is shortest.
 
-    So it is halved at the same places however it is turned, and whichever way round.
+    So halving gives the same strips however the circle is turned and whichever way it runs. The circle stays
+    whole if the heights common to all of it suffice, or if nothing of it may be touched.
     """
     if (
         is_enough(pieces, find_common_band(pieces), least)
@@ -140,7 +159,7 @@ def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
         for place in (one.low, *one.list_inner_positions(), one.high)
     ]
     shortest = min(value for _, _, value in places)
-    parts: list[Covered] = []
+    parts: list[CoveredPiece] = []
     fresh: set[int] = set()
     for k, one in enumerate(pieces):
         lowest = [place for number, place, value in places if number == k and value <= shortest + SAME_HEIGHT]
@@ -155,7 +174,11 @@ def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
 
 
 def cut_stretch_into_strips(stretch: Stretch, least: float) -> list[Strip]:
-    """Return a stretch cut where it becomes long enough to be touched, and halved where runs slide."""
+    """Return the strips over neighbouring pieces of one line or circle, in running order.
+
+    It is cut where it becomes touchable (covered over ``least`` mm of height), and halved where the heights
+    common to a strip are too few.
+    """
     found: list[Strip] = []
     for part, is_touched in split_touched_parts(stretch, least):
         if is_touched:
@@ -166,8 +189,12 @@ def cut_stretch_into_strips(stretch: Stretch, least: float) -> list[Strip]:
 
 
 def split_touched_parts(stretch: Stretch, least: float) -> Iterator[tuple[Stretch, bool]]:
-    """Yield the parts of a stretch along which the longest run is long enough, and those along which it is not."""
-    found: list[tuple[list[Covered], bool]] = []
+    """Yield (pieces, is touchable) for the parts of some
+    pieces in running order, alternately touchable and not.
+
+    A place is touchable where upright faces cover a range of at least ``least`` mm of height.
+    """
+    found: list[tuple[list[CoveredPiece], bool]] = []
     for one in stretch:
         for part, is_touched in split_touched_pieces(one, least):
             if part.size <= part.piece.carrier.slack:
@@ -179,8 +206,11 @@ def split_touched_parts(stretch: Stretch, least: float) -> Iterator[tuple[Stretc
     yield from found
 
 
-def split_touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
-    """Return the parts of a piece along which the longest run is long enough, and those along which it is not."""
+def split_touched_pieces(one: CoveredPiece, least: float) -> list[tuple[CoveredPiece, bool]]:
+    """Return (part, is touchable) for the parts of a piece in the direction of the border.
+
+    A place is touchable where upright faces cover a range of at least ``least`` mm of height.
+    """
     if bound_run_length(one) < least - SAME_HEIGHT:
         return [(one, False)]
     if any(
@@ -189,6 +219,7 @@ def split_touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool
         return [(one, True)]
 
     def spare(position: float) -> float:
+        """Return by how many mm the longest range of covered heights at a position exceeds ``least``."""
         return one.measure_longest_run_at(position) - (least - ONE_HEIGHT)
 
     nodes = [one.low, *one.list_inner_positions(), one.high]
@@ -207,11 +238,18 @@ def split_touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool
 
 
 def find_threshold_positions(
-    one: Covered, nodes: Sequence[float], spare: Callable[[float], float], least: float
+    one: CoveredPiece, nodes: Sequence[float], spare: Callable[[float], float], least: float
 ) -> Iterator[float]:
-    """Yield the positions between nodes at which the longest run may be just long enough, or just too short.
+    """Yield positions strictly between nodes at which the longest
+    covered height range may just reach or miss ``least``.
 
-    Between nodes the ends of runs only rise or only fall, and so they bound its length.
+    Between neighbouring nodes both ends of every range are monotonic, and so they bound its length; a
+    position is looked for only where the bounds leave a change open.
+
+    Parameters
+    ----------
+    nodes : sorted positions.
+    spare : returns by how many mm the longest range at a position is long enough.
     """
     for a, b in pairwise(nodes):
         first, last = spare(a) >= 0.0, spare(b) >= 0.0
@@ -224,11 +262,14 @@ def find_threshold_positions(
 
 
 def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
+    """Return whether a function times ``sign`` is 0 or more at a position."""
     return sign * value(position) >= 0.0
 
 
 def find_extreme_place(value: Callable[[float], float], low: float, high: float, sign: float) -> float:
-    """Return the place between two others at which a value is greatest, or least for a sign of -1, by halving."""
+    """Return the place between two others at which a function
+    is greatest (sign 1) or least (sign -1), by ternary search.
+    """
     for _ in range(HALVINGS):
         a, b = low + (high - low) / 3, high - (high - low) / 3
         if sign * value(a) < sign * value(b):
@@ -240,14 +281,17 @@ def find_extreme_place(value: Callable[[float], float], low: float, high: float,
     return (low + high) / 2
 
 
-def bound_run_length(one: Covered) -> float:
-    """Return a length in mm that no run of a piece has more of; that of the longest where nothing slides."""
+def bound_run_length(one: CoveredPiece) -> float:
+    """Return an upper bound in mm of the height ranges that
+    upright faces cover along a piece; exact for level edges.
+    """
     return max((run.bound_length(one.low, one.high) for run in one.runs), default=0.0)
 
 
-def measure_longest_run(one: Covered, bound: float) -> float:
-    """Return the length in mm of the longest run over a piece, or one not above a bound where that is enough
-    to know.
+def measure_longest_run(one: CoveredPiece, bound: float) -> float:
+    """Return the largest length in mm of a height range that upright faces cover along a piece.
+
+    Where the length is found to be above ``bound`` the search ends, and the true length may be larger.
     """
     nodes = [one.low, *one.list_inner_positions(), one.high]
     best = max(map(one.measure_longest_run_at, nodes))
@@ -261,10 +305,10 @@ def measure_longest_run(one: Covered, bound: float) -> float:
 
 
 def find_common_band(stretch: Stretch) -> Band:
-    """Return the longest range of heights that lies in one run at each point of a stretch; if several are
-    equal, the lowest.
+    """Return the longest range of heights (z0, z1) in mm that
+    is covered without a gap at every point of some pieces.
 
-    It is 0 long where there is none.
+    Of equally long ones the lowest; (0, 0) where there is none.
     """
     bands: list[Band] | None = None
     for one in stretch:
@@ -278,12 +322,14 @@ def find_common_band(stretch: Stretch) -> Band:
 
 
 def intersect_bands(a: Band, b: Band) -> Band:
-    """Return what two bands have in common, below 0 long for nothing."""
+    """Return the intersection of two bands; z1 < z0 where they have nothing in common."""
     return max(a[0], b[0]), min(a[1], b[1])
 
 
 def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
-    """Return whether the band of a stretch is long enough to be touched, and half as long as the longest run there."""
+    """Return whether a band is at least ``least`` mm long, and
+    half as long as the longest covered range over the pieces.
+    """
     if measure_band(band) < least - SAME_HEIGHT:
         return False
     bound = 2 * (measure_band(band) + SAME_HEIGHT)
@@ -291,7 +337,11 @@ def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
 
 
 def halve_stretch(stretch: Stretch, least: float) -> list[Strip]:
-    """Return a stretch halved until its band is long enough, and half as long as the longest run over it."""
+    """Return the strips over touchable pieces, halved until
+    the band of each is long enough, see :func:`is_enough`.
+
+    Strips shorter than ``SHORTEST_STRIP`` are not made; there the band may be None.
+    """
     band = find_common_band(stretch)
     if is_enough(stretch, band, least):
         return make_strips_over_stretch(stretch, band)
@@ -305,9 +355,9 @@ def halve_stretch(stretch: Stretch, least: float) -> list[Strip]:
 
 
 def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
-    """Return a stretch up to a place, and from there on.
+    """Return consecutive pieces up to a place, and from there on.
 
-    The place is ``size`` from its start, in mm on a line and radians on a circle.
+    ``size`` is the place's distance from the start, in mm on a line and radians on a circle.
     """
     left = size
     slack = stretch[0].piece.carrier.slack
@@ -323,7 +373,9 @@ def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
 
 
 def join_strips(strips: Sequence[Strip]) -> list[Strip]:
-    """Return the strips of a stretch, neighbours with the same band as one."""
+    """Return the strips with neighbours of the same band
+    merged; all lie on one line or circle, in running order.
+    """
     groups: list[list[Strip]] = []
     for strip in strips:
         before = groups[-1][-1].band if groups else ()
@@ -347,7 +399,9 @@ def join_strips(strips: Sequence[Strip]) -> list[Strip]:
 
 
 def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]:
-    """Return the strip over a stretch: two for a wide arc, none for a stretch left by rounding."""
+    """Return the strip over consecutive pieces as a list: two
+    for an arc above half a circle, none for rounding's length.
+    """
     carrier, forward = stretch[0].piece.carrier, stretch[0].piece.forward
     begin, size = stretch[0].ends[0], sum(one.size for one in stretch)
     if size <= carrier.slack:
@@ -358,7 +412,7 @@ def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]
         halves = list(cut_at(stretch, size / 2))
     step = (size if forward else -size) / len(halves)
     bulge = tan(step / 4) if isinstance(carrier.segment, Arc) else 0.0
-    ends = [carrier.at(begin + step * k) for k in range(len(halves) + 1)]
+    ends = [carrier.compute_point(begin + step * k) for k in range(len(halves) + 1)]
     return [
         Strip(a, b, bulge, band, faces, tuple(half))
         for (a, b), half in zip(pairwise(ends), halves, strict=True)
@@ -366,7 +420,12 @@ def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]
 
 
 def run_rows(strip: Strip) -> RunRows:
-    """Return the run that holds a strip's band, along the strip; empty where it is the band all along."""
+    """Return the covered range of heights that contains a strip's
+    band, as rows (share, z0, z1) along the strip; z in mm.
+
+    The share of the strip's length grows from 0 to 1. Rows 3 k to 3 k + 3 define a cubic for each end, see
+    ``model.solid.interpolate_run``. Empty where the range is the band all along, or there is no band.
+    """
     band = strip.band
     if band is None:
         return ()
@@ -390,16 +449,23 @@ def run_rows(strip: Strip) -> RunRows:
     return ((0.0, *kept[0][1:]), *kept[1:-1], (1.0, *kept[-1][1:]))
 
 
-def find_run_holding(one: Covered, band: Band) -> Run:
-    """Return the run of a piece that holds a band all along."""
+def find_run_holding(one: CoveredPiece, band: Band) -> WallRun:
+    """Return the covered range of heights, of those over a piece, that has most in common with a band."""
     shared = [
         measure_band(intersect_bands(run.compute_common_band(one.low, one.high), band)) for run in one.runs
     ]
     return one.runs[shared.index(max(shared))]
 
 
-def split_into_cubics(run: Run, one: Covered, first: float, last: float) -> Iterator[tuple[float, Band]]:
-    """Yield four positions with the run's heights for each piece of a run that is two cubics within rounding."""
+def split_into_cubics(
+    run: WallRun, one: CoveredPiece, first: float, last: float
+) -> Iterator[tuple[float, Band]]:
+    """Yield (position, (z0, z1)) at four equally spaced
+    positions of each part over which cubics fit a height range.
+
+    Between ``first`` and ``last`` the part is halved until the cubics through its four places, one for each
+    end of the range, are within ``CUBIC`` mm. Neighbouring parts both yield their common position.
+    """
     places = [first + (last - first) * k / 3 for k in range(4)]
     rows = tuple((k / 3, *run.compute_heights_at(place)) for k, place in enumerate(places))
     unit = one.piece.carrier.segment.radius if isinstance(one.piece.carrier.segment, Arc) else 1.0
@@ -407,7 +473,7 @@ def split_into_cubics(run: Run, one: Covered, first: float, last: float) -> Iter
         abs(a - b) > CUBIC
         for share in (1 / 2, 1 / 6, 5 / 6)
         for a, b in zip(
-            run_at(rows, share), run.compute_heights_at(first + (last - first) * share), strict=True
+            interpolate_run(rows, share), run.compute_heights_at(first + (last - first) * share), strict=True
         )
     )
     if is_off and abs(last - first) * unit > SHORTEST_PIECE:

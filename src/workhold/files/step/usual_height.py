@@ -1,7 +1,7 @@
-"""How high pegs reach beside a solid where nobody says so, and what they stand in is known.
+"""How high pegs reach beside a solid where the user does not say it, but the pegs' diameter is known.
 
-A dowel that stands out far bends. So pegs are no higher than they must be to touch half of what pegs of any height
-could. They are dowels that are sold, which sit 1.5 diameters deep (SOLID, "Which height").
+A dowel that stands out far bends. So pegs are no higher than they must be to touch half of what pegs of any
+height could. They are dowels that are sold, which sit 1.5 diameters deep (SOLID, "Which height").
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from workhold.conventions import DOWEL_STANDOUT, SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT
 from workhold.files.step.heights import StandingSolid, measure_outline
-from workhold.model.dowel_lengths import find_shortest_dowel, standouts
+from workhold.model.dowel_lengths import find_shortest_dowel, list_standouts
 from workhold.model.solid import HeightRow, slides_at_every_height
 
-__all__ = ["UsualHeight", "choose_usual_height"]
+__all__ = ["UsualPegHeight", "choose_usual_height"]
 
 # The share of what the best height touches.
 SHARE = 0.5
@@ -26,8 +26,8 @@ ROUNDED = 1e-9
 
 
 @frozen
-class UsualHeight:
-    """How high pegs reach that nobody has said the height of.
+class UsualPegHeight:
+    """The height of pegs that is taken where the user gives none.
 
     Parameters
     ----------
@@ -51,7 +51,9 @@ class UsualHeight:
 
     @property
     def remarks(self) -> list[str]:
-        """What is said of it: how high, why, and how to have pegs as tall as the part where that may help."""
+        """A sentence on how high pegs are and why, with how to
+        have taller ones; empty if they are as tall as the part.
+        """
         if self.is_whole:
             return []
         dowel = find_shortest_dowel(self.diameter, self.peg_height)
@@ -73,16 +75,24 @@ def choose_usual_height(
     room: float,
     least: float,
     is_prism: bool,
-) -> UsualHeight:
-    """Return how high pegs of a diameter reach beside a solid, no higher than they must; lengths in mm.
+) -> UsualPegHeight:
+    """Return the height of pegs to take, at most twice their
+    diameter if that touches enough, else the least that does.
 
-    ``rows`` are what other heights offer; of a prism they are not looked at. ``room`` is what is kept free
-    above the pegs, and ``least`` the shortest band that may be touched.
+    Enough is half of the touchable border of the best height. All lengths are in mm.
+
+    Parameters
+    ----------
+    rows : ranges of peg heights with what they offer; not used for a prism.
+    diameter : of the pegs.
+    room : head room kept free above the pegs.
+    least : shortest band that may be touched.
     """
     top = solid.height
     enough = SHARE * max((row.touchable for row in rows), default=0.0)
 
     def touches_enough(height: float) -> bool:
+        """Return whether pegs of a height can touch half of what pegs of the best height can."""
         if is_prism:
             return height >= least - SAME_HEIGHT
         try:
@@ -91,10 +101,10 @@ def choose_usual_height(
             return False
 
     # Without dowels of this diameter, the heights at which what pegs meet changes, with that of the part.
-    offered = standouts(diameter) or sorted({row.high for row in rows} | {top})
+    offered = list_standouts(diameter) or sorted({row.high for row in rows} | {top})
     heights = [one for one in offered if one <= top + SAME_HEIGHT]
     usual = min(DOWEL_STANDOUT * diameter, top) + SAME_HEIGHT
     low = [one for one in heights if one <= usual]
     in_order = [*reversed(low), *(one for one in heights if one > usual)]
     found = next((one for one in in_order if touches_enough(one)), top)
-    return UsualHeight(min(found, top), top, diameter, not is_prism, slides_at_every_height(rows))
+    return UsualPegHeight(min(found, top), top, diameter, not is_prism, slides_at_every_height(rows))

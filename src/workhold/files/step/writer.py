@@ -1,9 +1,9 @@
-"""STEP assemblies that are written: a set-up, and the jaw plates to drill, with colours.
+"""Writing of STEP assemblies with colours: a set-up, and jaw plates to drill.
 
 A set-up is the part in its pose, the pegs, the clamps with their bolts, and the plates with their holes. The
 frame is the vise's, in millimetres, with x to the right. Its origin is the left jaw's hole L-A1, or hole A1
-of a plate, on top of the plates. The part lies there, and the pegs stand through the plates up to the
-part's upper side, where nothing else is asked for.
+of a plate, on top of the plates. The part lies there, and the pegs stand through the plates up to the part's
+upper side, unless another height is given.
 
 Jaw plates are solids with their dowel holes and bolt holes through them, their upper sides at z = 0. They
 stand side by side as in the DXF drawing of the same plates.
@@ -32,7 +32,7 @@ from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, Fixtu
 from workhold.model.dowels import JawPlate, place_plates_in_drawing
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
-from workhold.model.setup import PartZero, part_zero
+from workhold.model.setup import PartZero, choose_part_zero
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -81,7 +81,7 @@ def write_setup_step(
     peg_height : how far the pegs stand out of the plates, in mm; as far as the part's solid says, or as the
         part itself, if None.
     peg_length : in mm; down to the plates' lower sides if None.
-    zero : part zero; that of :func:`part_zero` without a wish if None.
+    zero : part zero; that of :func:`choose_part_zero` without a wish if None.
     overwrite : whether a file that workhold has not written may be replaced.
 
     Raises
@@ -110,19 +110,22 @@ def make_setup_step(
     zero: PartZero | None = None,
     **sizes: Any,
 ) -> bytes:
-    """Return the bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`."""
-    bodies = list_fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
-    return make_bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
+    """Return the bytes of a set-up's STEP assembly; arguments are those of :func:`write_setup_step`."""
+    bodies = list_fixture_bodies(fixture, workpiece, toolkit, BodySizes.from_workpiece(workpiece, **sizes))
+    return make_bodies_step(bodies, toolkit, (zero or choose_part_zero(workpiece)).point, fixture.pose)
 
 
 def make_bodies_step(
     bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose, part: Any = None
 ) -> bytes:
-    """Return the bytes of the assembly of a set-up's bodies, with the axes at part zero.
+    """Return the bytes of a STEP assembly of a set-up's bodies, with axes drawn at part zero.
 
     Parameters
     ----------
-    part : the part's own solid in its pose; the prism of its body if None.
+    bodies : of the set-up, the part first.
+    zero : part zero (x, y) in mm, in the part's frame.
+    pose : of the part.
+    part : Open CASCADE's solid of the part in its pose; the prism of its body if None.
 
     Raises
     ------
@@ -140,8 +143,8 @@ def make_bodies_step(
 
 
 def make_named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Colour]]:
-    """Return the bodies as solids of Open CASCADE, each with its name and colour; a body in pieces as
-    several.
+    """Return (name, solid of Open CASCADE, colour) for all
+    bodies; a body in several pieces gives one for each.
 
     Raises
     ------
@@ -157,7 +160,11 @@ def make_named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Col
 
 
 def make_axes_at(point: Point, pose: Pose, length: float) -> Any:
-    """Return the axes of the part at a point of it, at z = 0: x of the given length, y half as long."""
+    """Return two edges at z = 0 from a point of the part: along
+    the part's x of the given length in mm, along y half that.
+
+    The point is in the part's frame, the edges in the frame of the set-up.
+    """
     axes, builder = occ.TopoDS_Compound(), occ.BRep_Builder()
     builder.MakeCompound(axes)
     x, y = point
@@ -179,7 +186,7 @@ def make_solids(body: FixtureBody) -> list[Any]:
 
 
 def make_wire(segments: Iterable[Segment]) -> Any:
-    """Return a closed wire at z = 0 of segments in running order."""
+    """Return Open CASCADE's closed wire at z = 0 of segments in running order."""
     maker = occ.BRepBuilderAPI_MakeWire()
     for segment in segments:
         maker.Add(make_edge(segment))
@@ -187,7 +194,9 @@ def make_wire(segments: Iterable[Segment]) -> Any:
 
 
 def make_edge(segment: Segment) -> Any:
-    """Return a segment as an edge at z = 0; the circle of an arc run clockwise looks down."""
+    """Return Open CASCADE's edge at z = 0 of a segment;
+    the normal of a clockwise arc's circle points down.
+    """
     if isinstance(segment, Line):
         return occ.BRepBuilderAPI_MakeEdge(
             occ.gp_Pnt(*segment.start, 0.0), occ.gp_Pnt(*segment.end, 0.0)
@@ -202,7 +211,7 @@ def make_edge(segment: Segment) -> Any:
 
 
 def extrude_border(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
-    """Return the solid between two heights over a border with holes, which run clockwise."""
+    """Return the solid between two z in mm over a wire, with holes whose wires run clockwise."""
     maker = occ.BRepBuilderAPI_MakeFace(
         occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, 0.0), occ.gp_Dir(0.0, 0.0, 1.0)), outer
     )
@@ -213,6 +222,7 @@ def extrude_border(outer: Any, holes: Sequence[Any], low: float, high: float) ->
 
 
 def make_assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
+    """Return the bytes of a STEP assembly of named shapes, with colours for those that have one."""
     document = occ.TDocStd_Document(occ.TCollection_ExtendedString("XmlOcaf"))
     shapes = occ.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     compound = occ.TopoDS_Compound()
@@ -269,6 +279,9 @@ def make_plates_step(plates: Sequence[JawPlate], thickness: float | None = None)
 
 
 def make_drilled_plate(plate: JawPlate, right: float, thickness: float) -> Any:
+    """Return the solid of a jaw plate, its upper side at
+    z = 0, moved by ``right`` mm along x; lengths in mm.
+    """
     corners = [(x + right, y) for x, y in plate.outline.corners]
     border = make_wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
     holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]
@@ -281,7 +294,7 @@ def make_drilled_plate(plate: JawPlate, right: float, thickness: float) -> Any:
 def add_colours(text: bytes, colours: Sequence[Colour]) -> bytes:
     """Return the text of a STEP file with a colour for each of its bodies, in their order in the file.
 
-    Raises RuntimeError when the file has not one body for each colour.
+    Raises RuntimeError unless the file has one body for each colour.
     """
     bodies = list(BODY.finditer(text))
     if len(bodies) != len(colours) or END not in text:
@@ -291,6 +304,7 @@ def add_colours(text: bytes, colours: Sequence[Colour]) -> bytes:
     lines: list[str] = []
 
     def add(entity: str) -> str:
+        """Append an entity to the text and return its reference, such as "#12"."""
         nonlocal number
         number += 1
         lines.append(f"#{number} = {entity};\n")

@@ -1,13 +1,13 @@
-"""SVG files as trees of elements with guards against hostile XML, and what is declared of each element.
+"""SVG files as trees of elements, with guards against hostile XML, and the values declared for each element.
 
-The cascade puts presentation attributes, style sheets and ``style`` in their order of precedence. tinycss2
-and cssselect2 read the style sheets; they are imported only for drawings that have some.
+The cascade orders presentation attributes, style sheets and ``style`` by their precedence. tinycss2 and
+cssselect2 read the style sheets; they are imported only for drawings that have some.
 
 Glossary
 --------
-property : what CSS can say of an element, such as ``fill``.
-declared value : what one attribute or rule says of a property; the first valid one of an element counts (CSS
-    Cascade 4).
+property : a CSS property of an element, such as ``fill``.
+declared value : the value that one attribute or rule gives to a property; the first valid one of an element
+    counts (CSS Cascade 4).
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from workhold.files.svg.selectors import SelectorMatcher, list_inner_tokens
 
 __all__ = [
     "GEOMETRY",
-    "Declared",
-    "Document",
-    "Styles",
+    "DeclaredValue",
+    "SvgDocument",
+    "DeclaredStyles",
     "read_link",
     "get_local_name",
     "read_document",
@@ -54,29 +54,30 @@ def get_local_name(element: Element) -> str:
 
 
 def shorten_text(text: str, most: int = 60) -> str:
-    """Return the beginning of what a file says, on one line, for messages."""
+    """Return the beginning of a text from a file on one line, at most ``most`` characters, for messages."""
     return " ".join(text[: 10 * most].split())[:most]
 
 
 def format_element_name(name: str) -> str:
-    """Return the name of an element as messages tell it: without its namespace."""
+    """Return the name of an element for messages: without its namespace, shortened."""
     return shorten_text(name.rpartition("}")[2])
 
 
 def read_link(element: Element) -> str:
+    """Return the ``href`` of an element, also under its old name ``xlink:href``; "" where there is none."""
     return element.get("href", element.get(LINK, "")).strip()
 
 
 @frozen
-class Document:
-    """A file's elements.
+class SvgDocument:
+    """The elements of a file.
 
     Parameters
     ----------
     root : the <svg>.
     by_id : the first element of each id, as browsers take it.
-    places : the number of each element among those of its kind in the file, from 1, and its line.
-    parents : what each element but the root is in.
+    places : for each element its number among those of its kind in the file, from 1, and its line.
+    parents : the parent of each element but the root.
     """
 
     root: Element
@@ -85,7 +86,9 @@ class Document:
     parents: dict[Element, Element]
 
     def name(self, element: Element) -> str:
-        """Return how messages call an element: by its id, or else by its number among the elements of its kind."""
+        """Return an element's name for messages: its tag with
+        its id, or else with its number among those of its kind.
+        """
         tag = get_local_name(element)
         if element.get("id"):
             return f"{tag} '{shorten_text(element.get('id', ''))}'"
@@ -97,7 +100,7 @@ class Document:
         return self.by_id.get(link[1:], self.by_id.get(unquote(link[1:]))) if link.startswith("#") else None
 
     def list_ancestors(self, element: Element) -> list[Element]:
-        """Return the elements around one, from the root inward."""
+        """Return the elements that contain an element, from the root inward."""
         found: list[Element] = []
         while element in self.parents:
             element = self.parents[element]
@@ -105,16 +108,16 @@ class Document:
         return found[::-1]
 
     def is_svg_element(self, element: Element) -> bool:
-        """Return whether an element is of SVG's namespace, as the root is, and not of an editor's own."""
+        """Return whether an element is in the namespace of the root, and not in an editor's own."""
         return str(element.tag).rpartition("}")[0] == str(self.root.tag).rpartition("}")[0]
 
 
-def read_document(content: bytes, budget: Budget) -> Document:
-    """Read the tree of an SVG file.
+def read_document(content: bytes, budget: Budget) -> SvgDocument:
+    """Return the tree of an SVG file.
 
-    Refuses files that are no SVG, style sheets outside the file, and animations. Refuses XML that is broken
-    (with line and column), nested without end, asks for more than ``budget`` has, or declares entities or
-    attributes, which can blow up to any size.
+    Raises InputError for files that are not SVG, style sheets outside the file, and animations; also for XML
+    that is broken (with line and column), nested too deeply, needs more than ``budget`` has, or declares
+    entities or attributes, which can expand to any size.
     """
     if content.startswith(b"\x1f\x8b"):
         raise InputError("the SVG file is compressed (svgz): unpack it first.")
@@ -132,7 +135,7 @@ def read_document(content: bytes, budget: Budget) -> Document:
         places[element] = counts[tag], lines[element]
         by_id.setdefault(element.get("id", ""), element)
     by_id.pop("", None)
-    document = Document(root, by_id, places, {child: parent for parent in root.iter() for child in parent})
+    document = SvgDocument(root, by_id, places, {child: parent for parent in root.iter() for child in parent})
     for element in root.iter():
         tag = get_local_name(element)
         if tag in ANIMATIONS and document.is_svg_element(element):
@@ -147,9 +150,9 @@ def read_document(content: bytes, budget: Budget) -> Document:
 
 
 def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) -> Element:
-    """Return the root element; the line of each element goes into ``lines``.
+    """Return the root element, and fill ``lines`` with the line of each element.
 
-    Raises InputError for XML that is broken, too deep, too large, or asks for what is not in the file.
+    Raises InputError for XML that is broken, too deep, too large, or refers to content outside the file.
     """
     refuse_many_attributes(content)
     parser = expat.ParserCreate(namespace_separator="}")
@@ -159,11 +162,13 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
     names: dict[str, str] = {}
 
     def expanded(name: str) -> str:
+        """Return expat's name of a tag or an attribute in ElementTree's form, ``{namespace}name``."""
         if name not in names:
             names[name] = "{" + name if "}" in name else name
         return names[name]
 
     def started(name: str, attributes: dict[str, str]) -> None:
+        """Handle a start tag."""
         budget.enter(lambda: f"<{format_element_name(name)}>")
         # What ten attributes take is what an element takes.
         budget.spend(1 + len(attributes) // 10)
@@ -177,15 +182,18 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
         lines[element] = line
 
     def ended(name: str) -> None:
+        """Handle an end tag."""
         budget.leave()
         builder.end(expanded(name))
 
     def declared(*_: object) -> None:
+        """Refuse the declaration of an entity."""
         raise InputError("the SVG file declares XML entities, which are not read: save it as plain SVG.")
 
     given = count = 0
 
     def attribute_declared(_: str, name: str, __: str, default: str | None, ___: int) -> None:
+        """Refuse declarations of attributes with a default, but for a few namespaces."""
         # Every element gets what is declared: only namespaces, which drawings do declare, stay harmless.
         nonlocal given, count
         given, count = given + (default is not None), count + 1
@@ -197,6 +205,7 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
             )
 
     def named(prefix: str | None, space: str | None) -> None:
+        """Refuse the declaration of a namespace with a very long name."""
         if len(space or "") > LONGEST_NAME:
             raise InputError(
                 f"the XML namespace '{shorten_text(space or '')}' on line {parser.CurrentLineNumber} is longer than "
@@ -204,6 +213,7 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
             )
 
     def typed(name: str, system: str | None, public: str | None, subset: object) -> None:
+        """Refuse entities of an external document type."""
         # With an external document type, which is not read, expat drops unknown entities in attributes in
         # silence.
         unknown = ENTITY.search(content.replace(b"\0", b""))
@@ -213,6 +223,7 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
             )
 
     def instructed(target: str, _: str) -> None:
+        """Refuse a style sheet in another file."""
         if target == "xml-stylesheet":
             raise InputError(
                 "the SVG file takes styles from another file (<?xml-stylesheet): embed them, or remove it."
@@ -242,7 +253,7 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
 
 
 def refuse_many_attributes(content: bytes) -> None:
-    """Refuse an element with very many attributes before it is read, which is done at once."""
+    """Raise InputError for an element with very many attributes, before expat reads it as a whole."""
     if content.count(b"=") <= MOST_ATTRIBUTES:
         return
     for tag in START_TAG.finditer(content):
@@ -280,28 +291,28 @@ EMBEDDED = re.compile(r"[A-Za-z0-9+/=]{1000,}")
 
 
 @frozen
-class Declared:
-    """A declared value, and whether CSS gives it, which has stricter rules than attributes."""
+class DeclaredValue:
+    """A declared value; ``css`` says whether it is of CSS, which has stricter rules than attributes."""
 
     text: str
     css: bool
 
 
-class Styles:
+class DeclaredStyles:
     """The declared values of a document's elements.
 
     Parameters
     ----------
-    budget : what reading the drawing may still take.
+    budget : work that may still be spent on the drawing.
 
     Raises
     ------
     InputError
-        For rules of a style sheet that are not read and could change an outline, naming the style and its
-        line.
+        For rules of a style sheet that are not supported and could change an outline, naming the style and
+        its line.
     """
 
-    def __init__(self, document: Document, budget: Budget) -> None:
+    def __init__(self, document: SvgDocument, budget: Budget) -> None:
         self.document = document
         self.budget = budget
         self.matched: dict[Element, list[tuple[tuple[Any, ...], Block]]] = {}
@@ -315,7 +326,8 @@ class Styles:
             self.match(styles)
 
     def match(self, styles: list[Element]) -> None:
-        sheets = Sheets(self.budget)
+        """Read the style elements, and store in ``matched`` the rules that select each element."""
+        sheets = StyleRules(self.budget)
         for style in styles:
             place = f"the style sheet on line {self.document.places[style][1]}"
             refuse_media(style.get("media", ""), place)
@@ -335,22 +347,23 @@ class Styles:
                 ]
             self.matched[element] = shared[key]
 
-    def list_declared_values(self, element: Element) -> dict[str, list[Declared]]:
-        """Return the declared values of an element's properties, the strongest first."""
+    def list_declared_values(self, element: Element) -> dict[str, list[DeclaredValue]]:
+        """Return the declared values of each property of an element, the strongest first."""
         layers: list[tuple[tuple[Any, ...], Block, bool]]
         layers = [((0, -1), [item for item in element.items() if item[0] in ATTRIBUTES], False)]
         layers += [(key, values, True) for key, values in self.matched.get(element, ())]
         if element.get("style"):
             for important, values in enumerate(self.parse_style_attribute(element)):
                 layers.append(((important, 1 << 30), values, True))
-        found: dict[str, list[Declared]] = defaultdict(list)
+        found: dict[str, list[DeclaredValue]] = defaultdict(list)
         self.budget.count_steps(sum(1 + len(values) for _, values, _ in layers))
         for _, values, css in sorted(layers, key=lambda layer: layer[0], reverse=True):
             for name, text in reversed(values):
-                found[name].append(Declared(text.strip(), css))
+                found[name].append(DeclaredValue(text.strip(), css))
         return found
 
     def parse_style_attribute(self, element: Element) -> tuple[Block, Block]:
+        """Return the plain and the important declarations of an element's ``style``, cached by its text."""
         text = element.get("style", "")
         if text not in self.attributes:
             place = f"the style of {self.document.name(element)}"
@@ -358,12 +371,12 @@ class Styles:
         return self.attributes[text]
 
 
-class Sheets:
-    """The rules of a drawing's style sheets: their selectors, and by their numbers what they declare.
+class StyleRules:
+    """The rules of a drawing's style sheets: their selectors, and the declarations of each by its number.
 
     Parameters
     ----------
-    budget : what reading the drawing may still take.
+    budget : work that may still be spent on the drawing.
     """
 
     def __init__(self, budget: Budget) -> None:
@@ -373,18 +386,21 @@ class Sheets:
         self.rules: list[tuple[Block, Block]] = []
 
     def read(self, text: str, place: str) -> None:
-        """Add the rules of a style sheet.
+        """Add the rules of a style sheet; ``place`` names it in messages.
 
         Raises
         ------
         InputError
-            For rules that are not read and could change an outline, and for very many.
+            For rules that are not supported and could change an outline, and for very many.
         """
         self.style.count_letters(count_css_letters(text), place)
         self.add(tokenize_css(text, place, self.budget), place)
 
     def add(self, tokens: list[Any], place: str, counts: bool = True) -> bool:
-        """Add rules, unless they do not count; return whether any could change an outline."""
+        """Add the rules in some tokens, and return whether any of them could change an outline.
+
+        With ``counts`` False nothing is added: the rules are within a rule that does not apply to screens.
+        """
         import cssselect2
         import tinycss2
 
@@ -422,7 +438,7 @@ class Sheets:
 
 
 def refuse_media(media: str, place: str) -> None:
-    """Refuse styles for some screens or printers only."""
+    """Raise InputError for styles that apply to some screens or printers only."""
     if " ".join(media.lower().split()) not in SCREENS:
         raise InputError(
             f"{place} is for '{shorten_text(media)}' only, which is not read: write the styles without it."
@@ -430,12 +446,15 @@ def refuse_media(media: str, place: str) -> None:
 
 
 def count_css_letters(text: str) -> int:
-    """Count the letters of CSS without embedded fonts and pictures, which take little time."""
+    """Return the number of characters of CSS without embedded fonts and pictures, which take little time."""
     return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
 
 def tokenize_css(text: str, place: str, budget: Budget) -> list[Any]:
-    """Return the tokens of CSS; refuse what is too long or too deep, and numbers that cannot be read."""
+    """Return the tokens of CSS; ``place`` names it in messages.
+
+    Raises InputError for what is too long or nested too deeply, and for numbers that cannot be read.
+    """
     import tinycss2
 
     style = Budget(LIMITS["style"])
@@ -452,9 +471,9 @@ def tokenize_css(text: str, place: str, budget: Budget) -> list[Any]:
 
 
 def parse_declarations(content: Any, place: str) -> tuple[Block, Block]:
-    """Return the known properties of a block of declarations: plain ones, and important ones.
+    """Return the known properties of a block of declarations, (name, value): plain ones, and important ones.
 
-    Refuses rules within the block.
+    Raises InputError for rules within the block.
     """
     import tinycss2
 

@@ -1,13 +1,14 @@
 """SVG drawings: from bytes to chains in mm.
 
-What the author of a drawing sees is read, or refused by name; svgelements resolves path data. SVG's y axis
-points down, a workpiece's up: the drawing is turned over, so that the part looks as it does on screen. The
-origin is the page's lower left corner, or the point x = 0, y = 0 of the user units when the page has no size.
+The outlines that the author of a drawing sees are read; what cannot be read exactly is refused by name.
+svgelements resolves path data. SVG's y axis points down, a workpiece's up: the drawing is mirrored, so that
+the part looks as it does on screen. The origin is the page's lower left corner, or the point x = 0, y = 0 of
+the user units when the page has no size.
 
 Glossary
 --------
-user unit : the plain number in an SVG attribute; what it means in mm follows from the root's width, height
-    and viewBox.
+user unit : the plain number in an SVG attribute; its length in mm follows from the root's width, height and
+    viewBox.
 physical size : a root width and height in mm, cm or in (or pt, pc). Pixels are no physical size.
 """
 
@@ -18,7 +19,7 @@ from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Drawing, Placement
 from workhold.files.outline.diagnostics import make_unit_question
 from workhold.files.questions import UNIT
-from workhold.files.svg.document import Styles, read_document
+from workhold.files.svg.document import DeclaredStyles, read_document
 from workhold.files.svg.viewport import (
     ShapeElement,
     ViewBox,
@@ -41,26 +42,26 @@ def read_svg(
     fit: float | None = None,
     budget: Budget | None = None,
 ) -> Drawing:
-    """Read the visible outlines of an SVG file.
+    """Return the visible outlines of an SVG file as chains in mm.
 
     Parameters
     ----------
-    unit : what one user unit is; None to go by the file's physical size.
-    usual_unit : what it is in a file without a physical size.
-    fit : how far lines and arcs may be from true curves, in mm; None keeps a proposal in their place, see
+    unit : the length of one user unit; None to go by the file's physical size.
+    usual_unit : the same for a file without a physical size, where ``unit`` is None.
+    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
         ``Drawing``.
-    budget : what reading the file may still take; None is that of a file of these bytes.
+    budget : work and time that may still be spent on the file; None is that of a file of these bytes.
 
     Raises
     ------
     InputError
-        For files that are no SVG, unknown units, and values that make no sense.
+        For files that are not SVG, unknown units, and values that make no sense.
     """
     budget = budget or Budget(LIMITS["svg"], len(content))
     document = read_document(content, budget)
     # What is written counts, and then what is shown: the same or less, but for what <use> repeats.
     budget.elements = 0
-    styles = Styles(document, budget)
+    styles = DeclaredStyles(document, budget)
     name = document.name(document.root)
     root = ShapeElement(document.root, name, styles.list_declared_values(document.root), (None, None), budget)
     box = read_viewbox(document.root.get("viewBox"), root.label, budget)
@@ -99,10 +100,10 @@ Size = tuple[float | None, float | None]
 def make_page_placement(
     root: ShapeElement, box: ViewBox | None, unit: str | None, usual_unit: str | None
 ) -> tuple[Placement, list[str]] | None:
-    """Return the map from user units to mm with y up, and a remark when the user's unit overrides the file's
-    size.
+    """Return the map from user units to mm with y up, and a
+    list with a remark when ``unit`` overrides the file's size.
 
-    None when the size of a user unit is not known.
+    None when the size of a user unit is not known. ``box`` is the root's viewBox.
     """
     given = [root.find_given_value(name) for name in ("width", "height")]
     sized = any(side is not None and is_physical_length(side.text) for side in given)
@@ -135,7 +136,9 @@ def make_page_placement(
 
 
 def make_uniform_placement(scale: float, box: ViewBox | None) -> Placement:
-    """Return the map of user units of ``scale`` mm, with y up and the lower left corner of the viewBox as origin."""
+    """Return the map of user units of ``scale`` mm, with y
+    up and the lower left corner of the viewBox as origin.
+    """
     left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
     return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low)
 
@@ -143,7 +146,10 @@ def make_uniform_placement(scale: float, box: ViewBox | None) -> Placement:
 def remark_on_unit(
     root: ShapeElement, scales: tuple[float, float] | None, unit: str, millimetres: float
 ) -> list[str]:
-    """Return a remark when a unit that was asked for is not what the file says."""
+    """Return a list with a remark when a unit that was asked for is not the file's; [] otherwise.
+
+    ``scales`` are the file's own mm per user unit, or None; ``millimetres`` are those asked for.
+    """
     if scales is not None and max(abs(scale - millimetres) for scale in scales) > 1e-9 * millimetres:
         return [f"The file's size makes a user unit {scales[0]:.6g} mm; it was read as 1 {unit} as asked."]
     if is_in_pixels(root) and scales is None:
@@ -155,22 +161,26 @@ def remark_on_unit(
 
 
 def is_in_pixels(root: ShapeElement) -> bool:
+    """Return whether the root's width or height is written in px."""
     given = (root.find_given_value(name) for name in ("width", "height"))
     return any(side is not None and side.text.lower().endswith("px") for side in given)
 
 
 def are_scales_equal(one: float, other: float) -> bool:
-    """Return whether two scales differ by no more than the few digits of the sizes that give them."""
+    """Return whether two positive scales agree to
+    ``FEW_DIGITS``, the precision of the sizes that give them.
+    """
     return abs(one - other) <= FEW_DIGITS * max(one, other)
 
 
 def compute_file_scales(
     root: ShapeElement, pixel: float, size: Size, box: ViewBox | None
 ) -> tuple[float, float] | None:
-    """Return the millimetres per user unit in x and y, from the page's size in mm; None if the page has no
-    size.
+    """Return the millimetres per user unit in x and y, from
+    the page's size in mm; None if the page has no size.
 
-    ``pixel`` is a user unit in mm where there is no viewBox. Refuses a size that is not positive.
+    ``pixel`` is a user unit in mm where there is no viewBox. Raises InputError for a size that is not
+    positive.
     """
     if size == (None, None):
         return None

@@ -1,13 +1,13 @@
-"""Which rules of style sheets select which elements, in time that grows with rules times elements.
+"""Matching of style sheets' selectors with elements, in time proportional to rules times elements.
 
-cssselect2 judges what stands between two combinators, of one element alone. What the combinators say is
-followed from the root inward, so that nothing is tried twice: matching from the inside outward takes as many
-ways as there are choices of ancestors, a power of the depth.
+cssselect2 decides about compound selectors, for one element alone. Combinators are followed from the root
+inward, so that nothing is tried twice: matching from the inside outward tries every choice of ancestors,
+whose number grows exponentially with the depth.
 
 Glossary
 --------
-compound selector : what is said of one element, such as ``rect.a:not(.b)`` (Selectors 4, 3.1).
-combinator : what stands between two of them: a blank, ``>``, ``+`` or ``~``.
+compound selector : conditions on one element, such as ``rect.a:not(.b)`` (Selectors 4, 3.1).
+combinator : the relation between two compound selectors: a blank, ``>``, ``+`` or ``~``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Tokens = Sequence[Any]
 
 
 def list_inner_tokens(token: Any) -> Tokens:
-    """Return the tokens of tinycss2 in a block or a function; nothing in others."""
+    """Return the tokens of tinycss2 inside a block or a function; [] for other tokens."""
     if token.type == "function":
         return list(token.arguments)
     return list(token.content) if token.type.endswith(" block") else []
@@ -39,16 +39,17 @@ def list_inner_tokens(token: Any) -> Tokens:
 
 @define
 class OpenElement:
-    """An element whose children are being looked at.
+    """An element whose children are being visited.
 
-    Sets of compound selectors are the bits of whole numbers, those of one selector side by side.
+    Sets of compound selectors are bit sets in ints; those of one selector have consecutive bits.
 
     Parameters
     ----------
     element : None around the root.
-    reached : the compound selectors that it fulfils with all that stand before them.
-    around : those that it or an element around it does.
-    last, before : those that its child visited last does, and any child visited before.
+    reached : compound selectors that the element matches together with all that stand before them in their
+        selector.
+    around : the union of ``reached`` for this element and those around it.
+    last, before : ``reached`` of the child visited last, and the union for all children visited so far.
     """
 
     element: Element | None
@@ -59,11 +60,11 @@ class OpenElement:
 
 
 class SelectorMatcher:
-    """Selectors, and which elements they select.
+    """A set of selectors that finds the elements each of them selects.
 
     Parameters
     ----------
-    sheets : what the style sheets of the drawing may still take; compound selectors are its elements.
+    sheets : budget of the drawing's style sheets; each compound selector counts as an element.
     """
 
     def __init__(self, sheets: Budget) -> None:
@@ -81,19 +82,19 @@ class SelectorMatcher:
         self.count = 0
 
     def add(self, prelude: Tokens) -> list[int]:
-        """Add a list of selectors; return a number for each that does not select a pseudo-element.
+        """Add a list of selectors; return the number of each one that does not select a pseudo-element.
 
         Raises
         ------
         cssselect2.SelectorError
-            For selectors that are not CSS's, or would take too long.
+            For selectors that are not of CSS, or would take too long.
         InputError
             For very many.
         """
         return [number for tokens in split_at_commas(prelude) for number in self.add_selector(tokens)]
 
     def add_selector(self, tokens: Tokens) -> list[int]:
-        """Add one selector; return its number, or none for that of a pseudo-element."""
+        """Add one selector; return a list with its number, or [] for one of a pseudo-element."""
         import cssselect2
 
         chain = split_compound_selectors(tokens)
@@ -130,7 +131,11 @@ class SelectorMatcher:
     def match_elements(
         self, root: Element, budget: Budget
     ) -> Iterator[tuple[Element, list[tuple[Any, ...]]]]:
-        """Yield the elements of a tree, each with specificity and number of the selectors that select it."""
+        """Yield (element, rows) for every element of a tree; a row
+        (*specificity, number) for each selector that selects it.
+
+        Rows are sorted, from the weakest to the strongest.
+        """
         import cssselect2
 
         after, open_elements = self.after, [OpenElement(None)]
@@ -155,7 +160,7 @@ class SelectorMatcher:
             yield wrapper.etree_element, sorted((*weights, number) for number, weights in selected)
 
     def find_fulfilled(self, wrapper: Any, budget: Budget) -> list[int]:
-        """Return the compound selectors that an element fulfils by itself."""
+        """Return the numbers of the compound selectors that an element matches by itself."""
         budget.count_steps(1 + self.compounds // 32)
         found = [compound for *_, compound in self.simple.match(wrapper)]
         for matcher, descends in self.asked:
@@ -167,7 +172,7 @@ class SelectorMatcher:
 
 
 def split_at_commas(tokens: Tokens) -> list[list[Any]]:
-    """Return the selectors of a list, without comments."""
+    """Return the tokens of each selector of a list, without comments."""
     parts: list[list[Any]] = [[]]
     for token in tokens:
         if token == ",":
@@ -178,7 +183,8 @@ def split_at_commas(tokens: Tokens) -> list[list[Any]]:
 
 
 def split_compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
-    """Return the compound selectors of one selector, each with what combines it with the one before.
+    """Return (combinator, tokens) for the compound selectors
+    of one selector; the combinator stands before, first "".
 
     Raises cssselect2.SelectorError for combinators with nothing before or after them.
     """
@@ -204,6 +210,7 @@ def split_compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
 
 
 def trim_blanks(tokens: Tokens) -> list[Any]:
+    """Return the tokens without blanks at both ends."""
     blank = [token.type == "whitespace" for token in tokens]
     if all(blank):
         return []
@@ -211,10 +218,10 @@ def trim_blanks(tokens: Tokens) -> list[Any]:
 
 
 def refuse_slow(compound: Tokens, relational: bool = False) -> None:
-    """Refuse what cssselect2 would try in very many ways, or in a recursion as deep as the drawing is wide.
+    """Raise cssselect2.SelectorError for a compound selector that cssselect2 would match too slowly.
 
-    Raises cssselect2.SelectorError for many parts, combinators within a part, ``:has`` in ``:has``, and the
-    "of" of ``:nth-child``.
+    That is one with many parts, combinators within a part, ``:has`` in ``:has``, or "of" in ``:nth-child``.
+    ``relational`` says whether the tokens are inside a ``:has``.
     """
     import cssselect2
 
@@ -238,12 +245,12 @@ def refuse_slow(compound: Tokens, relational: bool = False) -> None:
 
 
 def count_tokens(tokens: Tokens) -> int:
-    """Return how many tokens there are, those in blocks and functions too."""
+    """Return the number of tokens, including those in blocks and functions."""
     return sum(1 + count_tokens(list_inner_tokens(token)) for token in tokens)
 
 
 def has_descendants(tokens: Tokens) -> bool:
-    """Return whether a compound selector asks what is in an element."""
+    """Return whether a compound selector has conditions on what is inside an element."""
     return any(
         (token.type == "function" and token.lower_name == "has") or has_descendants(list_inner_tokens(token))
         for token in tokens

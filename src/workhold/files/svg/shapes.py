@@ -1,10 +1,10 @@
-"""What each SVG shape is as chains of lines, arcs and Bézier curves, path data included.
+"""SVG shapes as chains of lines, arcs and Bézier curves, path data included.
 
 svgelements resolves relative and shortened commands of path data.
 
 Glossary
 --------
-shape : what one SVG element draws, as a chain in its own user units (y down).
+shape : the outline that one SVG element draws, as a chain in its own user units (y down).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from workhold.files.svg.viewport import LARGEST, NUMBER, ShapeElement, read_numb
 from workhold.geometry.rational import Pieces, make_bezier_piece, split_ellipse
 from workhold.geometry.segment import Point
 
-__all__ = ["SHAPES", "Shape"]
+__all__ = ["SHAPES", "SvgShape"]
 
 COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 SEPARATOR = r"\s*(?:,\s*(?=[-+.0-9]))?"
@@ -37,22 +37,26 @@ CSS_PATH = re.compile(r"""path\(\s*(?:(?:nonzero|evenodd)\s*,\s*)?(?:"([^"]*)"|'
 
 
 @frozen
-class Shape:
-    """N + 1 points in user units, N bulges, N labels, and the segments that are curves, by their numbers."""
+class SvgShape:
+    """N + 1 points in user units, N bulges and N labels;
+    ``curved`` has the segments that are curves, by their index.
+    """
 
     points: tuple[Point, ...]
     bulges: tuple[float, ...]
     labels: tuple[str, ...]
     curved: Mapping[int, Pieces] = field(factory=dict)
 
-    def close(self) -> Shape:
+    def close(self) -> SvgShape:
         """Return the shape with a line from its end to its start, unless it ends there."""
         if are_equal_points(self.points[0], self.points[-1]):
             return self
         label = (
             f"{self.labels[0].rpartition(' segment ')[0] or self.labels[0]} segment {len(self.labels) + 1}"
         )
-        return Shape((*self.points, self.points[0]), (*self.bulges, 0.0), (*self.labels, label), self.curved)
+        return SvgShape(
+            (*self.points, self.points[0]), (*self.bulges, 0.0), (*self.labels, label), self.curved
+        )
 
 
 def are_equal_points(p: Point, q: Point) -> bool:
@@ -60,8 +64,8 @@ def are_equal_points(p: Point, q: Point) -> bool:
     return hypot(p[0] - q[0], p[1] - q[1]) <= 1e-12 * (1 + abs(p[0]) + abs(p[1]))
 
 
-def read_path(figure: ShapeElement) -> Iterator[Shape]:
-    """Yield a <path>; each subpath is a chain."""
+def read_path(figure: ShapeElement) -> Iterator[SvgShape]:
+    """Yield the subpaths of a <path>, each as one shape; labels number the path's commands."""
     label = figure.label
     start: Point = (0.0, 0.0)
     steps: list[PathStep] = []
@@ -90,7 +94,7 @@ BATCH = 256
 def list_path_segments(figure: ShapeElement) -> Iterator[Any]:
     """Yield the segments of a path as svgelements resolves them.
 
-    Refuses path data that cannot be read, or asks for more than the budget has.
+    Raises InputError for path data that cannot be read, or needs more than the budget has.
     """
     from svgelements import Move, Path
 
@@ -117,7 +121,7 @@ def list_path_segments(figure: ShapeElement) -> Iterator[Any]:
 
 
 class PathStep(NamedTuple):
-    """A segment of a path: its last point, bulge and label, and the curve that it is, if it is one."""
+    """A segment of a path: its last point, bulge and label, and its Bézier pieces if it is a curve."""
 
     end: Point
     bulge: float
@@ -125,15 +129,16 @@ class PathStep(NamedTuple):
     curve: Pieces | None = None
 
 
-def make_subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
+def make_subpath(start: Point, steps: Sequence[PathStep]) -> SvgShape:
+    """Return the shape of consecutive steps from a start point."""
     ends, bulges, labels, curves = zip(*steps, strict=True)
-    return Shape((start, *ends), bulges, labels, {k: c for k, c in enumerate(curves) if c is not None})
+    return SvgShape((start, *ends), bulges, labels, {k: c for k, c in enumerate(curves) if c is not None})
 
 
 def read_path_data(figure: ShapeElement) -> str:
-    """Return the path data, as attribute or as CSS property; empty when there is none.
+    """Return the path data of an attribute or a CSS property; "" when there is none.
 
-    Refuses a property that is not ``path("...")``.
+    Raises InputError for a property that is not ``path("...")``.
     """
     given = figure.find_given_value("d")
     if given is None or given.text in ("", "none"):
@@ -148,10 +153,10 @@ def read_path_data(figure: ShapeElement) -> str:
 
 
 def split_path_commands(data: str) -> Iterator[str]:
-    """Yield the commands of path data, with letter and arguments (SVG 2, 9.3.9); arcs without radius are
-    lines (9.5.1).
+    """Yield the commands of path data, each with its letter and one set of arguments (SVG 2, 9.3.9).
 
-    Raises ValueError for path data that is not of SVG's grammar.
+    Arcs with a radius of 0 become lines (9.5.1). Raises ValueError for path data that is not of SVG's
+    grammar.
     """
     position, first = 0, True
     while position < len(data):
@@ -177,10 +182,11 @@ def split_path_commands(data: str) -> Iterator[str]:
 
 
 def convert_path_command(segment: Any, kind: str, label: str) -> list[PathStep]:
-    """Return what one path command draws: the arc of a circle as one or two arcs, and anything else as one
-    segment.
+    """Return the steps of one path command: one or two arcs for
+    an arc of a circle, none for one without length, else one.
 
-    Raises InputError for numbers that are missing or not finite.
+    ``kind`` is the class name of svgelements' segment. Raises InputError for numbers that are missing or not
+    finite.
     """
     end = read_point(segment.end, label)
     if kind in ("Line", "Close"):
@@ -215,7 +221,10 @@ def convert_path_command(segment: Any, kind: str, label: str) -> list[PathStep]:
 
 
 def compute_arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
-    """Return the sweep of an arc by chord and radius, more accurate than the rough one, which gives sign and half."""
+    """Return the signed sweep of an arc in radians from chord and radius, more accurate than ``rough``.
+
+    ``rough`` decides the sign, and whether it is more than half a turn.
+    """
     half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
     ratio = half_chord / radius if radius > 0 else 1.0
     half = pi / 2 if ratio > 1 - HALF_CIRCLE else asin(ratio)
@@ -227,48 +236,60 @@ def compute_arc_sweep(start: Point, end: Point, radius: float, rough: float) -> 
 
 
 def read_point(point: Any, label: str) -> Point:
-    """Return a point of svgelements; raise InputError when it is missing, not finite or too large."""
+    """Return a point of svgelements as (x, y); raise
+    InputError when it is missing, not finite or too large.
+    """
     if point is None or not (abs(point.x) <= LARGEST and abs(point.y) <= LARGEST):
         raise InputError(f"{label} has path data with a number missing, too large or not finite: correct it.")
     return float(point.x), float(point.y)
 
 
-def read_line(figure: ShapeElement) -> Iterator[Shape]:
+def read_line(figure: ShapeElement) -> Iterator[SvgShape]:
+    """Yield the shape of a <line>."""
     x1, y1, x2, y2 = (figure.read_length(a) for a in ("x1", "y1", "x2", "y2"))
-    yield Shape(((x1, y1), (x2, y2)), (0.0,), (figure.label,))
+    yield SvgShape(((x1, y1), (x2, y2)), (0.0,), (figure.label,))
 
 
-def read_circle(figure: ShapeElement) -> Iterator[Shape]:
+def read_circle(figure: ShapeElement) -> Iterator[SvgShape]:
+    """Return an iterator over the shape of a <circle>."""
     x, y, r = (figure.read_length(a) for a in ("cx", "cy", "r"))
     return make_oval(figure.label, (x, y), r, r)
 
 
-def read_ellipse(figure: ShapeElement) -> Iterator[Shape]:
-    """Yield an <ellipse>; a radius that is not given is the other (SVG 2, 10.4)."""
+def read_ellipse(figure: ShapeElement) -> Iterator[SvgShape]:
+    """Return an iterator over the shape of an <ellipse>; a
+    radius that is not given equals the other (SVG 2, 10.4).
+    """
     x, y = (figure.read_length(a) for a in ("cx", "cy"))
     return make_oval(figure.label, (x, y), *read_radii(figure))
 
 
-def make_oval(label: str, center: Point, rx: float, ry: float) -> Iterator[Shape]:
-    """Yield an ellipse, or a circle as two halves where the radii are equal; nothing where one of them is 0."""
+def make_oval(label: str, center: Point, rx: float, ry: float) -> Iterator[SvgShape]:
+    """Yield an ellipse, or a circle as two halves where
+    the radii are equal; nothing where one of them is 0.
+    """
     x, y = center
     if not (rx > 0 and ry > 0):
         return
     if abs(rx - ry) > CIRCULAR * max(rx, ry):
         whole = split_ellipse(center, (rx, 0.0), (0.0, ry), 0.0, 2 * pi)
-        yield Shape(((x + rx, y), (x + rx, y)), (0.0,), (label,), {0: whole})
+        yield SvgShape(((x + rx, y), (x + rx, y)), (0.0,), (label,), {0: whole})
     else:
-        yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (label, label))
+        yield SvgShape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (label, label))
 
 
 def read_radii(figure: ShapeElement) -> tuple[float, float]:
-    """Return ``rx`` and ``ry``: one that is not given, or negative, is the other, and 0 when neither is."""
+    """Return ``rx`` and ``ry``: one that is not given, or
+    negative, equals the other; both are 0 when neither is given.
+    """
     rx, ry = (figure.read_length(a, default=-1.0) for a in ("rx", "ry"))
     return max(ry if rx < 0 else rx, 0.0), max(rx if ry < 0 else ry, 0.0)
 
 
-def read_rectangle(figure: ShapeElement) -> Iterator[Shape]:
-    """Yield a <rect>, its corners sharp, round or elliptical (SVG 1.1, section 9.2)."""
+def read_rectangle(figure: ShapeElement) -> Iterator[SvgShape]:
+    """Yield the shape of a <rect> with sharp, round or elliptical
+    corners (SVG 1.1, section 9.2); nothing for an empty one.
+    """
     x, y, w, h = (figure.read_length(a) for a in ("x", "y", "width", "height"))
     if not (w > 0 and h > 0):
         return
@@ -276,7 +297,7 @@ def read_rectangle(figure: ShapeElement) -> Iterator[Shape]:
     rx, ry = min(rx, w / 2), min(ry, h / 2)
     if rx == 0 or ry == 0:
         corners = ((x, y), (x + w, y), (x + w, y + h), (x, y + h), (x, y))
-        yield Shape(corners, (0.0,) * 4, list_segment_labels(figure.label, 4))
+        yield SvgShape(corners, (0.0,) * 4, list_segment_labels(figure.label, 4))
         return
     quarter = tan(pi / 8)
     stations = [
@@ -305,13 +326,15 @@ def read_rectangle(figure: ShapeElement) -> Iterator[Shape]:
                 corner, weight = ((px, qy) if len(curved) % 2 else (qx, py)), cos(pi / 4)
                 rows = [(px, py, 1.0), (corner[0] * weight, corner[1] * weight, weight), (qx, qy, 1.0)]
                 curved[k] = np.array([rows])
-    yield Shape(
+    yield SvgShape(
         points, tuple(bulge for _, bulge in kept), list_segment_labels(figure.label, len(kept)), curved
     )
 
 
-def read_polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
-    """Yield a <polyline> or <polygon>; raise InputError for an odd number of coordinates."""
+def read_polyline(figure: ShapeElement, close: bool = False) -> Iterator[SvgShape]:
+    """Yield the shape of a <polyline>, or with ``close`` of a
+    <polygon>; raise InputError for an odd number of coordinates.
+    """
     values = read_numbers(figure.element.get("points", ""), f"{figure.label}: points", figure.budget)
     if len(values) % 2:
         raise InputError(f"{figure.label} has an odd number of coordinates: correct its points.")
@@ -320,18 +343,20 @@ def read_polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
         points.append(points[0])
     if len(points) > 1:
         count = len(points) - 1
-        yield Shape(tuple(points), (0.0,) * count, list_segment_labels(figure.label, count))
+        yield SvgShape(tuple(points), (0.0,) * count, list_segment_labels(figure.label, count))
 
 
-def read_polygon(figure: ShapeElement) -> Iterator[Shape]:
+def read_polygon(figure: ShapeElement) -> Iterator[SvgShape]:
+    """Return an iterator over the shape of a <polygon>."""
     return read_polyline(figure, close=True)
 
 
 def list_segment_labels(label: str, count: int) -> tuple[str, ...]:
+    """Return the labels of ``count`` segments, numbered from 0."""
     return tuple(f"{label} segment {k}" for k in range(count))
 
 
-SHAPES: dict[str, Callable[[ShapeElement], Iterator[Shape]]] = {
+SHAPES: dict[str, Callable[[ShapeElement], Iterator[SvgShape]]] = {
     "line": read_line,
     "circle": read_circle,
     "ellipse": read_ellipse,

@@ -1,8 +1,8 @@
-"""Whether an element is seen, and which of its loops bound its paint.
+"""Computed styles: whether an element is seen, and which of its loops bound its paint.
 
-A shape counts when its author sees its fill or its stroke (SVG 2, chapters 11 and 13); what colour that is
-does not matter. That follows from the computed values of ``display``, ``visibility``, ``opacity``, paints and
-their like. Inside one fill, a loop in another may be painted over (SVG 2, 13.4.2).
+A shape counts when its author sees its fill or its stroke (SVG 2, chapters 11 and 13), in whatever colour.
+That follows from the computed values of ``display``, ``visibility``, ``opacity``, paints and their like.
+Inside one fill, a loop in another may be painted over (SVG 2, 13.4.2).
 """
 
 from __future__ import annotations
@@ -20,15 +20,22 @@ from workhold.errors import InputError
 from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, drop_zero_lengths
 from workhold.files.outline.joining import make_closed_loop
-from workhold.files.svg.document import Declared, Styles, get_local_name, read_link, shorten_text
+from workhold.files.svg.document import DeclaredStyles, DeclaredValue, get_local_name, read_link, shorten_text
 from workhold.files.svg.viewport import LENGTH, ShapeElement
-from workhold.geometry.loop import LoopShape, compute_signed_area, loop_segments, refuse_meeting_loops
-from workhold.kernels.base.distance import turns_around
+from workhold.geometry.loop import LoopShape, compute_signed_area, make_loop_segments, refuse_meeting_loops
+from workhold.kernels.base.distance import measure_winding
 
-__all__ = ["INITIAL", "Style", "keep_painted_boundaries", "compute_style", "link_of", "refuse_effects"]
+__all__ = [
+    "INITIAL",
+    "ComputedStyle",
+    "keep_painted_boundaries",
+    "compute_style",
+    "split_link",
+    "refuse_effects",
+]
 
 Value = TypeVar("Value")
-Declarations = dict[str, list[Declared]]
+Declarations = dict[str, list[DeclaredValue]]
 
 HEX = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})$")
 # Without ways back over blanks, which would take the square of their number.
@@ -61,17 +68,17 @@ MARKERS = ("marker", "marker-start", "marker-mid", "marker-end")
 
 
 @frozen
-class Style:
+class ComputedStyle:
     """Computed values that matter for an outline.
 
     Parameters
     ----------
-    displayed : False takes the element away with all that is in it (``display: none``, ``opacity: 0``).
-    shown : visibility.
+    displayed : False removes the element with all that is in it (``display: none``, ``opacity: 0``).
+    shown : whether ``visibility`` shows the element itself.
     fill, stroke : "none", "seen" or "currentcolor".
     fill_opaque, stroke_opaque, stroke_wide, stroke_drawn, color_opaque : whether opacity, width, a dash, and
         the alpha of ``color`` are above 0.
-    even_odd : the fill rule.
+    even_odd : whether the fill rule is even-odd; nonzero otherwise.
     markers : whether the element carries markers.
     """
 
@@ -89,25 +96,29 @@ class Style:
 
     @property
     def filled(self) -> bool:
+        """Whether its fill is seen."""
         return self.fill_opaque and (self.fill == SEEN or (self.fill == CURRENT and self.color_opaque))
 
     @property
     def stroked(self) -> bool:
+        """Whether its stroke is seen."""
         seen = self.stroke == SEEN or (self.stroke == CURRENT and self.color_opaque)
         return seen and self.stroke_opaque and self.stroke_wide and self.stroke_drawn
 
 
-INITIAL = Style()
+INITIAL = ComputedStyle()
 
 
-def compute_style(declarations: Declarations, around: Style, styles: Styles, label: str) -> Style:
-    """Return the style of an element in one with the style ``around``.
+def compute_style(
+    declarations: Declarations, around: ComputedStyle, styles: DeclaredStyles, label: str
+) -> ComputedStyle:
+    """Return the style of an element inside one with the style ``around``.
 
-    Refuses values that are not read and decide whether the element is seen.
+    Raises InputError for values that are not supported and decide whether the element is seen.
     """
 
     def value(name: str, parse: Callable[[str], Value | None], inherited: Value, initial: Value) -> Value:
-        """Return the first valid declared value, or else the inherited one."""
+        """Return the first valid declared value of a property, or else the inherited one."""
         for given in declarations.get(name, ()):
             text = given.text.lower() if "url(" not in given.text.lower() else given.text
             if text in ("inherit", "unset", "revert") or (name == "color" and text == CURRENT):
@@ -124,12 +135,13 @@ def compute_style(declarations: Declarations, around: Style, styles: Styles, lab
         return inherited
 
     def painted(text: str) -> str | None:
+        """Return what a paint shows; None for a text that is not a paint."""
         return resolve_paint(text, styles)
 
     display = value("display", lambda text: text if DISPLAYS.match(text) else None, "inline", "inline")
     if display == "contents":
         raise InputError(f"{label} has display: contents, which is not read: remove it.")
-    return Style(
+    return ComputedStyle(
         displayed=display != "none" and value("opacity", is_positive_opacity, True, True),
         shown=value(
             "visibility", {"visible": True, "hidden": False, "collapse": False}.get, around.shown, True
@@ -147,7 +159,7 @@ def compute_style(declarations: Declarations, around: Style, styles: Styles, lab
 
 
 def refuse_effects(figure: ShapeElement) -> None:
-    """Refuse masks, filters and other effects that cut, move or hide what is drawn."""
+    """Raise InputError for masks, filters and other effects that cut, move or hide what is drawn."""
     for name, harmless in EFFECTS.items():
         text = figure.declarations[name][0].text if name in figure.declarations else harmless
         usual = () if name == "all" else ("normal", "initial", "unset", "inherit")
@@ -171,7 +183,9 @@ def is_positive_width(text: str) -> bool | None:
 
 
 def is_dash_pattern(text: str) -> bool | None:
-    """Return whether a pattern of dashes and gaps has a dash; None when it is no pattern."""
+    """Return whether a pattern of dashes and gaps has a
+    dash of some length; None when it is not a pattern.
+    """
     words = text.replace(",", " ").split()
     if text == "none" or len(words) % 2:
         words *= 2
@@ -193,21 +207,25 @@ def is_opaque(text: str) -> bool | None:
     return None if color is None or color == CURRENT else color.alpha > 0
 
 
-def link_of(text: str) -> tuple[str, str] | None:
-    """Return what ``url(...)`` points to, and what follows it; None when the text is no url."""
+def split_link(text: str) -> tuple[str, str] | None:
+    """Return the target of ``url(...)``, and the text
+    after it; None when the text does not begin with a url.
+    """
     match = URL.match(text)
     if match is None:
         return None
     return next(part for part in match.groups()[:3] if part is not None), match.group(4)
 
 
-def resolve_paint(text: str, styles: Styles) -> str | None:
-    """Return what a paint shows; None for a text that is not a paint (SVG 2, 13.2)."""
+def resolve_paint(text: str, styles: DeclaredStyles) -> str | None:
+    """Return "none", "seen" or "currentcolor" for a paint;
+    None for a text that is not a paint (SVG 2, 13.2).
+    """
     if text in (NONE, CURRENT):
         return text
     if text in ("context-fill", "context-stroke"):
         return NONE
-    link = link_of(text)
+    link = split_link(text)
     if link is None:
         seen = is_opaque(text)
         return None if seen is None else SEEN if seen else NONE
@@ -217,8 +235,11 @@ def resolve_paint(text: str, styles: Styles) -> str | None:
     return resolve_paint(link[1].lower() or NONE, styles)
 
 
-def shows_paint(server: Element, styles: Styles, deepest: int = 50) -> bool:
-    """Return whether a gradient has a visible stop, or a pattern has content, itself or by what it links to."""
+def shows_paint(server: Element, styles: DeclaredStyles, deepest: int = 50) -> bool:
+    """Return whether a gradient has a visible stop, or a pattern has content, itself or through its link.
+
+    ``deepest`` limits the number of links that are followed.
+    """
     if server not in styles.painted:
         content = [
             child
@@ -242,17 +263,17 @@ def shows_paint(server: Element, styles: Styles, deepest: int = 50) -> bool:
 
 
 def keep_painted_boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
-    """Return the chains that have paint on one side only, by the nonzero rule.
+    """Return the chains that have paint on exactly one side by the nonzero rule.
 
-    How often the loops around a point turn about it, less those that turn the other way, is not zero where
-    there is paint. A loop that meets others stays, to be refused with its place.
+    There is paint where the winding number, the sum of the signed turns of all loops around a point, is not
+    zero. A loop that meets others is kept, so that it is refused later with its place.
     """
     clean = [drop_zero_lengths([chain]).chains for chain in chains]
     known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]
     shapes = []
     for k in known:
         budget.count_steps(len(clean[k][0].bulges))
-        shapes.append(LoopShape.of(loop_segments(make_closed_loop(clean[k][0]).vertices)))
+        shapes.append(LoopShape.from_segments(make_loop_segments(make_closed_loop(clean[k][0]).vertices)))
     turns = [int(np.sign(compute_signed_area(shape.segments))) for shape in shapes]
     boxes = np.array([shape.box for shape in shapes]).reshape(-1, 4)
     over = set()
@@ -263,13 +284,14 @@ def keep_painted_boundaries(chains: Sequence[Chain], budget: Budget) -> list[Cha
         near = np.flatnonzero(around).tolist()
         rows = np.concatenate([shapes[m].rows for m in near] or [shape.rows[:0]])
         budget.count_steps(len(near) + len(rows) // 16)
-        outside = round(turns_around(*shape.segments[0].start, rows) / (2 * pi))
+        outside = round(measure_winding(*shape.segments[0].start, rows) / (2 * pi))
         if outside and outside + turns[at] and not any(loops_meet(shape, shapes[m], budget) for m in near):
             over.add(k)
     return [chain for k, chain in enumerate(chains) if k not in over]
 
 
 def loops_meet(one: LoopShape, other: LoopShape, budget: Budget) -> bool:
+    """Return whether two loops touch or cross."""
     budget.count_steps(len(one.segments) + len(other.segments))
     try:
         refuse_meeting_loops(one, other, str, str)

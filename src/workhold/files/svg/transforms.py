@@ -1,4 +1,4 @@
-"""Transforms in the plane: the attribute's list (SVG 1.1, section 7.6) and CSS Transforms 1 and 2."""
+"""Transforms in the plane: the attribute ``transform`` (SVG 1.1, section 7.6) and CSS Transforms 1 and 2."""
 
 from __future__ import annotations
 
@@ -35,7 +35,10 @@ ATTRIBUTE = {
 
 
 def read_transform(figure: ShapeElement) -> Placement:
-    """Return the map of an element's transform properties; refuse any that are not SVG's, or not in the plane."""
+    """Return the map of an element's transform properties, from its coordinates to those around it.
+
+    Raises InputError for values that cannot be read, or are not in the plane.
+    """
     declarations, label = figure.declarations, figure.label
     given = {name: declarations[name][0] for name in PROPERTIES if name in declarations}
     given = {name: one for name, one in given.items() if one.text not in ("", "none", "initial", "unset")}
@@ -63,7 +66,9 @@ def read_transform(figure: ShapeElement) -> Placement:
 
 
 def read_transform_origin(figure: ShapeElement) -> tuple[float, float]:
-    """Return the point that stays in place, in user units; raise InputError for places that are not read."""
+    """Return the fixed point (x, y) of an element's transforms,
+    in user units; raise InputError for unsupported values.
+    """
     if "transform-origin" not in figure.declarations:
         return 0.0, 0.0
     given = figure.declarations["transform-origin"][0]
@@ -97,7 +102,10 @@ def read_transform_origin(figure: ShapeElement) -> tuple[float, float]:
 
 
 def parse_transform_functions(text: str, css: bool, figure: ShapeElement) -> Placement:
-    """Return the map of a list of transform functions; raise InputError for functions that are not read."""
+    """Return the map of a list of transform functions; the last one is applied first.
+
+    ``css`` selects the grammar of CSS. Raises InputError for functions that are not supported.
+    """
     text, label = text.strip(), figure.label
     placement = Placement()
     position = 0
@@ -124,7 +132,9 @@ def parse_transform_functions(text: str, css: bool, figure: ShapeElement) -> Pla
 
 
 def read_css_arguments(name: str, text: str) -> list[float] | None:
-    """Return the arguments of a CSS transform function in user units and degrees; None when one is not valid."""
+    """Return the arguments of a CSS transform function in
+    user units and degrees; None when one is not valid.
+    """
     values: list[float] = []
     for word in text.split(","):
         match = LENGTH.match(word)
@@ -148,7 +158,7 @@ def read_css_arguments(name: str, text: str) -> list[float] | None:
 
 
 def make_single_transform(name: str, v: list[float]) -> Placement | None:
-    """Return one transform function, angles in degrees; None if SVG has no such function."""
+    """Return the map of one transform function, with angles in degrees; None if there is no such function."""
     count = len(v)
     match name, count:
         case "matrix", 6:

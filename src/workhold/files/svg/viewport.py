@@ -1,11 +1,11 @@
 """Numbers, lengths and angles of SVG, and the viewports in which they are measured.
 
-Attributes and CSS properties of an element give them. A drawing, a nested drawing or a symbol has a viewport
-with its ``viewBox``, and a window that cuts off what is outside.
+They are given by attributes and CSS properties of an element. A drawing, a nested drawing or a symbol has a
+viewport with its ``viewBox``, and a window that cuts off what is outside.
 
 Glossary
 --------
-viewport : what the percentages of lengths are of, in user units.
+viewport : the width and height in user units that percentages of lengths refer to.
 window : a convex polygon that hides what is outside: the edge of a nested drawing or of a symbol, or a clip
     path.
 """
@@ -23,7 +23,7 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement
-from workhold.files.svg.document import GEOMETRY, Declared, shorten_text
+from workhold.files.svg.document import GEOMETRY, DeclaredValue, shorten_text
 from workhold.geometry.segment import Point
 
 __all__ = [
@@ -34,7 +34,7 @@ __all__ = [
     "ShapeElement",
     "ViewBox",
     "Viewport",
-    "Window",
+    "ClipPolygon",
     "read_absolute_length",
     "is_convex",
     "fit_viewbox",
@@ -68,7 +68,10 @@ Viewport = tuple[float | None, float | None]
 
 
 def read_absolute_length(text: str, *, unitless: bool = True) -> float | None:
-    """Return a length in CSS pixels; None unless it is a number with an absolute unit, or with none."""
+    """Return a length in CSS pixels; None unless it is a number with an absolute unit.
+
+    A number without a unit counts as pixels, but only 0 does where ``unitless`` is False.
+    """
     match = LENGTH.match(text)
     if match is None or match.group(2).lower() not in PIXELS:
         return None
@@ -77,13 +80,17 @@ def read_absolute_length(text: str, *, unitless: bool = True) -> float | None:
 
 
 def is_physical_length(text: str) -> bool:
-    """Return whether a length is in a unit of paper, not in pixels."""
+    """Return whether a length is in a unit of paper, such as mm, not in pixels."""
     match = LENGTH.match(text)
     return match is not None and match.group(2).lower() in PIXELS and match.group(2).lower() not in ("", "px")
 
 
 def read_numbers(text: str, what: str, budget: Budget) -> list[float]:
-    """Return all numbers of a list separated by blanks and commas; refuse more than ``budget`` has."""
+    """Return all numbers of a list separated by blanks and commas.
+
+    Raises InputError for anything else, too large numbers, and more than ``budget`` has; ``what`` begins the
+    message.
+    """
     values: list[float] = []
     text, position = text.rstrip(), 0
     while position < len(text):
@@ -101,32 +108,32 @@ def read_numbers(text: str, what: str, budget: Budget) -> list[float]:
 
 @frozen
 class ShapeElement:
-    """An element as its shape sees it.
+    """An element with all that is needed to read its shape.
 
     Parameters
     ----------
-    element : what has the attributes.
-    label : what messages call it.
+    element : the element, with its attributes.
+    label : its name for messages.
     declarations : its declared values.
-    viewport : what percentages are of.
-    budget : what reading the drawing may still take.
+    viewport : the size that percentages refer to.
+    budget : work that may still be spent on the drawing.
     """
 
     element: Element
     label: str
-    declarations: dict[str, list[Declared]]
+    declarations: dict[str, list[DeclaredValue]]
     viewport: Viewport
     budget: Budget
 
-    def find_given_value(self, name: str) -> Declared | None:
-        """Return the value of a geometry property or attribute; None when there is none."""
+    def find_given_value(self, name: str) -> DeclaredValue | None:
+        """Return the strongest value of a geometry property, or an attribute; None when there is none."""
         if name in GEOMETRY:
             return self.declarations[name][0] if name in self.declarations else None
         text = self.element.get(name)
-        return None if text is None else Declared(text.strip(), css=False)
+        return None if text is None else DeclaredValue(text.strip(), css=False)
 
     def read_length(self, name: str, default: float = 0.0) -> float:
-        """Return a length in user units.
+        """Return a length in user units, ``default`` where it is not given.
 
         Raises
         ------
@@ -147,7 +154,9 @@ class ShapeElement:
         return value
 
     def read_percentage(self, text: str, name: str) -> float | None:
-        """Return the percents of the viewport in user units (SVG 2, 8.9); None when the viewport is not known."""
+        """Return a percentage of the viewport in user units
+        (SVG 2, 8.9); None when the viewport is not known.
+        """
         width, height = self.viewport
         match = LENGTH.match(text)
         if name == "r":
@@ -170,7 +179,7 @@ ASPECT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?: (meet|slice))?$")
 def read_viewbox(text: str | None, label: str, budget: Budget) -> ViewBox | None:
     """Return the left, top, width and height of a viewBox; None when there is none.
 
-    Refuses one that is not four numbers with a positive size.
+    Raises InputError for one that is not four numbers with a positive size.
     """
     if text is None:
         return None
@@ -183,7 +192,10 @@ def read_viewbox(text: str | None, label: str, budget: Budget) -> ViewBox | None
 
 
 def fit_viewbox(box: ViewBox, width: float, height: float, aspect: str, label: str) -> Placement:
-    """Return the map from a viewBox to a viewport at the origin (SVG 2, 8.2)."""
+    """Return the map from a viewBox to a viewport at the origin (SVG 2, 8.2).
+
+    Raises InputError for a ``preserveAspectRatio``, ``aspect``, that cannot be read.
+    """
     words = aspect.removeprefix("defer").split() or ["xMidYMid"]
     sx, sy = width / box[2], height / box[3]
     if words[0] == "none":
@@ -200,7 +212,9 @@ def fit_viewbox(box: ViewBox, width: float, height: float, aspect: str, label: s
 
 
 def is_convex(points: tuple[Point, ...]) -> bool:
-    """Return whether a closed polygon, its first point repeated at its end, is convex and not crossed by itself."""
+    """Return whether a closed polygon, its first point
+    repeated at its end, is convex and does not cross itself.
+    """
     steps = [(x - u, y - v) for (u, v), (x, y) in pairwise(points) if (x, y) != (u, v)]
     if len(steps) < 3:
         return False
@@ -212,20 +226,24 @@ def is_convex(points: tuple[Point, ...]) -> bool:
 
 
 @frozen
-class Window:
-    """A convex polygon in mm that hides what is outside, and what messages call it.
+class ClipPolygon:
+    """A convex polygon in mm that hides what is outside.
 
     Parameters
     ----------
     corners : N + 1 points, the last the first.
-    label : such as ``the clip-path of g 'a'``.
+    label : name for messages, such as ``the clip-path of g 'a'``.
     """
 
     corners: tuple[Point, ...]
     label: str
 
     def classify_visibility(self, chain: Chain, budget: Budget) -> Literal["all", "some", "nothing"]:
-        """Return how much of a chain is inside, as far as the window's edges, taken one by one, show."""
+        """Return whether all, some or nothing of a chain is inside.
+
+        Each edge is tested by itself, so that "some" may also be said of a chain that is outside near a
+        corner.
+        """
         area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
         size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))
         whole, outside = True, False
@@ -242,7 +260,9 @@ class Window:
 
 
 def measure_reach(chain: Chain, direction: Point) -> float:
-    """Return how far a chain reaches in a direction (a unit vector): the largest product with one of its points."""
+    """Return how far a chain reaches in a direction (a unit
+    vector): the largest dot product with one of its points.
+    """
     nx, ny = direction
     farthest = max(nx * x + ny * y for x, y in chain.points)
     for k, bulge in enumerate(chain.bulges):

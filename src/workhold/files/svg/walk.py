@@ -1,4 +1,4 @@
-"""The walk through a drawing's elements: what is seen, where it is, and what messages call it."""
+"""The walk through a drawing's elements, which collects the chains of visible shapes."""
 
 from __future__ import annotations
 
@@ -12,22 +12,29 @@ from workhold.errors import InputError, shorten_middle
 from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement, format_count
 from workhold.files.outline.curves import CurveReader
-from workhold.files.svg.document import Declared, Document, Styles, get_local_name, read_link, shorten_text
+from workhold.files.svg.document import (
+    DeclaredStyles,
+    DeclaredValue,
+    SvgDocument,
+    get_local_name,
+    read_link,
+    shorten_text,
+)
 from workhold.files.svg.shapes import SHAPES
 from workhold.files.svg.style import (
     INITIAL,
-    Style,
+    ComputedStyle,
     compute_style,
     keep_painted_boundaries,
-    link_of,
     refuse_effects,
+    split_link,
 )
 from workhold.files.svg.transforms import read_transform
 from workhold.files.svg.viewport import (
     LARGEST,
+    ClipPolygon,
     ShapeElement,
     Viewport,
-    Window,
     fit_viewbox,
     is_convex,
     read_viewbox,
@@ -51,14 +58,14 @@ CONDITIONS = ("requiredExtensions", "systemLanguage", "requiredFeatures")
 
 @frozen
 class ElementNesting:
-    """Where the walk stands.
+    """The state that the walk passes from an element to those inside it.
 
     Parameters
     ----------
-    placement : the map to mm.
-    viewport : what percentages are of.
-    style : the style around.
-    windows : what hides parts of the drawing.
+    placement : the map from user units to mm.
+    viewport : the size that percentages refer to.
+    style : the computed style of the elements around.
+    windows : polygons outside which nothing of the drawing is shown.
     suffix, links : the <use> elements around, for messages and against endless nesting.
     anchored : whether it is within an <a>.
     look : colour and dashes of lines, as they are written.
@@ -66,8 +73,8 @@ class ElementNesting:
 
     placement: Placement
     viewport: Viewport
-    style: Style = INITIAL
-    windows: tuple[Window, ...] = ()
+    style: ComputedStyle = INITIAL
+    windows: tuple[ClipPolygon, ...] = ()
     suffix: str = ""
     links: tuple[str, ...] = ()
     anchored: bool = False
@@ -75,9 +82,11 @@ class ElementNesting:
 
 
 class SvgWalk:
-    """Collects the chains of a document's elements, and what was left out."""
+    """A walk that collects the chains of a document's elements, and counts what was left out."""
 
-    def __init__(self, document: Document, styles: Styles, fit: float | None, budget: Budget) -> None:
+    def __init__(
+        self, document: SvgDocument, styles: DeclaredStyles, fit: float | None, budget: Budget
+    ) -> None:
         self.budget = budget
         self.curves = CurveReader(fit)
         self.document = document
@@ -91,6 +100,7 @@ class SvgWalk:
         self.sizes: dict[Element, int] = {}
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
+        """Collect the chains of an element and those inside it; definitions and metadata are skipped."""
         self.budget.spend()
         tag = get_local_name(element)
         if tag in SILENT:
@@ -106,6 +116,7 @@ class SvgWalk:
                 ) from error
 
     def visit_figure(self, figure: ShapeElement, nest: ElementNesting) -> None:
+        """Collect the chains of an element that has been read, or count it as hidden or ignored."""
         element, label = figure.element, figure.label
         tag = get_local_name(element)
         style = compute_style(figure.declarations, nest.style, self.styles, label)
@@ -144,14 +155,16 @@ class SvgWalk:
             self.ignored[tag] += style.shown
 
     def make_shape_element(self, element: Element, nest: ElementNesting) -> ShapeElement:
-        """Return an element with its values and what messages call it."""
+        """Return an element with its declared values and its name for messages."""
         label = self.document.name(element) + nest.suffix
         return ShapeElement(
             element, label, self.styles.list_declared_values(element), nest.viewport, self.budget
         )
 
     def visit_children(self, parent: Element, nest: ElementNesting) -> None:
-        """Visit the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
+        """Visit the elements in a container; of a <switch>,
+        only the first whose conditions hold (SVG 2, 5.9.2).
+        """
         for element in parent:
             if not self.document.is_svg_element(element):
                 continue
@@ -168,7 +181,9 @@ class SvgWalk:
             self.visit(element, nest)
 
     def visit_shape(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Add the chains of a shape that is seen; refuse transforms that crush the drawing."""
+        """Append the chains of a shape that is seen; raise
+        InputError for one that a window cuts or a transform crushes.
+        """
         style, label = nest.style, figure.label
         if not style.shown or not (style.stroked or style.filled):
             self.hidden += 1
@@ -198,7 +213,7 @@ class SvgWalk:
             self.looks.update((label, look) for chain in found for label in chain.labels)
 
     def place_shape(self, figure: ShapeElement, nest: ElementNesting) -> Iterator[Chain]:
-        """Yield the chains of a shape in mm; of a shape without stroke, what bounds its fill."""
+        """Yield the chains of a shape in mm; those of a shape without stroke are closed as its fill is."""
         for shape in SHAPES[get_local_name(figure.element)](figure):
             if not nest.style.stroked:
                 if len(shape.bulges) == 1 and not shape.bulges[0] and not shape.curved:
@@ -211,7 +226,9 @@ class SvgWalk:
                 yield chain
 
     def visit_use(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Visit what a <use> shows; refuse links to nothing, to other files and to themselves."""
+        """Visit what a <use> shows; raise InputError for
+        links to nothing, to other files and to themselves.
+        """
         label, link = figure.label, read_link(figure.element)
         target = self.document.find_linked(link)
         if target is None:
@@ -230,7 +247,9 @@ class SvgWalk:
             self.visit(target, inner)
 
     def count_shown_elements(self, element: Element, depth: int = 0) -> int:
-        """Return how many elements are visited at least where one is shown; links double it from one to the next."""
+        """Return a lower bound of the number of elements visited
+        where an element is shown, with those that <use> repeats.
+        """
         tag = get_local_name(element)
         if (
             element in self.sizes
@@ -252,7 +271,8 @@ class SvgWalk:
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
         """Visit a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
 
-        Refuses a transform, size or reference point of a symbol, which programs draw differently.
+        Raises InputError for a transform, and for a size or reference point of a symbol, which programs draw
+        differently.
         """
         own = self.make_shape_element(target, nest)
         label = own.label
@@ -284,7 +304,12 @@ class SvgWalk:
     ) -> None:
         """Visit the children of a nested drawing or symbol in its own viewport.
 
-        Refuses a transform, which programs draw differently, and sizes that are not known.
+        Raises InputError for a transform, which programs draw differently, and for sizes that are not known.
+
+        Parameters
+        ----------
+        corner : x and y of the viewport in user units.
+        sizes : the element whose width and height count; those of ``figure`` where it has none.
         """
         element, label = figure.element, figure.label
         if read_transform(figure) != Placement():
@@ -308,7 +333,7 @@ class SvgWalk:
             return
         elif not shows_overflow(figure.declarations):
             corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height), (0.0, 0.0))
-            window = Window(tuple(map(view, corners)), f"the edge of {label}")
+            window = ClipPolygon(tuple(map(view, corners)), f"the edge of {label}")
             nest = evolve(nest, windows=(*nest.windows, window))
         if box is not None and width is not None and height is not None:
             view = view.compose_after(
@@ -318,7 +343,10 @@ class SvgWalk:
         self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
 
     def clip_nesting(self, figure: ShapeElement, nest: ElementNesting) -> ElementNesting:
-        """Return the nest with the window of an element's ``clip-path``; refuse any but one convex polygon."""
+        """Return the nesting with the window of an element's ``clip-path`` added.
+
+        Raises InputError for a clip path that is not one convex polygon.
+        """
         declarations, label, element = figure.declarations, figure.label, figure.element
         text = declarations["clip-path"][0].text if "clip-path" in declarations else "none"
         if text.lower() in ("none", "initial", "unset", ""):
@@ -336,7 +364,7 @@ class SvgWalk:
             raise InputError(
                 f"{label} has a clip-path, which programs place differently: put it on a group around."
             )
-        link = link_of(text)
+        link = split_link(text)
         clip = None if link is None or link[1] else self.document.find_linked(link[0])
         if (
             clip is None
@@ -368,11 +396,11 @@ class SvgWalk:
         outlines = list(SHAPES[tag](own)) if tag in ("rect", "polygon", "path") else []
         if len(outlines) != 1 or any(outlines[0].bulges) or not is_convex(outlines[0].close().points):
             raise error
-        window = Window(tuple(map(placement, outlines[0].close().points)), f"the clip-path of {label}")
+        window = ClipPolygon(tuple(map(placement, outlines[0].close().points)), f"the clip-path of {label}")
         return evolve(nest, windows=(*nest.windows, window))
 
     def list_remarks(self) -> list[str]:
-        """Return what was left out, one sentence for each reason."""
+        """Return sentences on what was left out, one for each reason."""
         remarks = []
         if +self.ignored:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted((+self.ignored).items()))
@@ -392,7 +420,7 @@ class SvgWalk:
 
 
 def refuse_absurd(placement: Placement, label: str) -> None:
-    """Refuse a map to mm with which nothing can be reckoned."""
+    """Raise InputError for a map to mm with factors or shifts too large for arithmetic."""
     numbers = (placement.a, placement.b, placement.c, placement.d)
     if not (
         all(abs(number) <= MOST_SCALE for number in numbers)
@@ -403,7 +431,9 @@ def refuse_absurd(placement: Placement, label: str) -> None:
 
 
 def suits_conditions(element: Element, label: str) -> bool:
-    """Return whether an element's conditions hold (SVG 2, 5.9); refuse conditions that programs judge differently."""
+    """Return whether an element's conditions hold (SVG 2, 5.9);
+    raise InputError where programs judge them differently.
+    """
     if element.get("requiredExtensions") is not None:
         return False
     if element.get("systemLanguage") is not None:
@@ -417,14 +447,16 @@ def suits_conditions(element: Element, label: str) -> bool:
     return True
 
 
-def shows_overflow(declarations: dict[str, list[Declared]]) -> bool:
+def shows_overflow(declarations: dict[str, list[DeclaredValue]]) -> bool:
     """Return whether a nested drawing shows what reaches over its edge."""
     names = ("overflow", "overflow-x", "overflow-y")
     given = [declarations[name][0].text for name in names if name in declarations]
     return bool(given) and all(text in ("visible", "auto") for text in given)
 
 
-def may_be_hidden(element: Element, declarations: dict[str, list[Declared]]) -> bool:
-    """Return whether something says of an element that it may be taken away with all that is in it."""
+def may_be_hidden(element: Element, declarations: dict[str, list[DeclaredValue]]) -> bool:
+    """Return whether an element has a condition, ``display``
+    or ``opacity``, which may hide it with all that is in it.
+    """
     is_conditional = any(element.get(name) is not None for name in CONDITIONS)
     return is_conditional or "display" in declarations or "opacity" in declarations

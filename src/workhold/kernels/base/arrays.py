@@ -7,9 +7,11 @@ from workhold.kernels.base.compiling import Array, IntArray, inner
 
 @inner
 def sort_rows(rows: Array, column: int, sign: float, keys: Array, order: IntArray, out: Array) -> None:
-    """Writes (N, M) rows to ``out`` in the order of a column times ``sign``, the least first (Shell's sort).
+    """Write the (N, M) ``rows`` to ``out`` in ascending order of
+    ``sign * rows[:, column]`` (Shell sort, not stable).
 
-    ``keys`` and ``order`` are (N,) work space.
+    ``rows`` stays as it is; ``keys`` and ``order`` are (N,) work space, after which ``order[j]`` is the index
+    in ``rows`` of row j of ``out``.
     """
     count = rows.shape[0]
     for k in range(count):
@@ -32,12 +34,14 @@ def sort_rows(rows: Array, column: int, sign: float, keys: Array, order: IntArra
 
 @inner
 def eliminate(matrix: Array, inverse: Array) -> float:
-    """Inverts a (4, 4) matrix, which is used up, by Gauss and Jordan's elimination with pivots by rows.
+    """Write the inverse of a (4, 4) matrix to ``inverse`` by Gauss-Jordan elimination with row pivoting.
+
+    ``matrix`` is overwritten.
 
     Returns
     -------
     float
-        The size of the determinant; where it is 0 or NaN there is no inverse.
+        Absolute value of the determinant. Where it is 0 or NaN, ``inverse`` holds no inverse.
     """
     for i in range(4):
         for j in range(4):

@@ -31,12 +31,12 @@ from workhold.kernels.base.compiling import (
     LETTERS,
     OPTIONS,
     Kernel,
-    dimensions,
-    element,
-    fields,
+    count_dimensions,
+    get_element_type,
+    list_fields,
 )
-from workhold.kernels.base.libraries import ENDINGS, KERNELS, library_name
-from workhold.kernels.base.views import view_at
+from workhold.kernels.base.libraries import ENDINGS, KERNELS, make_library_name
+from workhold.kernels.base.views import make_view_at
 
 # What a library may call: functions of the C library's mathematics, and those that move memory.
 OUTSIDE = {
@@ -48,12 +48,14 @@ INTERVAL = 0.2
 
 
 class EntrySource:
-    """Python source that reads the arguments of a kernel from words and writes its result to the first ones."""
+    """Python source of an entry: it reads a kernel's arguments from
+    words and writes its result to the first words.
+    """
 
     def __init__(self, kernel: Kernel) -> None:
         self.word = len(kernel.results)
         self.names: dict[str, Any] = {
-            "view_at": view_at,
+            "make_view_at": make_view_at,
             "kernel": numba.njit(**OPTIONS)(kernel.function),
             "int64": np.int64,
             "float64": np.float64,
@@ -61,7 +63,8 @@ class EntrySource:
         arguments = ", ".join([self.read(kind) for kind in kernel.arguments.values()])
         self.lines = [
             "def entry(address):",
-            f"    words, reals = view_at(address, ({self.word},), int64), view_at(address, ({self.word},), float64)",
+            f"    words = make_view_at(address, ({self.word},), int64)",
+            f"    reals = make_view_at(address, ({self.word},), float64)",
             f"    {'found = ' if kernel.results else ''}kernel({arguments})",
         ]
         for number, kind in enumerate(kernel.results):
@@ -69,32 +72,38 @@ class EntrySource:
             self.lines.append(f"    {'reals' if kind is float else 'words'}[{number}] = {found}")
 
     def read(self, kind: Any) -> str:
-        """Return the expression that reads an argument of a type from the next words."""
-        if (parts := fields(kind)) is not None:
+        """Return the expression that reads an argument of this type from
+        the next words; advance ``self.word`` past them.
+        """
+        if (parts := list_fields(kind)) is not None:
             values = ", ".join([self.read(part) for _, part in parts])
             return f"{self.name(kind)}({values})" if hasattr(kind, "_fields") else f"({values},)"
         word = self.word
         if kind in LETTERS:
             self.word += 1
             return {int: f"words[{word}]", float: f"reals[{word}]", bool: f"words[{word}] != 0"}[kind]
-        count = dimensions(kind)
+        count = count_dimensions(kind)
         self.word += 1 + count
         shape = ", ".join(f"words[{word + 1 + axis}]" for axis in range(count))
-        return f"view_at(words[{word}], ({shape},), {self.name(element(kind).type)})"
+        return f"make_view_at(words[{word}], ({shape},), {self.name(get_element_type(kind).type)})"
 
     def name(self, thing: type[Any]) -> str:
-        """Return the name of a class in the source, and make it known there."""
+        """Return the name of a class in the source, and add the class to the names that the source
+        can use.
+        """
         self.names[thing.__name__] = thing
         return thing.__name__
 
     def compile(self) -> Any:
-        """Return numba's compiled function for C."""
+        """Return numba's C function of the entry: void (int64 address of the words)."""
         exec("\n".join(self.lines), self.names)
         return numba.cfunc(types.void(types.int64), error_model="numpy")(self.names["entry"])
 
 
 def compile_kernels(room: str) -> Iterator[tuple[str, Any]]:
-    """Yield the name and LLVM's module of each kernel of a room, with the entry under that name."""
+    """Yield (name, LLVM module) of each kernel of a room by name; the module's entry function has
+    that name.
+    """
     for _, kernel in sorted(Kernel.all[room].items()):
         entry = EntrySource(kernel).compile()
         module = llvm.parse_assembly(entry.inspect_llvm())
@@ -103,12 +112,13 @@ def compile_kernels(room: str) -> Iterator[tuple[str, Any]]:
 
 
 def make_object(module: Any, entries: Collection[str]) -> bytes:
-    """Return the object file of a module, in which nothing but the entries can be called.
+    """Return the object file of a module that exports only the functions named in ``entries``.
 
     Raises
     ------
     SystemExit
-        When a kernel calls what a library has not, as one does that makes an array or raises an error.
+        When the module calls a function outside ``OUTSIDE``, as a kernel does that makes an array or raises
+        an error.
     """
     machine = llvm.Target.from_default_triple().create_target_machine(
         cpu=os.environ["NUMBA_CPU_NAME"], features="", opt=3, reloc="pic", codemodel="default"
@@ -125,7 +135,7 @@ def make_object(module: Any, entries: Collection[str]) -> bytes:
 
 
 def link(linker: str, sources: Sequence[Path], target: Path) -> None:
-    """Make a shared library of object files."""
+    """Link object files (``sources``) into the shared library ``target``, with the program ``linker``."""
     if sys.platform == "darwin":
         options = ["-dynamiclib", "-undefined", "dynamic_lookup"]
     elif sys.platform == "win32":
@@ -138,10 +148,10 @@ def link(linker: str, sources: Sequence[Path], target: Path) -> None:
 
 
 def build(room: str, folder: Path) -> Path:
-    """Build the library of a room into a folder, and return its path.
+    """Build the library of a room into ``folder``, and return its path.
 
-    Each kernel is optimized with its own copies of what it calls, which makes it faster. Where there is no
-    linker all kernels are one object file.
+    Each kernel is optimized with its own copies of the functions that it calls, which makes it faster. Where
+    no linker is installed, the library is one object file with all kernels.
     """
     package = f"workhold.kernels.{room}"
     for module in pkgutil.iter_modules([str(KERNELS / room)]):
@@ -164,13 +174,15 @@ def build(room: str, folder: Path) -> Path:
             link(linker, objects, made)
         else:
             made.write_bytes(make_object(whole, entries))
-        path = folder / library_name(room, ENDINGS[linker is None])
+        path = folder / make_library_name(room, ENDINGS[linker is None])
         made.replace(path)
     return path
 
 
 def report_progress(stop: Event) -> None:
-    """Print how much of the inner functions is compiled, now and then, from 0 to 1."""
+    """Print the compiled share of the inner functions (0 to 1), a
+    line every ``INTERVAL`` seconds, until ``stop`` is set.
+    """
     while not stop.wait(INTERVAL):
         done = sum(bool(function.signatures) for function in INNER)
         sys.stdout.write(f"{done / max(len(INNER), 1):.3f}\n")
@@ -178,13 +190,15 @@ def report_progress(stop: Event) -> None:
 
 
 def end_with_starter() -> None:
-    """End this process when the one that started it has ended."""
+    """Wait until standard input is closed, which means that the
+    starting process has ended; then exit with status 1.
+    """
     sys.stdin.read()
     os._exit(1)
 
 
 def main(room: str, folder: str) -> None:
-    """Build a library, and print how far it is."""
+    """Build the library of a room into a folder; print the progress from 0 to 1, a line each."""
     # The collector would look through all that is compiled again and again.
     gc.disable()
     stop = Event()

@@ -1,4 +1,4 @@
-"""How much memory kernels are given: what was needed before, and twice as much where it did not suffice."""
+"""Sizes of the arrays that kernels write to: the largest needed so far, doubled where it did not suffice."""
 
 from __future__ import annotations
 
@@ -9,18 +9,21 @@ Made = TypeVar("Made")
 
 
 class Capacity:
-    """How many rows a kernel is given to write to.
+    """The number of rows that a kernel is given to write to.
 
     Parameters
     ----------
-    rows : how many to begin with.
+    rows : number to begin with, at least 1; later the largest number that was needed.
     """
 
     def __init__(self, rows: int) -> None:
         self.rows = rows
 
     def give(self, write: Callable[[int], Made | None]) -> Made:
-        """Return what ``write`` makes of so many rows, with more rows as long as it answers None."""
+        """Return the first result of ``write(rows)`` that is not None.
+
+        ``rows`` begins with the number of rows of the last success, and is doubled after each None.
+        """
         rows = self.rows
         while (made := write(rows)) is None:
             rows *= 2

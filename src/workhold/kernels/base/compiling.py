@@ -56,7 +56,8 @@ INNER: list[Any] = []
 
 
 def inner(function: Function) -> Function:
-    """Mark a function that only kernels call; it stays a plain function but where kernels are compiled.
+    """Mark a function that only kernels call: return it compiled in
+    the modes "building" and "callable", else as it is.
 
     Kernels avoid what is slow to compile: assignments of slices, and long kernels that call other long ones.
     """
@@ -69,19 +70,21 @@ def inner(function: Function) -> Function:
 
 
 def compiled(function: Function) -> Function:
-    """Mark a function that Python calls, without the interpreter's lock."""
+    """Mark a function that Python calls; return its :class:`Kernel`,
+    which runs without Python's global lock (GIL).
+    """
     return cast(Function, Kernel(function))
 
 
 class Kernel:
-    """A compiled function that Python calls.
+    """A compiled function that Python calls, with positional arguments only.
 
-    Its library is loaded at the first call, and built before that where there is none.
+    The library of its room is loaded at the first call, and built first where there is none.
 
     Raises
     ------
     TypeError
-        At a call with anything else than the function's annotations say.
+        At a call whose arguments differ in number or type from the function's annotations.
     """
 
     # All there are, by room and name.
@@ -95,17 +98,17 @@ class Kernel:
 
     @cached_property
     def arguments(self) -> dict[str, Any]:
-        """The type of each argument, by its name."""
+        """The type of each argument, by the argument's name, in the order of the signature."""
         return {name: self.hints[name] for name in signature(self.function).parameters}
 
     @cached_property
     def hints(self) -> dict[str, Any]:
-        """The types that the function's annotations name."""
+        """The types in the function's annotations, by the argument's name or "return"."""
         return get_type_hints(self.function, include_extras=True)
 
     @cached_property
     def results(self) -> tuple[type[Any], ...]:
-        """The types of the numbers that are returned."""
+        """The types of the returned numbers, empty where the function returns None."""
         result = self.hints["return"]
         if result is type(None):
             return ()
@@ -113,22 +116,24 @@ class Kernel:
 
     @cached_property
     def takers(self) -> list[Taker]:
-        """Functions that append the words of an argument to a list."""
-        return [taker(kind, f"{self.name}: {name}") for name, kind in self.arguments.items()]
+        """For each argument in order, the function that appends its words to a list."""
+        return [make_taker(kind, f"{self.name}: {name}") for name, kind in self.arguments.items()]
 
     @cached_property
     def words(self) -> Struct:
-        """The layout of the words of a call."""
-        return Struct("=" + "".join(letters(kind) for kind in (*self.results, *self.arguments.values())))
+        """The layout of a call in memory: first the words of the results, then those of the arguments."""
+        return Struct(
+            "=" + "".join(make_format_letters(kind) for kind in (*self.results, *self.arguments.values()))
+        )
 
     @cached_property
     def returned(self) -> Struct:
-        """The layout of the words of the result."""
-        return Struct("=" + "".join(letters(kind) for kind in self.results))
+        """The layout of the words of the results."""
+        return Struct("=" + "".join(make_format_letters(kind) for kind in self.results))
 
     @cached_property
     def entry(self) -> Callable[[int], None]:
-        """The entry of this kernel in the library of its room."""
+        """The compiled entry of this kernel, which takes the address of the words of a call."""
         from workhold.kernels.base.libraries import load_entry
 
         return load_entry(self.room, self.name)
@@ -145,44 +150,53 @@ class Kernel:
         return found if len(found) > 1 else found[0] if found else None
 
 
-def fields(record: Any) -> list[tuple[str, Any]] | None:
-    """Return names and types of the fields of a named tuple or a tuple, None for any other type."""
+def list_fields(record: Any) -> list[tuple[str, Any]] | None:
+    """Return [(name, type)] of the fields of a named tuple or tuple
+    type (names "0", "1", ... there), None for other types.
+    """
     if get_origin(record) is tuple:
         return [(str(number), kind) for number, kind in enumerate(get_args(record))]
     return list(get_type_hints(record, include_extras=True).items()) if hasattr(record, "_fields") else None
 
 
-def letters(kind: Any) -> str:
-    """Return the letters of :mod:`struct` for the words of a type; an array is its address and its shape."""
-    if (parts := fields(kind)) is not None:
-        return "".join(letters(part) for _, part in parts)
-    return LETTERS[kind] if kind in LETTERS else "q" * (1 + dimensions(kind))
+def make_format_letters(kind: Any) -> str:
+    """Return the format letters of :mod:`struct` for the words of a
+    type; an array has its address and its shape.
+    """
+    if (parts := list_fields(kind)) is not None:
+        return "".join(make_format_letters(part) for _, part in parts)
+    return LETTERS[kind] if kind in LETTERS else "q" * (1 + count_dimensions(kind))
 
 
-def dimensions(kind: Any) -> int:
-    """Return how many dimensions an annotated array has."""
+def count_dimensions(kind: Any) -> int:
+    """Return the number of dimensions of an annotated array type, such as 2 for ``Matrix``."""
     return int(get_args(kind)[1])
 
 
-def element(kind: Any) -> np.dtype[Any]:
-    """Return the type of the elements of an annotated array."""
+def get_element_type(kind: Any) -> np.dtype[Any]:
+    """Return the NumPy dtype of the elements of an annotated array type, such as float64 for ``Matrix``."""
     return np.dtype(get_args(get_args(get_args(kind)[0])[1])[0])
 
 
-def taker(kind: Any, name: str) -> Taker:
-    """Return a function that appends the words of an argument of a type to a list."""
-    if (parts := fields(kind)) is not None:
-        return record_taker(parts, name)
-    return number_taker(kind, name) if kind in LETTERS else array_taker(kind, name)
+def make_taker(kind: Any, name: str) -> Taker:
+    """Return a function ``take(value, words)`` that checks an
+    argument of this type and appends its words to a list.
+
+    ``name`` names the argument in the message of the TypeError that ``take`` raises for a wrong value.
+    """
+    if (parts := list_fields(kind)) is not None:
+        return make_record_taker(parts, name)
+    return make_number_taker(kind, name) if kind in LETTERS else make_array_taker(kind, name)
 
 
-def number_taker(kind: type[Any], name: str) -> Taker:
-    """Return the taker of a number, see :func:`taker`."""
+def make_number_taker(kind: type[Any], name: str) -> Taker:
+    """Return the taker of a number (int, float or bool), see :func:`taker`."""
     wanted = {int: (int, np.integer), float: (float, int, np.floating, np.integer), bool: (bool, np.bool_)}[
         kind
     ]
 
     def take(value: Any, words: list[Any]) -> None:
+        """Append a number to ``words``; raise TypeError for a value of another type."""
         if not isinstance(value, wanted):
             raise TypeError(f"{name} must be {kind.__name__}, not {type(value).__name__}.")
         words.append(value)
@@ -190,11 +204,14 @@ def number_taker(kind: type[Any], name: str) -> Taker:
     return take
 
 
-def array_taker(kind: Any, name: str) -> Taker:
-    """Return the taker of an array, see :func:`taker`."""
-    wanted, count = element(kind), dimensions(kind)
+def make_array_taker(kind: Any, name: str) -> Taker:
+    """Return the taker of a C-contiguous array of an annotated type, see :func:`taker`."""
+    wanted, count = get_element_type(kind), count_dimensions(kind)
 
     def take(value: Any, words: list[Any]) -> None:
+        """Append the address and the shape of an array to ``words``; raise
+        TypeError for another type, layout or dimension.
+        """
         is_array = isinstance(value, np.ndarray) and value.ndim == count and value.dtype == wanted
         if not (is_array and value.flags.c_contiguous and value.flags.aligned):
             raise TypeError(f"{name} must be a C-contiguous array of {wanted} with {count} dimensions.")
@@ -205,7 +222,7 @@ def array_taker(kind: Any, name: str) -> Taker:
 
 
 def find_address(array: np.ndarray[Any, Any]) -> int:
-    """Return where the elements of an array begin."""
+    """Return the memory address of the first element of an array."""
     try:
         return addressof(c_char.from_buffer(array.data))
     except (TypeError, ValueError):
@@ -213,12 +230,16 @@ def find_address(array: np.ndarray[Any, Any]) -> int:
         return int(array.ctypes.data)
 
 
-def remembering(take: Taker) -> Taker:
-    """Return a taker of arrays that remembers where they lie: those in records are handed over again and again,
-    and looking up an address takes longer than all else."""
+def remember_arrays(take: Taker) -> Taker:
+    """Return a taker of arrays that remembers the words of each array
+    object that it has seen, as long as that lives.
+
+    Arrays in records are handed over again and again, and looking up an address takes longer than all else.
+    """
     known: dict[int, tuple[ref[Any], list[Any]]] = {}
 
     def take_known(value: Any, words: list[Any]) -> None:
+        """Append the words of an array to ``words``: remembered ones, or those that ``take`` appends."""
         found = known.get(id(value))
         if found is not None and found[0]() is value:
             words += found[1]
@@ -232,14 +253,17 @@ def remembering(take: Taker) -> Taker:
     return take_known
 
 
-def record_taker(kinds: list[tuple[str, Any]], name: str) -> Taker:
-    """Return the taker of a named tuple or a tuple, see :func:`taker`."""
+def make_record_taker(kinds: list[tuple[str, Any]], name: str) -> Taker:
+    """Return the taker of a named tuple or tuple with fields ``kinds`` [(name, type)], see :func:`taker`."""
     takers = [
-        remembering(take) if get_origin(kind) is Annotated else take
-        for kind, take in ((kind, taker(kind, f"{name}.{field}")) for field, kind in kinds)
+        remember_arrays(take) if get_origin(kind) is Annotated else take
+        for kind, take in ((kind, make_taker(kind, f"{name}.{field}")) for field, kind in kinds)
     ]
 
     def take(value: Any, words: list[Any]) -> None:
+        """Append the words of all fields to ``words``; raise TypeError
+        for anything but a tuple of as many fields.
+        """
         if not isinstance(value, tuple) or len(value) != len(takers):
             raise TypeError(f"{name} must be a record of {len(takers)}, not {type(value).__name__}.")
         for take_part, part in zip(takers, value, strict=True):

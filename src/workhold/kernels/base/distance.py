@@ -37,39 +37,47 @@ from workhold.kernels.base.feature import (
     SIGN,
     X,
     Y,
-    angle_on,
+    compute_point,
+    find_arc_parameter,
     is_shallow,
-    off_shallow,
-    point_at,
+    measure_shallow_offset,
 )
 
 
 @inner
-def segment_distance(x: float, y: float, row: Array) -> float:
-    """Distance in mm from a point to one segment (see ``base.feature``)."""
+def measure_segment_distance(x: float, y: float, row: Array) -> float:
+    """Return the distance in mm, at least 0, from the point (x, y) to
+    one segment row (see ``base.feature``).
+    """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         along = dx * row[AXIS_X] + dy * row[AXIS_Y]
         beyond = max(abs(along) - row[HALF_EXTENT], 0.0)
         return hypot(beyond, dx * row[AXIS_Y] - dy * row[AXIS_X])
-    if abs(angle_on(row, x, y)) <= row[HALF_EXTENT]:
-        return abs(off_shallow(row, x, y)[0] if is_shallow(row) else hypot(dx, dy) - row[RADIUS])
-    low_x, low_y = point_at(row, -row[HALF_EXTENT])
-    high_x, high_y = point_at(row, row[HALF_EXTENT])
+    if abs(find_arc_parameter(row, x, y)) <= row[HALF_EXTENT]:
+        return abs(measure_shallow_offset(row, x, y)[0] if is_shallow(row) else hypot(dx, dy) - row[RADIUS])
+    low_x, low_y = compute_point(row, -row[HALF_EXTENT])
+    high_x, high_y = compute_point(row, row[HALF_EXTENT])
     return min(hypot(x - low_x, y - low_y), hypot(x - high_x, y - high_y))
 
 
 @inner
-def outline_distance(x: float, y: float, rows: Array) -> float:
-    """Distance in mm from a point to the nearest of (N, 10) segments."""
+def measure_outline_distance(x: float, y: float, rows: Array) -> float:
+    """Return the distance in mm from the point (x, y) to the nearest of (N, 10) segments, inf for none.
+
+    See ``base.feature`` for the layout of ``rows``.
+    """
     best = inf
     for k in range(rows.shape[0]):
-        best = min(best, segment_distance(x, y, rows[k]))
+        best = min(best, measure_segment_distance(x, y, rows[k]))
     return best
 
 
-def outline_distances(points: Array, rows: Array) -> Array:
-    """Return the distances in mm from (M, 2) points to the nearest of (N, 10) segments, shape (M,)."""
+def measure_outline_distances(points: Array, rows: Array) -> Array:
+    """Return the distance in mm from each of (M, 2) points to the nearest of (N, 10) segments, shape (M,).
+
+    See ``base.feature`` for the layout of ``rows``.
+    """
     out = np.empty(points.shape[0])
     write_outline_distances(points, rows, out)
     return out
@@ -77,14 +85,22 @@ def outline_distances(points: Array, rows: Array) -> Array:
 
 @compiled
 def write_outline_distances(points: Matrix, rows: Matrix, out: Vector) -> None:
-    """Write the distances of :func:`outline_distances` to (M,) numbers."""
+    """Write the distance in mm from each of (M, 2) points to the nearest of (N, 10) segments to ``out`` (M,).
+
+    See ``base.feature`` for the layout of ``rows``.
+    """
     for k in range(points.shape[0]):
-        out[k] = outline_distance(points[k, 0], points[k, 1], rows)
+        out[k] = measure_outline_distance(points[k, 0], points[k, 1], rows)
 
 
 @inner
-def winding_angle(x: float, y: float, row: Array) -> float:
-    """Angle in radians that one segment, run along its direction, turns around a point not on it."""
+def measure_winding_angle(x: float, y: float, row: Array) -> float:
+    """Return the signed angle in radians by which the ray from a
+    point to one segment turns along that segment.
+
+    Counter-clockwise is positive. The segment runs in its own direction: an arc with SIGN -1 clockwise. The
+    point must not lie on the segment. See ``base.feature`` for the layout of ``row``.
+    """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         ax, ay = -row[HALF_EXTENT] * row[AXIS_X] - dx, -row[HALF_EXTENT] * row[AXIS_Y] - dy
@@ -107,26 +123,37 @@ def winding_angle(x: float, y: float, row: Array) -> float:
 
 
 @compiled
-def turns_around(x: float, y: float, rows: Matrix) -> float:
-    """Return the angle in radians of :func:`turning_about`."""
-    return turning_about(x, y, rows)
+def measure_winding(x: float, y: float, rows: Matrix) -> float:
+    """Return the angle in radians that (N, 10) segments turn around a
+    point, as :func:`sum_winding_angles`, for Python.
+
+    See ``base.feature`` for the layout of ``rows``.
+    """
+    return sum_winding_angles(x, y, rows)
 
 
 @inner
-def turning_about(x: float, y: float, rows: Array) -> float:
-    """Return the angle in radians that (N, 10) segments, run along their directions, turn around a point not
-    on them."""
+def sum_winding_angles(x: float, y: float, rows: Array) -> float:
+    """Return the sum in radians of the :func:`measure_winding_angle` of
+    (N, 10) segments about a point on none of them.
+
+    It is 2 pi inside a closed counter-clockwise outline and 0 outside. See ``base.feature`` for the layout of
+    ``rows``.
+    """
     total = 0.0
     for k in range(rows.shape[0]):
-        total += winding_angle(x, y, rows[k])
+        total += measure_winding_angle(x, y, rows[k])
     return total
 
 
 @compiled
 def is_inside(x: float, y: float, rows: Matrix) -> bool:
-    """Whether a point not on the outline lies in the material bounded by (N, 10) segments, material on the
-    left."""
-    return turning_about(x, y, rows) > pi
+    """Return whether the point (x, y), not on the outline, lies in the material that (N, 10) segments bound.
+
+    The segments form closed loops with the material on their left. See ``base.feature`` for the layout of
+    ``rows``.
+    """
+    return sum_winding_angles(x, y, rows) > pi
 
 
 # Two straight pieces whose directions have a smaller cross product meet at an end of one, if at all.
@@ -134,29 +161,33 @@ PARALLEL = 1e-12
 
 
 @inner
-def distance_along(x: float, y: float, start: Array, ax: float, ay: float, length: float) -> float:
-    """Distance in mm from a point to a straight piece of a direction (unit vector) and a length in mm."""
+def measure_distance_to_piece(x: float, y: float, start: Array, ax: float, ay: float, length: float) -> float:
+    """Return the distance in mm from the point (x, y) to a straight piece.
+
+    The piece begins at ``start`` (2,) and has the direction (ax, ay), a unit vector, and ``length`` in mm.
+    """
     dx, dy = x - start[0], y - start[1]
     along = min(max(dx * ax + dy * ay, 0.0), length)
     return hypot(dx - along * ax, dy - along * ay)
 
 
 @inner
-def piece_distance(start: Array, end: Array, row: Array) -> float:
-    """Distance in mm from a straight piece to one segment (see ``base.feature``).
+def measure_piece_distance(start: Array, end: Array, row: Array) -> float:
+    """Return the distance in mm from the straight piece ``start`` to
+    ``end`` to one segment (see ``base.feature``).
 
-    It is least at an end of either, or where they cross, or, from an arc's outside, at the foot of the
-    perpendicular from its centre. From its inside the distance has no minimum between.
+    The distance is least at an end of either, or where they cross, or, outside an arc's circle, at the foot
+    of the perpendicular from its centre. Inside the circle it has no minimum but at an end.
     """
     length = hypot(end[0] - start[0], end[1] - start[1])
-    best = segment_distance(start[0], start[1], row)
+    best = measure_segment_distance(start[0], start[1], row)
     if length == 0.0:
         return best
-    best = min(best, segment_distance(end[0], end[1], row))
+    best = min(best, measure_segment_distance(end[0], end[1], row))
     ax, ay = (end[0] - start[0]) / length, (end[1] - start[1]) / length
     for side in (-1.0, 1.0):
-        x, y = point_at(row, side * row[HALF_EXTENT])
-        best = min(best, distance_along(x, y, start, ax, ay, length))
+        x, y = compute_point(row, side * row[HALF_EXTENT])
+        best = min(best, measure_distance_to_piece(x, y, start, ax, ay, length))
     dx, dy = row[X] - start[0], row[Y] - start[1]
     if row[IS_ARC] == 0.0:
         turn = ax * row[AXIS_Y] - ay * row[AXIS_X]
@@ -171,18 +202,22 @@ def piece_distance(start: Array, end: Array, row: Array) -> float:
     for side in (-1.0, 1.0):
         along = foot + side * half
         if 0.0 <= along <= length:
-            best = min(best, segment_distance(start[0] + along * ax, start[1] + along * ay, row))
+            best = min(best, measure_segment_distance(start[0] + along * ax, start[1] + along * ay, row))
     return best
 
 
 @compiled
-def piece_distances(starts: Matrix, ends: Matrix, rows: Matrix, distances: Vector) -> None:
-    """Distances in mm, which ``distances`` (M,) receives, from straight pieces, given by their ends (M, 2)
-    each, to the nearest of (N, 10) segments."""
+def write_piece_distances(starts: Matrix, ends: Matrix, rows: Matrix, distances: Vector) -> None:
+    """Write the distance in mm from each of M straight pieces to the
+    nearest of (N, 10) segments to ``distances`` (M,).
+
+    ``starts`` and ``ends`` (M, 2) are the ends of the pieces in mm. See ``base.feature`` for the layout of
+    ``rows``.
+    """
     for k in range(starts.shape[0]):
         best = inf
         for n in range(rows.shape[0]):
-            best = min(best, piece_distance(starts[k], ends[k], rows[n]))
+            best = min(best, measure_piece_distance(starts[k], ends[k], rows[n]))
         distances[k] = best
 
 
@@ -191,13 +226,14 @@ LEAF, DEPTH = 4, 64
 
 
 class SweptTree(NamedTuple):
-    """Swept pieces in the order of their tree.
+    """Swept pieces in the order of their tree of boxes.
 
     Parameters
     ----------
-    rows : (N, 10) segments and arcs, see ``base.feature``; N is a multiple of the leaves.
+    rows : (N, 10) segments and arcs, see ``base.feature``; N is ``LEAF`` times the number L of leaves.
     radius : (N,) of the cylinders in mm; -inf for a row that only fills a leaf.
-    nodes : (2 L, 5) of each node x0, y0, x1, y1 and the largest radius; the first is none.
+    nodes : (2 L, 5) with columns x0, y0, x1, y1 of the box and the largest radius of each node; row 0 is
+        unused.
     """
 
     rows: Matrix
@@ -206,15 +242,17 @@ class SweptTree(NamedTuple):
 
 
 @inner
-def node_bound(x0: float, y0: float, x1: float, y1: float, node: Array) -> float:
-    """Least clearance in mm that anything in a box has to what a node holds."""
+def bound_node_clearance(x0: float, y0: float, x1: float, y1: float, node: Array) -> float:
+    """Return a lower bound in mm of distance minus radius from
+    anything in the box (x0, y0, x1, y1) to pieces of a node.
+    """
     dx = max(max(node[0] - x1, x0 - node[2]), 0.0)
     dy = max(max(node[1] - y1, y0 - node[3]), 0.0)
     return hypot(dx, dy) - node[4]
 
 
 @compiled
-def nearest_swept(
+def write_nearest_swept(
     starts: Matrix,
     ends: Matrix,
     tree: SweptTree,
@@ -222,13 +260,15 @@ def nearest_swept(
     least: Vector,
     which: IntVector,
 ) -> None:
-    """The least distance less radius in mm, and the piece it is to, from straight pieces to what is swept.
+    """Write, for each of M straight pieces, its least distance minus
+    radius in mm to the swept pieces, and which is nearest.
 
     Parameters
     ----------
-    starts, ends : (M, 2) ends in mm; equal for a point.
-    waiting : (DEPTH,) room for the numbers of nodes.
-    least, which : (M,) receive the distances and the numbers of rows.
+    starts, ends : (M, 2) ends of the pieces in mm; equal for a point.
+    waiting : (DEPTH,) work space for numbers of nodes.
+    least, which : (M,) receive the distances (negative inside a cylinder) and the rows in ``tree.rows``; inf
+        and -1 where the tree holds no piece.
     """
     rows, radius, nodes = tree.rows, tree.radius, tree.nodes
     leaves = nodes.shape[0] // 2
@@ -240,11 +280,13 @@ def nearest_swept(
         while count > 0:
             count -= 1
             node = waiting[count]
-            if node_bound(x0, y0, x1, y1, nodes[node]) >= best:
+            if bound_node_clearance(x0, y0, x1, y1, nodes[node]) >= best:
                 continue
             if node < leaves:
                 one, other = 2 * node, 2 * node + 1
-                if node_bound(x0, y0, x1, y1, nodes[one]) < node_bound(x0, y0, x1, y1, nodes[other]):
+                if bound_node_clearance(x0, y0, x1, y1, nodes[one]) < bound_node_clearance(
+                    x0, y0, x1, y1, nodes[other]
+                ):
                     one, other = other, one
                 # The nearer one is looked at first.
                 waiting[count], waiting[count + 1] = one, other
@@ -254,7 +296,7 @@ def nearest_swept(
             for row in range(first, first + LEAF):
                 if radius[row] == -inf:
                     continue
-                off = piece_distance(starts[k], ends[k], rows[row]) - radius[row]
+                off = measure_piece_distance(starts[k], ends[k], rows[row]) - radius[row]
                 if off < best:
                     best, found = off, row
         least[k], which[k] = best, found

@@ -1,6 +1,6 @@
 """Segments and contact features as kernels take them: the columns of a row, points on it, and shallow arcs.
 
-Columns of a row (``geometry.segment.segment_rows``):
+Columns of a row (``geometry.segment.make_segment_rows``):
 
 IS_ARC : 0 for a line, 1 for an arc.
 X, Y : middle of a line, centre of an arc, in mm.
@@ -43,13 +43,20 @@ SPLITTER = 134217729.0
 
 @inner
 def is_shallow(row: Array) -> bool:
-    """Whether a feature is a shallow arc."""
+    """Return whether a segment or feature is a shallow arc: an arc
+    with a half sweep under ``SHALLOW`` radians.
+
+    Its centre is so far away that coordinates of that size would drown the arc's own. See ``base.feature``
+    for the layout of ``row``.
+    """
     return row[IS_ARC] != 0.0 and row[HALF_EXTENT] < SHALLOW
 
 
 @inner
-def exact_product(one: float, other: float) -> tuple[float, float]:
-    """A product and what rounding takes from it (Dekker 1971)."""
+def multiply_exactly(one: float, other: float) -> tuple[float, float]:
+    """Return (p, e): the rounded product p and its rounding error e,
+    with p + e the exact product (Dekker 1971).
+    """
     product = one * other
     c = SPLITTER * one
     high = c - (c - one)
@@ -61,62 +68,85 @@ def exact_product(one: float, other: float) -> tuple[float, float]:
 
 
 @inner
-def exact_dot(ax: float, ay: float, bx: float, by: float) -> float:
-    """Scalar product of two vectors of the plane, rounded once or so however much cancels."""
-    one, one_rest = exact_product(ax, bx)
-    two, two_rest = exact_product(ay, by)
+def compute_exact_dot(ax: float, ay: float, bx: float, by: float) -> float:
+    """Return the scalar product of two plane vectors, accurate to
+    about one rounding even where terms cancel.
+    """
+    one, one_rest = multiply_exactly(ax, bx)
+    two, two_rest = multiply_exactly(ay, by)
     total = one + two
     part = total - one
     return total + ((one - (total - part)) + (two - part) + (one_rest + two_rest))
 
 
 @inner
-def from_center(center: float, center_rest: float, radius: float, along: float, excess: float) -> float:
-    """A coordinate of an arc's middle, for a direction whose square is 1 + ``excess``, rounded once or so."""
-    way, rest = exact_product(radius, along)
+def compute_middle_coordinate(
+    center: float, center_rest: float, radius: float, along: float, excess: float
+) -> float:
+    """Return center + radius * along, scaled to a unit direction, as
+    one coordinate accurate to about one rounding.
+
+    ``center_rest`` is the rounding error of ``center``; ``along`` is the coordinate of the direction, whose
+    squared length is 1 + ``excess``.
+    """
+    way, rest = multiply_exactly(radius, along)
     total = center + way
     part = total - center
     return total + ((center - (total - part)) + (way - part) + (rest - 0.5 * way * excess + center_rest))
 
 
 @inner
-def middle_of(row: Array) -> tuple[float, float]:
-    """The middle of an arc: the point of its circle, as its row has it, in the direction of its row."""
+def find_arc_middle(row: Array) -> tuple[float, float]:
+    """Return x and y in mm of the middle of an arc, accurate to about
+    one rounding even where its centre is far away.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     tx, ty = row[AXIS_X], row[AXIS_Y]
-    xx, xx_rest = exact_product(tx, tx)
-    yy, yy_rest = exact_product(ty, ty)
+    xx, xx_rest = multiply_exactly(tx, tx)
+    yy, yy_rest = multiply_exactly(ty, ty)
     excess = ((max(xx, yy) - 1.0) + min(xx, yy)) + (xx_rest + yy_rest)
     return (
-        from_center(row[X], row[REST_X], row[RADIUS], tx, excess),
-        from_center(row[Y], row[REST_Y], row[RADIUS], ty, excess),
+        compute_middle_coordinate(row[X], row[REST_X], row[RADIUS], tx, excess),
+        compute_middle_coordinate(row[Y], row[REST_Y], row[RADIUS], ty, excess),
     )
 
 
 @inner
-def local_size(row: Array) -> float:
-    """What roundings of a feature's numbers are relative to, in mm."""
+def compute_local_size(row: Array) -> float:
+    """Return a length in mm to which rounding errors of a feature's coordinates are relative.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if not is_shallow(row):
         return abs(row[X]) + abs(row[Y]) + row[RADIUS]
-    x, y = middle_of(row)
+    x, y = find_arc_middle(row)
     return abs(x) + abs(y) + row[HALF_EXTENT] * row[RADIUS]
 
 
 @inner
-def largest_number(row: Array) -> float:
-    """The largest of a feature's numbers that formulas use, in mm."""
+def find_largest_number(row: Array) -> float:
+    """Return the largest absolute value in mm among the numbers of a feature that formulas use.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if not is_shallow(row):
         return max(row[RADIUS], abs(row[X]), abs(row[Y]))
-    x, y = middle_of(row)
+    x, y = find_arc_middle(row)
     return max(row[HALF_EXTENT] * row[RADIUS], abs(x), abs(y))
 
 
 @inner
-def point_at(row: Array, parameter: float) -> tuple[float, float]:
-    """Point of a feature at a parameter: mm on a line, radians on an arc."""
+def compute_point(row: Array, parameter: float) -> tuple[float, float]:
+    """Return x and y in mm of the point of a feature at a parameter:
+    mm on a line, radians on an arc, 0 at its middle.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (row[X] + parameter * row[AXIS_X], row[Y] + parameter * row[AXIS_Y])
     if is_shallow(row):
-        x, y = middle_of(row)
+        x, y = find_arc_middle(row)
         # 1 - cos s = 2 sin(s / 2)^2
         half = sin(parameter / 2.0)
         beside, back = row[RADIUS] * sin(parameter), 2.0 * row[RADIUS] * half * half
@@ -129,21 +159,29 @@ def point_at(row: Array, parameter: float) -> tuple[float, float]:
 
 
 @inner
-def angle_on(row: Array, x: float, y: float) -> float:
-    """Parameter in radians of a point seen from an arc's centre."""
+def find_arc_parameter(row: Array, x: float, y: float) -> float:
+    """Return the parameter on an arc in radians, in [-pi, pi], of the
+    direction from its centre to the point (x, y).
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     dx, dy = x - row[X], y - row[Y]
     if is_shallow(row):
-        mx, my = middle_of(row)
+        mx, my = find_arc_middle(row)
         dx, dy = x - mx, y - my
         return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[RADIUS] + row[AXIS_X] * dx + row[AXIS_Y] * dy)
     return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy)
 
 
 @inner
-def off_shallow(row: Array, x: float, y: float) -> tuple[float, float, float]:
-    """Distance in mm of a point from a shallow arc's circle, outward positive, and the unit vector from its
-    centre."""
-    mx, my = middle_of(row)
+def measure_shallow_offset(row: Array, x: float, y: float) -> tuple[float, float, float]:
+    """Return (distance, x, y): a point's signed distance in mm off a
+    shallow arc's circle, and the unit vector to it.
+
+    The distance is positive outside the circle; the unit vector points from the circle's centre to the point.
+    See ``base.feature`` for the layout of ``row``.
+    """
+    mx, my = find_arc_middle(row)
     dx, dy, k = x - mx, y - my, 1.0 / row[RADIUS]
     rise = k * (dx * dx + dy * dy) + 2.0 * (row[AXIS_X] * dx + row[AXIS_Y] * dy)
     size = sqrt(1.0 + k * rise)
@@ -151,27 +189,31 @@ def off_shallow(row: Array, x: float, y: float) -> tuple[float, float, float]:
 
 
 @inner
-def beside_middle(
+def intersect_near_middle(
     row: Array, nx: float, ny: float, across: float, off: float, branch: float
 ) -> tuple[float, float, float, float]:
-    """Where an arc's circle meets a straight line.
+    """Return the point where an arc's circle meets a straight line, on one of its two branches.
 
-    The line's points are ``off`` from the arc's middle along the unit normal n. With T = (-ny, nx), nu = n .
-    t and tau = T . t, the point that is ``half`` R beside the centre's foot on the line has
+    Let m be the arc's middle, t the unit vector from its centre to m, R its radius and k = 1 / R. The line
+    consists of the points with distance ``off`` from m along the unit normal n. With T = (-ny, nx), nu = n .
+    t and tau = T . t, the circle's point lies ``half`` R along T from the foot of the centre on the line, and
+    R (half - tau) along T from the foot of m, where
 
         half^2 = tau^2 - k off (2 nu + k off),      R (half - tau) = -off (2 nu + k off) / (half + tau)
 
-    from the middle's foot on.
+    See ``base.feature`` for the layout of ``row``.
 
     Parameters
     ----------
     row : of an arc, shallow or not.
-    across : tau, which is given because it must be known better than n is.
-    branch : the sign of ``half``.
+    nx, ny : unit normal n of the line.
+    across : tau, given because it must be known more accurately than n is.
+    off : in mm.
+    branch : the sign of ``half``, 1 or -1.
 
     Returns
     -------
-    (x and y of the point from the arc's middle, x and y of the unit vector from the centre to it)
+    (x and y of the point from the arc's middle in mm, x and y of the unit vector from the centre to it)
     """
     k, along = 1.0 / row[RADIUS], nx * row[AXIS_X] + ny * row[AXIS_Y]
     rise = off * (2.0 * along + k * off)

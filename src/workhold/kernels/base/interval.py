@@ -24,79 +24,83 @@ TURN = 2.0 * pi
 
 
 @inner
-def outward(low: float, high: float) -> Interval:
-    """Widens a pair of rounded bounds."""
+def widen_outward(low: float, high: float) -> Interval:
+    """Return the bounds widened by ``ROUNDING`` of their size each,
+    which covers the rounding of one operation.
+    """
     return (low - ROUNDING * abs(low) - SMALLEST, high + ROUNDING * abs(high) + SMALLEST)
 
 
 @inner
 def iadd(a: Interval, b: Interval) -> Interval:
-    """a + b."""
-    return outward(a[0] + b[0], a[1] + b[1])
+    """Return an enclosure of a + b."""
+    return widen_outward(a[0] + b[0], a[1] + b[1])
 
 
 @inner
 def isub(a: Interval, b: Interval) -> Interval:
-    """a - b."""
-    return outward(a[0] - b[1], a[1] - b[0])
+    """Return an enclosure of a - b."""
+    return widen_outward(a[0] - b[1], a[1] - b[0])
 
 
 @inner
 def ineg(a: Interval) -> Interval:
-    """-a."""
+    """Return the interval -a, exactly."""
     return (-a[1], -a[0])
 
 
 @inner
 def imul(a: Interval, b: Interval) -> Interval:
-    """a b."""
+    """Return an enclosure of a b."""
     p, q, r, s = a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]
-    return outward(min(p, q, r, s), max(p, q, r, s))
+    return widen_outward(min(p, q, r, s), max(p, q, r, s))
 
 
 @inner
 def iscale(c: float, a: Interval) -> Interval:
-    """c a for a number c."""
+    """Return an enclosure of c a for a number c."""
     if c >= 0.0:
-        return outward(c * a[0], c * a[1])
-    return outward(c * a[1], c * a[0])
+        return widen_outward(c * a[0], c * a[1])
+    return widen_outward(c * a[1], c * a[0])
 
 
 @inner
 def ishift(c: float, a: Interval) -> Interval:
-    """c + a for a number c."""
-    low, high = outward(c + a[0], c + a[1])
+    """Return an enclosure of c + a for a number c, which may itself be rounded."""
+    low, high = widen_outward(c + a[0], c + a[1])
     return (low - ROUNDING * abs(c), high + ROUNDING * abs(c))
 
 
 @inner
 def isquare(a: Interval) -> Interval:
-    """a squared."""
+    """Return an enclosure of a squared."""
     low, high = a[0] * a[0], a[1] * a[1]
     if a[0] <= 0.0 <= a[1]:
-        return outward(0.0, max(low, high))
-    return outward(min(low, high), max(low, high))
+        return widen_outward(0.0, max(low, high))
+    return widen_outward(min(low, high), max(low, high))
 
 
 @inner
 def isqrt(a: Interval) -> Interval:
-    """Square root of the non-negative part of a."""
-    low, high = outward(sqrt(max(a[0], 0.0)), sqrt(max(a[1], 0.0)))
+    """Return an enclosure of the square roots of the non-negative
+    part of a, (0, about 0) where a is negative.
+    """
+    low, high = widen_outward(sqrt(max(a[0], 0.0)), sqrt(max(a[1], 0.0)))
     return (max(low, 0.0), high)
 
 
 @inner
 def idivide(a: Interval, b: Interval) -> Interval:
-    """a / b; everything when b contains 0."""
+    """Return an enclosure of a / b, (-inf, inf) where b contains 0."""
     if b[0] <= 0.0 <= b[1]:
         return (-inf, inf)
     p, q, r, s = a[0] / b[0], a[0] / b[1], a[1] / b[0], a[1] / b[1]
-    return outward(min(p, q, r, s), max(p, q, r, s))
+    return widen_outward(min(p, q, r, s), max(p, q, r, s))
 
 
 @inner
 def icos(a: Interval) -> Interval:
-    """Cosine of angles in radians."""
+    """Return an enclosure, within [-1, 1], of the cosines of the angles a in radians."""
     if a[1] - a[0] >= TURN:
         return (-1.0, 1.0)
     low, high = cos(a[0]), cos(a[1])
@@ -114,33 +118,37 @@ def icos(a: Interval) -> Interval:
 
 @inner
 def isin(a: Interval) -> Interval:
-    """Sine of angles in radians."""
+    """Return an enclosure, within [-1, 1], of the sines of the angles a in radians."""
     quarter = pi / 2.0
     return icos(isub(a, (quarter, quarter)))
 
 
 @inner
 def idot(ax: Interval, ay: Interval, bx: Interval, by: Interval) -> Interval:
-    """Scalar product of two vectors."""
+    """Return an enclosure of the scalar product of the plane vectors (ax, ay) and (bx, by)."""
     return iadd(imul(ax, bx), imul(ay, by))
 
 
 @inner
 def icross(ax: Interval, ay: Interval, bx: Interval, by: Interval) -> Interval:
-    """Cross product of two vectors of the plane."""
+    """Return an enclosure of the cross product ax by - ay bx of two plane vectors."""
     return isub(imul(ax, by), imul(ay, bx))
 
 
 @inner
-def slope_range(
+def enclose_slope(
     slope_low: float,
     slope_high: float,
     second_derivative_low: float,
     second_derivative_high: float,
     width: float,
 ) -> tuple[float, float]:
-    """Enclosure of a slope over a range from its values at both ends and the second derivative between
-    them."""
+    """Return (low, high) bounds of a slope over a range of a width.
+
+    ``slope_low`` and ``slope_high`` are the slopes at the lower and upper end of the range. Between them the
+    second derivative lies in [second_derivative_low, second_derivative_high]; unless it has one sign,
+    infinite bounds give (-inf, inf). Bounds are not widened for rounding.
+    """
     if second_derivative_low >= 0.0:
         return (slope_low, slope_high)
     if second_derivative_high <= 0.0:
@@ -157,11 +165,14 @@ def slope_range(
 
 
 @inner
-def value_bounds(
+def bound_values(
     value_low: float, value_high: float, lowest: float, highest: float, width: float
 ) -> tuple[float, float]:
-    """Bounds of a function over a range from its values at both ends and bounds of its slope, finite or
-    not."""
+    """Return (low, high) bounds of a function over a range of a width.
+
+    ``value_low`` and ``value_high`` are the values at the lower and upper end of the range; its slope lies in
+    [lowest, highest], which may be infinite. Bounds are not widened for rounding.
+    """
     low, high = min(value_low, value_high), max(value_low, value_high)
     if lowest >= 0.0 or highest <= 0.0:
         return (low, high)

@@ -44,8 +44,10 @@ PLAIN_PROCESSORS = {"x86_64": "x86-64", "AMD64": "x86-64"}
 
 
 @cache
-def source_hash() -> str:
-    """Return a hash of the sources of all kernels, and of the numbers that decide."""
+def compute_source_hash() -> str:
+    """Return a hash (20 hex digits) of the sources of all kernels and
+    of ``conventions.py``, whose numbers they use.
+    """
     digest, package = sha256(), KERNELS.parent
     for path in (package / "conventions.py", *sorted(KERNELS.rglob("*.py"))):
         # Where libraries lie makes no difference to what is in them.
@@ -56,13 +58,17 @@ def source_hash() -> str:
     return digest.hexdigest()[:20]
 
 
-def library_name(room: str, ending: str) -> str:
-    """Return the name of the file of a room's library for this kind of machine."""
-    return f"kernels-{room}-{source_hash()}.{get_platform().replace('.', '_')}.{ending}"
+def make_library_name(room: str, ending: str) -> str:
+    """Return the file name of a room's library for these sources and
+    this platform, with this ending (no dot).
+    """
+    return f"kernels-{room}-{compute_source_hash()}.{get_platform().replace('.', '_')}.{ending}"
 
 
-def user_cache() -> Path:
-    """Return the folder for compiled code: ``$WORKHOLD_CACHE_DIR``, or ``workhold`` in the user's cache."""
+def find_user_cache() -> Path:
+    """Return the folder of workhold's cached files:
+    ``$WORKHOLD_CACHE_DIR``, or ``workhold`` in the user's cache.
+    """
     named = os.environ.get("WORKHOLD_CACHE_DIR")
     if named:
         return Path(named)
@@ -71,10 +77,13 @@ def user_cache() -> Path:
 
 
 @cache
-def cache_folder() -> Path | None:
-    """Return the folder for the libraries of these sources, or None where nothing can be written."""
+def make_cache_folder() -> Path | None:
+    """Return the cache folder for the libraries of these sources, or None where it cannot be written.
+
+    Create it where it does not exist, and remove older ones, see :func:`drop_old_folders`.
+    """
     try:
-        folder = user_cache() / f"kernels-{source_hash()}"
+        folder = find_user_cache() / f"kernels-{compute_source_hash()}"
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -85,15 +94,15 @@ def cache_folder() -> Path | None:
 
 
 @cache
-def temporary_folder() -> Path:
-    """Return a folder for the libraries of this process alone, which goes with it."""
+def make_temporary_folder() -> Path:
+    """Return a folder for the libraries of this process alone, removed when the process ends."""
     folder = tempfile.TemporaryDirectory(prefix="workhold-kernels-")
     atexit.register(folder.cleanup)
     return Path(folder.name)
 
 
 def drop_old_folders(current: Path) -> None:
-    """Remove the libraries of sources long replaced, but for the newest few."""
+    """Remove the library folders of other sources beside ``current``, except the newest ``FOLDERS_KEPT``."""
     try:
         others = [path for path in current.parent.glob("kernels-*") if path != current]
         others.sort(key=lambda path: path.stat().st_mtime, reverse=True)
@@ -103,36 +112,39 @@ def drop_old_folders(current: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def library_folder() -> Path:
-    """Return the folder that libraries are built into, outside of a wheel."""
-    return cache_folder() or temporary_folder()
+def find_library_folder() -> Path:
+    """Return the folder that libraries are built into: the cache
+    folder, or a temporary one where that is not writable.
+    """
+    return make_cache_folder() or make_temporary_folder()
 
 
 def find_library(room: str) -> Path | None:
-    """Return the file of a room's library, or None where it is still to be built."""
+    """Return the file of a room's library, in the package or in the cache; None where it is not built yet."""
     # Benchmarks and tests ask for what is compiled on first use, though the package has libraries.
     in_package = None if os.environ.get("WORKHOLD_KERNELS") == "cache" else find_in(KERNELS, room)
-    return in_package or find_in(library_folder(), room)
+    return in_package or find_in(find_library_folder(), room)
 
 
 def find_in(folder: Path, room: str) -> Path | None:
     """Return the file of a room's library in a folder, or None where there is none."""
-    paths = (folder / library_name(room, ending) for ending in ENDINGS)
+    paths = (folder / make_library_name(room, ending) for ending in ENDINGS)
     return next((path for path in paths if path.exists()), None)
 
 
 def is_built(rooms: Sequence[str] = SEARCH_ROOMS) -> bool:
-    """Return whether the libraries of some rooms need not be built any more."""
+    """Return whether the libraries of all these rooms exist."""
     return all(find_library(room) is not None for room in rooms)
 
 
 def load_entry(room: str, name: str) -> Callable[[int], None]:
-    """Return the entry of a kernel; where its room has no library yet, it is built.
+    """Return the compiled entry of a kernel, which takes the address
+    of its words; build the room's library if needed.
 
     Raises
     ------
     InputError
-        When there is no library, and nothing to build it with.
+        When there is no library and it cannot be built, or a library in the package is damaged.
     """
     with LOADING:
         path = find_library(room) or build_library(room)
@@ -150,14 +162,16 @@ def load_entry(room: str, name: str) -> Callable[[int], None]:
 
 
 def find_entry(path: str, name: str) -> Any:
-    """Return a function of a library: of a shared one, or of an object file where there was no linker."""
+    """Return a function of a library file: of a shared library, or of
+    an object file where there was no linker.
+    """
     if path.endswith(ENDINGS[0]):
         return getattr(ctypes.CDLL(path), name)
     return ctypes.CFUNCTYPE(None, ctypes.c_void_p)(load_object(path).get_function_address(name))
 
 
 def build_library(room: str) -> Path:
-    """Build the library of a room into the user's cache, and return its file."""
+    """Build the library of a room into the cache folder, and return its file."""
     build_libraries((room,))
     path = find_library(room)
     assert path is not None
@@ -166,7 +180,9 @@ def build_library(room: str) -> Path:
 
 @cache
 def load_object(path: str) -> Any:
-    """Load an object file without a linker, and return LLVM's engine that knows its functions."""
+    """Load an object file without a linker, and return LLVM's
+    execution engine, which knows the addresses of its functions.
+    """
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
@@ -184,22 +200,22 @@ def build_libraries(
     report: Callable[[float], None] = lambda done: None,
     cancel: Event | None = None,
 ) -> None:
-    """Build the libraries of rooms that have none, each in a process of its own.
+    """Build the libraries of those rooms that have none, each in its own process.
 
-    Processes share the work, and numba's settings there are not those of this process.
+    Numba's settings in these processes are not those of this process.
 
     Parameters
     ----------
-    folder : where they go; None for the user's cache.
-    report : is told how much is done, from 0 to 1.
-    cancel : ends all when it is set.
+    folder : receives the libraries; None for :func:`find_library_folder`.
+    report : is called with the share that is done, from 0 to 1.
+    cancel : ends all when it is set, with libraries missing.
 
     Raises
     ------
     InputError
         When there is no numba to compile with, no memory for it, or a kernel cannot be compiled.
     """
-    folder = folder or library_folder()
+    folder = folder or find_library_folder()
     wanted = [room for room in ROOMS if room in rooms and find_in(folder, room) is None]
     if not wanted:
         return
@@ -215,7 +231,10 @@ def build_libraries(
     faults: list[str] = []
 
     def build(room: str) -> None:
-        with tempfile.TemporaryFile("w+") as said, compiling_process(room, folder, said) as process:
+        """Build one room's library in a process of its own, reporting its
+        progress; add its error to ``faults``.
+        """
+        with tempfile.TemporaryFile("w+") as said, start_compiling(room, folder, said) as process:
             assert process.stdout is not None
             for line in process.stdout:
                 if cancel is not None and cancel.is_set():
@@ -239,9 +258,12 @@ def build_libraries(
         raise InputError(f"The kernels could not be compiled: {faults[0]}")
 
 
-def compiling_process(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[str]:
-    """Start the process that builds the library of a room, and ends with this one however that ends; ``said``
-    receives its errors."""
+def start_compiling(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[str]:
+    """Start and return the process that builds the library of a room into ``folder``.
+
+    Its standard output has a line with the progress from 0 to 1 now and then; ``said`` receives its standard
+    error. It ends when this process ends, in whatever way.
+    """
     processor = PLAIN_PROCESSORS.get(platform.machine(), "generic")
     settings = {
         "WORKHOLD_KERNELS": "building",

@@ -1,6 +1,6 @@
-"""What every kernel of a search is given, as named records, and the columns of the tables among them.
+"""Named records that the kernels of a search take, and the columns of the tables among them.
 
-Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.frame``). Pegs
+Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.problem``). Pegs
 of the carrier that stands still come first.
 
 Whole numbers of a curve (C, 7), the same for a sliding pair:
@@ -59,18 +59,20 @@ from workhold.kernels.base.compiling import (
 
 
 class Precision(NamedTuple):
-    """What bounds location errors, and the errors that are of interest (``contact.location_bounds``).
+    """Tolerances and data for bounds of location errors, and the errors that are of interest
+    (``contact.location_bounds``).
 
     Parameters
     ----------
     faces : (F,) number of each feature's face.
-    doubts : (F,) by how many times a contact there counts more, at least.
-    gives : (F,) what a contact may be off by for a location error of 1, for each mm it is moved on a line, or
-        each radian on an arc.
-    probes : (P, 3) points of the silhouette and directions: along x, along y, and of a turn times L.
+    doubts : (F,) factor, at least 1, on the location error of contacts on each feature.
+    gives : (F,) error of a contact for a location error of 1, per mm by which the contact is moved on a line,
+        or per radian on an arc.
+    probes : (P, 3) points of the silhouette with a direction: movement per unit along x, along y, and of a
+        turn times L.
     peg, face : tolerances in mm.
-    most, most_aslant : largest effective error of interest in mm square to the part as drawn, and location
-        error of interest at other orientations; infinite where all are.
+    most, most_aslant : largest effective error of interest in mm where the part is square to its drawing, and
+        at other orientations; inf where all are.
     """
 
     faces: IntVector
@@ -84,13 +86,15 @@ class Precision(NamedTuple):
 
 
 class NearSpots(NamedTuple):
-    """Stretches of features, and which two of three locators may touch (``contact.location_bounds``).
+    """Stretches of features, and which two or three of them locators of interest may touch
+    (``contact.location_bounds``).
 
     Parameters
     ----------
-    starts : (F + 1,) the first stretch of each feature; those of one feature are equally long.
-    joined : (M, M) 1 for two that may; no rows where nothing is ruled out.
-    triples : (M, M, M) 1 for three that may, in any order; nothing where that is not kept.
+    starts : (F + 1,) number of the first stretch of each feature, then M; stretches of one feature are
+        equally long.
+    joined : (M, M) 1 for two stretches that may be touched together; (0, 0) where nothing is ruled out.
+    triples : (M, M, M) 1 for three stretches that may, in any order; (0, 0, 0) where that is not kept.
     """
 
     starts: IntVector
@@ -99,15 +103,15 @@ class NearSpots(NamedTuple):
 
 
 class Features(NamedTuple):
-    """Contact features; the pegs of each carrier touch a range of them, of their own radius.
+    """Contact features; the pegs of each carrier touch a range of them, those of their own radius.
 
     Parameters
     ----------
-    loose : (F, 10) rows with ends moved out by a hair, to search.
-    rows : (F, 12) rows with the slack of their ends, to check.
-    standing, moving : first and past-the-last number of those that pegs of each carrier touch; ranges are the
-        same or apart.
-    precision : what bounds location errors.
+    loose : (F, 10) rows with ends moved out slightly, for searching.
+    rows : (F, 12) rows with the slack of their ends, for checking.
+    standing, moving : first and past-the-last number of those that pegs of each carrier touch; the ranges are
+        equal or disjoint.
+    precision : data for bounds of location errors.
     near : where three standing pegs may touch.
     """
 
@@ -129,13 +133,13 @@ class Lattice(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What bounds a fixture.
+    """The rules that bound a fixture.
 
     Parameters
     ----------
     gap : smallest distance in mm along x from a standing to a moving peg, -inf where there is no such rule.
     contact_margin : smallest distance in mm from a contact to the end of its feature.
-    wrench_length : L in mm.
+    wrench_length : L in mm, by which moments are divided.
     most_column_steps : largest column difference between pegs of one carrier.
     clamping : 1 when the moving carrier clamps by pushing towards -x, -1 when it clamps by pushing towards
         +x.
@@ -156,10 +160,12 @@ class Limits(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """What is common to all records of a search.
+    """Lattice, limits, peg radii and errors, common to all records of a search.
 
-    It holds lattice and limits, radii of the standing and the moving pegs in mm, and how far in mm the
-    features' rows may be from the drawing.
+    Parameters
+    ----------
+    standing_radius, moving_radius : of the pegs in mm.
+    backward_error : how far in mm the features' rows may be from the drawing.
     """
 
     lattice: Lattice

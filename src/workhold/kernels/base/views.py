@@ -2,8 +2,9 @@
 
 A view is an address and a shape; its elements lie one after the other. Numba's own arrays know besides who
 owns their memory, and each copy of one counts. Kernels hand arrays on thousands of times and own none, so
-they are compiled for views, which makes them shorter, and faster to compile and to run. What a view can do is
-what kernels do: ``view[i, j]``, ``view[i]``, ``view[i:j]``, ``view.shape``, ``len(view)``. Indices are not negative.
+they are compiled for views, which makes them shorter, and faster to compile and to run. A view can do what
+kernels do: ``view[i, j]``, ``view[i]``, ``view[i:j]``, ``view.shape``, ``len(view)``. Indices are not
+negative.
 """
 
 # Numba declares no types.
@@ -26,7 +27,7 @@ from numba.extending import (
 
 
 class ArrayView(types.Type):
-    """Numba's type of a view of some elements, of one to four dimensions."""
+    """Numba's type of a view of elements of one type, of one to four dimensions."""
 
     def __init__(self, element: Any, ndim: int) -> None:
         self.element, self.ndim = element, ndim
@@ -35,7 +36,7 @@ class ArrayView(types.Type):
 
 @register_model(ArrayView)
 class ArrayViewModel(models.StructModel):
-    """What a view is in memory."""
+    """The layout of a view in memory: the address of the data, then the shape."""
 
     def __init__(self, manager: Any, view: ArrayView) -> None:
         members = [("data", types.CPointer(view.element)), ("shape", types.UniTuple(types.int64, view.ndim))]
@@ -47,9 +48,10 @@ make_attribute_wrapper(ArrayView, "shape", "shape")
 
 @type_callable(operator.getitem)
 def type_getitem(context: Any) -> Any:
-    """Say what is at an index: an element, or a view with fewer dimensions."""
+    """Return numba's typing of ``view[index]``: an element, or a view with fewer dimensions."""
 
     def typer(view: Any, index: Any) -> Any:
+        """Return the type of ``view[index]``, None where ``view`` is no view."""
         if not isinstance(view, ArrayView):
             return None
         if isinstance(index, types.SliceType):
@@ -62,9 +64,10 @@ def type_getitem(context: Any) -> Any:
 
 @type_callable(operator.setitem)
 def type_setitem(context: Any) -> Any:
-    """Let numbers be written to a view."""
+    """Return numba's typing of ``view[index] = number``."""
 
     def typer(view: Any, index: Any, value: Any) -> Any:
+        """Return the type none for an assignment to a view, None where ``view`` is no view."""
         return types.none if isinstance(view, ArrayView) else None
 
     return typer
@@ -72,9 +75,10 @@ def type_setitem(context: Any) -> Any:
 
 @type_callable(len)
 def type_len(context: Any) -> Any:
-    """Let the length of a view be asked for."""
+    """Return numba's typing of ``len(view)``."""
 
     def typer(view: Any) -> Any:
+        """Return the type of ``len(view)``, None where ``view`` is no view."""
         return types.int64 if isinstance(view, ArrayView) else None
 
     return typer
@@ -82,12 +86,14 @@ def type_len(context: Any) -> Any:
 
 @lower_builtin(len, ArrayView)
 def lower_len(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    """Read the first size."""
+    """Emit code that reads the length of a view's first dimension."""
     return builder.extract_value(values[0], (1, 0))
 
 
 def make_view(context: Any, builder: Any, kind: ArrayView, data: Any, sizes: list[Any]) -> Any:
-    """Return the value of a view at a pointer."""
+    """Emit code for a view of the type ``kind``, and return its
+    value; ``data`` is its pointer, ``sizes`` its shape.
+    """
     value = ir.Constant(context.get_value_type(kind), ir.Undefined)
     value = builder.insert_value(value, data, 0)
     for axis, size in enumerate(sizes):
@@ -96,7 +102,9 @@ def make_view(context: Any, builder: Any, kind: ArrayView, data: Any, sizes: lis
 
 
 def find_place(context: Any, builder: Any, kinds: Any, values: Any) -> tuple[Any, list[Any]]:
-    """Return the pointer to what is at an index, and the sizes of its dimensions."""
+    """Emit code for the pointer to ``view[index]``; return it and the
+    sizes of the dimensions that are not indexed.
+    """
     (kind, index_kind, *_), (view, index, *_) = kinds, values
     if isinstance(index_kind, types.BaseTuple):
         parts = [(part, builder.extract_value(index, number)) for number, part in enumerate(index_kind.types)]
@@ -116,7 +124,9 @@ def find_place(context: Any, builder: Any, kinds: Any, values: Any) -> tuple[Any
 @lower_builtin(operator.getitem, ArrayView, types.Integer)
 @lower_builtin(operator.getitem, ArrayView, types.BaseTuple)
 def lower_getitem(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    """Read an element, or make a view of what is at an index."""
+    """Emit code for ``view[index]``: read an element, or make a view of the dimensions that are not
+    indexed.
+    """
     place, sizes = find_place(context, builder, signature.args, values)
     if sizes:
         return make_view(context, builder, signature.return_type, place, sizes)
@@ -125,7 +135,7 @@ def lower_getitem(context: Any, builder: Any, signature: Any, values: Any) -> An
 
 @lower_builtin(operator.getitem, ArrayView, types.SliceType)
 def lower_slice(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    """Make a view of some rows; where no end is named, of all from the first one on."""
+    """Emit code for ``view[first:end]``, a view of these rows; an end past the last row is cut to it."""
     view, rows = values
     kind = signature.args[0]
     sizes = [builder.extract_value(view, (1, axis)) for axis in range(kind.ndim)]
@@ -141,7 +151,7 @@ def lower_slice(context: Any, builder: Any, signature: Any, values: Any) -> Any:
 @lower_builtin(operator.setitem, ArrayView, types.Integer, types.Any)
 @lower_builtin(operator.setitem, ArrayView, types.BaseTuple, types.Any)
 def lower_setitem(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-    """Write a number."""
+    """Emit code that writes a number to ``view[index]``, all dimensions indexed."""
     place, _ = find_place(context, builder, signature.args, values)
     kind = signature.args[0].element
     builder.store(context.cast(builder, values[2], signature.args[2], kind), place)
@@ -149,11 +159,14 @@ def lower_setitem(context: Any, builder: Any, signature: Any, values: Any) -> An
 
 
 @intrinsic
-def view_at(context: Any, address: Any, shape: Any, element: Any) -> Any:
-    """Return the view of a shape at an address; ``element`` is numba's type of the elements."""
+def make_view_at(context: Any, address: Any, shape: Any, element: Any) -> Any:
+    """Return a view with ``shape`` of the memory at ``address``;
+    ``element`` is numba's type of its elements.
+    """
     kind = ArrayView(element.dtype, shape.count)
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        """Emit code for the view; return its value."""
         pointer = context.get_value_type(types.CPointer(kind.element))
         sizes = [builder.extract_value(values[1], axis) for axis in range(kind.ndim)]
         return make_view(context, builder, kind, builder.inttoptr(values[0], pointer), sizes)

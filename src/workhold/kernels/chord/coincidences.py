@@ -52,7 +52,7 @@ from workhold.kernels.base.interval import (
     isqrt,
     isquare,
     isub,
-    outward,
+    widen_outward,
 )
 from workhold.kernels.base.tables import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
@@ -72,10 +72,12 @@ EPSILON = 4e-16
 
 
 @inner
-def beyond_line(line: Array, arc: Array, d: float) -> float:
-    """+1 or -1 when a line and an arc coincide along or against the line's normal, 0 when they do not.
+def find_line_side(line: Array, arc: Array, d: float) -> float:
+    """Return 1 or -1 when a line and an arc coincide with the chord
+    along or against the line's normal, else 0.
 
-    The formulas for shallow arcs divide nothing by zero there.
+    Return 0 for a shallow arc as well: the formulas for shallow arcs do not divide by zero there. See
+    ``base.feature`` for the layout of ``line`` and ``arc``.
     """
     if is_shallow(arc):
         return 0.0
@@ -89,15 +91,23 @@ def beyond_line(line: Array, arc: Array, d: float) -> float:
 
 @inner
 def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
-    """Whether two features are arcs of equal radius with centres one chord length apart."""
+    """Return whether two features are arcs of equal radius with
+    centres one chord length d apart, each to within ``EXACT``.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0 or abs(a[RADIUS] - b[RADIUS]) > EXACT:
         return False
     return abs(hypot(b[X] - a[X], b[Y] - a[Y]) - d) <= EXACT
 
 
 @inner
-def touching_side(a: Array, b: Array, d: float) -> float:
-    """+1 or -1 when two arcs touch where the chord runs along or against the centres' line, else 0."""
+def find_touching_side(a: Array, b: Array, d: float) -> float:
+    """Return 1 or -1 when two arcs touch where the chord runs along
+    or against the line from centre a to b, else 0.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0 or is_shallow(a) or is_shallow(b):
         return 0.0
     apart, difference = hypot(b[X] - a[X], b[Y] - a[Y]), abs(a[RADIUS] - b[RADIUS])
@@ -109,50 +119,64 @@ def touching_side(a: Array, b: Array, d: float) -> float:
 
 @inner
 def are_concentric(a: Array, b: Array) -> bool:
-    """Whether two features are arcs of one centre."""
+    """Return whether two features are arcs with the same centre, to within ``SAME_CENTER``.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     return a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0 and hypot(a[X] - b[X], a[Y] - b[Y]) <= SAME_CENTER
 
 
 @inner
-def coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
-    """Kind of coincidence of a chord of length d, its direction alpha, and the side of the line (see
-    ``beyond_line``)."""
+def find_coincidence(a: Array, b: Array, d: float) -> tuple[float, float, float]:
+    """Return (kind, alpha, side) of the coincidence of a chord of length d mm; (NONE, 0, 0) without one.
+
+    Alpha is the chord's direction there in radians. The side is that of :func:`find_line_side` or
+    :func:`find_touching_side`. See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if are_one_chord_apart(a, b, d):
         return (ARCS, atan2(b[Y] - a[Y], b[X] - a[X]), 0.0)
-    side = touching_side(a, b, d)
+    side = find_touching_side(a, b, d)
     if side != 0.0:
         return (TOUCHING, atan2(side * (b[Y] - a[Y]), side * (b[X] - a[X])), side)
     if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
-        side = beyond_line(a, b, d)
+        side = find_line_side(a, b, d)
         if side != 0.0:
             return (LINE_FIRST, atan2(-side * a[AXIS_X], side * a[AXIS_Y]), side)
     elif a[IS_ARC] != 0.0 and b[IS_ARC] == 0.0:
-        side = beyond_line(b, a, d)
+        side = find_line_side(b, a, d)
         if side != 0.0:
             return (ARC_FIRST, atan2(side * b[AXIS_X], -side * b[AXIS_Y]), side)
     return (NONE, 0.0, 0.0)
 
 
 @inner
-def from_coincidence(alpha: float, middle: float) -> float:
-    """Angle in [-pi, pi) from the coincidence."""
+def measure_from_coincidence(alpha: float, middle: float) -> float:
+    """Return the angle gamma = ``alpha`` - ``middle`` from the coincidence, in [-pi, pi).
+
+    Symbols are those of ``chord.coincidences``.
+    """
     return (alpha - middle + pi) % TURN - pi
 
 
 @inner
-def regular_radius(a: Array, b: Array, kind: float) -> float:
-    """The radius in mm by which ``is_regular`` judges a coincidence."""
+def get_regular_radius(a: Array, b: Array, kind: float) -> float:
+    """Return the radius in mm that :func:`is_regular` needs for a kind of coincidence.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if kind == TOUCHING:
         return a[RADIUS] * b[RADIUS] / hypot(b[X] - a[X], b[Y] - a[Y])
     return a[RADIUS] if a[IS_ARC] != 0.0 else b[RADIUS]
 
 
 @inner
-def touching_speed(a: Array, b: Array, side: float, d: float) -> float:
-    """Bound in mm per radian of how fast a tail moves where the regular formulas of touching arcs apply.
+def bound_touching_speed(a: Array, b: Array, side: float, d: float) -> float:
+    """Return an upper bound in mm per radian of a tail's speed where
+    the regular formulas of touching arcs apply.
 
     It is R_a times the bounds of both rates: g is no shorter than at the coincidence, or than
-    sqrt(R_a^2 + R_b^2), and S no less than 2 R_a R_b.
+    sqrt(R_a^2 + R_b^2), and S no less than 2 R_a R_b. See ``base.feature`` for the layout of ``a`` and ``b``.
+    Symbols are those of ``chord.coincidences``.
     """
     one, other = a[RADIUS], b[RADIUS]
     apart, difference = hypot(b[X] - a[X], b[Y] - a[Y]), abs(one - other)
@@ -162,11 +186,14 @@ def touching_speed(a: Array, b: Array, side: float, d: float) -> float:
 
 
 @inner
-def misfit(a: Array, b: Array, curve: Array, turn: float) -> float:
-    """Bound in mm of how far a tail on arcs that nearly touch is from that on arcs that do; X is a turn.
+def bound_misfit(a: Array, b: Array, curve: Array, turn: float) -> float:
+    """Return a bound in mm of the distance from a tail on arcs that
+    nearly touch to that on arcs that touch exactly.
 
-    The part of the tail along J g is the root of a square that is off by 2 m R_a R_b / g, so it is off by
-    m / abs(X). Nearer to the coincidence than that says anything, chords are those of arcs that touch.
+    ``turn`` is X of the chord; return 0 for curves of other kinds. The part of the tail along J g is the root
+    of a square that is off by 2 m R_a R_b / g, so it is off by m / abs(X). Nearer to the coincidence than
+    that says anything, chords are those of arcs that touch. See ``base.feature`` for the layout of ``a`` and
+    ``b``, ``base.tables`` for that of ``curve``. Symbols are those of ``chord.coincidences``.
     """
     if curve[COINCIDENCE] != TOUCHING:
         return 0.0
@@ -180,7 +207,12 @@ def misfit(a: Array, b: Array, curve: Array, turn: float) -> float:
 
 @inner
 def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
-    """Whether the regular formulas are the better ones at an angle from the coincidence."""
+    """Return whether to use the regular formulas at an angle
+    ``gamma`` in radians from a coincidence of this kind.
+
+    ``radius`` is that of :func:`regular_radius`, d the chord's length in mm. Symbols are those of
+    ``chord.coincidences``.
+    """
     if kind in (NONE, CONCENTRIC) or abs(gamma) > 1.0:
         return False
     if kind == ARCS:
@@ -190,30 +222,38 @@ def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
 
 @inner
 def shares_a_line(curve: Array, psi: float) -> bool:
-    """Whether a chord is so near its coincidence that both contacts share one line of action."""
+    """Return whether a chord is so near its coincidence that both contacts share one line of action.
+
+    See ``base.tables`` for the layout of ``curve``.
+    """
     kind = curve[COINCIDENCE]
     if kind in (NONE, CONCENTRIC):
         return False
-    return abs(from_coincidence(psi + curve[SHIFT], curve[MIDDLE])) <= SHARED
+    return abs(measure_from_coincidence(psi + curve[SHIFT], curve[MIDDLE])) <= SHARED
 
 
 @inner
-def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
-    """Tail and its derivative over psi near a coincidence.
+def compute_motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
+    """Return the tail and its derivative over psi near a coincidence, by the regular formulas.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are
+    those of ``chord.coincidences``.
 
     Parameters
     ----------
-    curve : row of the curve table, of a curve that has a coincidence.
+    curve : reals (16,) of a curve that has a coincidence.
+    psi : in radians.
 
     Returns
     -------
-    (whether the regular formulas apply, (ux, uy, u'x, u'y, r_ax R, r_ay R)), the last two only for an arc
-    tail
+    (whether the regular formulas apply; (ux, uy, u'x, u'y, rx, ry): tail in mm, its derivative in mm per
+        radian, and the vector in mm from the arc's centre to the contact on it, of the tail where that is on
+        an arc). All numbers are 0 where the formulas do not apply.
     """
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     alpha = psi + curve[SHIFT]
-    gamma = from_coincidence(alpha, middle)
-    radius = regular_radius(a, b, kind)
+    gamma = measure_from_coincidence(alpha, middle)
+    radius = get_regular_radius(a, b, kind)
     if not is_regular(kind, radius, d, gamma):
         return (False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     wx, wy = d * cos(alpha), d * sin(alpha)
@@ -230,7 +270,7 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
         vy = -wx / 2.0 + dy * my + y * mx / 2.0
         return (True, (a[X] + rx, a[Y] + ry, vx, vy, rx, ry))
     if kind == TOUCHING:
-        rx, ry, rate = touching_arcs(a, b, d, side, gamma, wx, wy, way)
+        rx, ry, rate = compute_touching_tail(a, b, d, side, gamma, wx, wy, way)
         return (True, (a[X] + rx, a[Y] + ry, -rate * ry, rate * rx, rx, ry))
     line, arc = (a, b) if kind == LINE_FIRST else (b, a)
     nx, ny, tx, ty = line[AXIS_Y], -line[AXIS_X], line[AXIS_X], line[AXIS_Y]
@@ -247,10 +287,15 @@ def motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, Motion]:
 
 
 @inner
-def touching_arcs(
+def compute_touching_tail(
     a: Array, b: Array, d: float, side: float, gamma: float, wx: float, wy: float, way: float
 ) -> tuple[float, float, float]:
-    """The tail from the centre of a, in mm, and the rate at which it turns, where two arcs touch."""
+    """Return (x, y, rate) of a tail on touching arcs: its position
+    from the centre of a in mm, and how fast it turns.
+
+    The rate is in radians per radian of psi. (wx, wy) is the chord in mm, ``way`` the sign of the tail's
+    branch there. See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     cx, cy = b[X] - a[X], b[Y] - a[Y]
     apart, total, difference = hypot(cx, cy), a[RADIUS] + b[RADIUS], a[RADIUS] - b[RADIUS]
     sine, cosine = sin(gamma / 2.0), cos(gamma / 2.0)
@@ -268,19 +313,22 @@ def touching_arcs(
 
 
 @inner
-def touching_box(
+def enclose_touching_motion(
     a: Array, b: Array, d: float, side: float, middle: float, gamma: Interval, way: float
 ) -> MotionBox:
-    """Enclosure of u - c_a, u' and u'' where two arcs touch."""
-    cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
+    """Return enclosures (x and y each) of u - c_a, u' and u'' where two arcs touch, for gamma in an interval.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those of ``chord.coincidences``.
+    """
+    cx, cy = widen_outward(b[X] - a[X], b[X] - a[X]), widen_outward(b[Y] - a[Y], b[Y] - a[Y])
     apart = isqrt(iadd(isquare(cx), isquare(cy)))
     total, difference = a[RADIUS] + b[RADIUS], a[RADIUS] - b[RADIUS]
-    sum_, less = outward(total, total), outward(difference, difference)
+    sum_, less = widen_outward(total, total), widen_outward(difference, difference)
     half = iscale(0.5, gamma)
     sine, cosine, product = isin(half), icos(half), iscale(d, apart)
     k = iscale(4.0, imul(product, isquare(sine)))
     square = iadd(isquare(less), k) if side > 0.0 else isub(isquare(sum_), k)
-    rest = isub(iscale(4.0 * a[RADIUS], outward(b[RADIUS], b[RADIUS])), k)
+    rest = isub(iscale(4.0 * a[RADIUS], widen_outward(b[RADIUS], b[RADIUS])), k)
     alpha = ishift(middle, gamma)
     gx, gy = isub(cx, iscale(d, icos(alpha))), isub(cy, iscale(d, isin(alpha)))
     ratio = idivide(imul(less, sum_), square)
@@ -307,8 +355,14 @@ def touching_box(
 
 
 @inner
-def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: float) -> MotionBox:
-    """Enclosure of u - c_a, u' and u'' between two arcs."""
+def enclose_arcs_motion(
+    a: Array, b: Array, d: float, middle: float, gamma: Interval, way: float
+) -> MotionBox:
+    """Return enclosures (x and y each) of u - c_a, u' and u'' between
+    two equal arcs, for gamma in an interval.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those of ``chord.coincidences``.
+    """
     radius = a[RADIUS]
     half = iscale(0.5, gamma)
     direction = ishift(middle, half)
@@ -331,8 +385,15 @@ def arcs_box(a: Array, b: Array, d: float, middle: float, gamma: Interval, way: 
 
 
 @inner
-def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval, way: float) -> MotionBox:
-    """Enclosure of the contact on the arc from its centre, and its two derivatives, for a line and an arc."""
+def enclose_line_motion(
+    line: Array, radius: float, d: float, side: float, gamma: Interval, way: float
+) -> MotionBox:
+    """Return enclosures (x and y each) of a contact on an arc and its
+    two derivatives, for a chord from or to a line.
+
+    The contact is taken from the arc's centre. ``gamma`` is an interval of the angle from the coincidence.
+    See ``base.feature`` for the layout of ``line``. Symbols are those of ``chord.coincidences``.
+    """
     nx, ny, tx, ty = line[AXIS_Y], -line[AXIS_X], line[AXIS_X], line[AXIS_Y]
     half = iscale(0.5, gamma)
     sine, cosine = isin(half), icos(half)
@@ -356,40 +417,49 @@ def line_box(line: Array, radius: float, d: float, side: float, gamma: Interval,
 
 
 @inner
-def angle_box(low: float, high: float, middle: float) -> tuple[float, Interval]:
-    """Angle from the coincidence of the middle of [low, high], and an enclosure of the angles between.
+def enclose_angle(low: float, high: float, middle: float) -> tuple[float, Interval]:
+    """Return the angle gamma from the coincidence to the middle of
+    [low, high], and an enclosure of gamma over the range.
 
     Directions are below 16 radians, so three sums are off by half a unit in the last place of that each.
+    Symbols are those of ``chord.coincidences``.
     """
-    center, reach = from_coincidence((low + high) / 2.0, middle), (high - low) / 2.0 * (1.0 + 1e-15) + 3e-15
+    center, reach = (
+        measure_from_coincidence((low + high) / 2.0, middle),
+        (high - low) / 2.0 * (1.0 + 1e-15) + 3e-15,
+    )
     return (center, (center - reach, center + reach))
 
 
 @inner
-def motion_box(a: Array, b: Array, curve: Array, low: float, high: float) -> tuple[bool, MotionBox]:
-    """Enclosures over alpha in [low, high] near a coincidence.
+def enclose_motion(a: Array, b: Array, curve: Array, low: float, high: float) -> tuple[bool, MotionBox]:
+    """Return enclosures of the tail u and its derivatives over alpha in [low, high] near a coincidence.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are
+    those of ``chord.coincidences``.
 
     Returns
     -------
-    (whether the regular formulas apply, (u, u', u''))
+    (whether the regular formulas apply; intervals (ux, uy, u'x, u'y, u''x, u''y), all (0, 0) where they do
+        not)
     """
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
-    center, gamma = angle_box(low, high, middle)
-    radius = regular_radius(a, b, kind)
+    center, gamma = enclose_angle(low, high, middle)
+    radius = get_regular_radius(a, b, kind)
     if not (is_regular(kind, radius, d, gamma[0]) and is_regular(kind, radius, d, gamma[1])):
         zero = (0.0, 0.0)
         return (False, (zero, zero, zero, zero, zero, zero))
     way = curve[BRANCH] if center >= 0.0 else -curve[BRANCH]
     if kind == LINE_FIRST:
-        r = line_box(a, radius, d, side, gamma, way)
+        r = enclose_line_motion(a, radius, d, side, gamma, way)
         alpha = ishift(middle, gamma)
         wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
         x, y = isub(ishift(b[X], r[0]), wx), isub(ishift(b[Y], r[1]), wy)
         return (True, (x, y, iadd(r[2], wy), iadd(r[3], ineg(wx)), iadd(r[4], wx), iadd(r[5], wy)))
     if kind == ARCS:
-        r = arcs_box(a, b, d, middle, gamma, way)
+        r = enclose_arcs_motion(a, b, d, middle, gamma, way)
     elif kind == TOUCHING:
-        r = touching_box(a, b, d, side, middle, gamma, way)
+        r = enclose_touching_motion(a, b, d, side, middle, gamma, way)
     else:
-        r = line_box(b, radius, d, side, gamma, way)
+        r = enclose_line_motion(b, radius, d, side, gamma, way)
     return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))

@@ -27,7 +27,7 @@ determinant is X, and its Lipschitz constant is at most kappa = 1 / R_a + 1 / R_
 Newton-Kantorovich theorem is 1 / 4. Then there is exactly one chord within 2.35 eta / \|X\| of the computed
 one, on the same branch. Over that way X changes by a part of 0.15, so the chain rule on P = u + p r_a, p =
 cross(w, r_b) / X, applies. It gives an error of P of at most eta / X^2 (2.35 + kappa (2.8 d + 5.2 \|p\|)).
-The bounds of ``chord_state`` are a little wider.
+The bounds of ``compute_chord_state`` are a little wider.
 
 Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical Monthly 75 (1968) 658-660.
 """
@@ -48,9 +48,9 @@ from workhold.kernels.base.feature import (
     RADIUS,
     X,
     Y,
-    angle_on,
+    compute_local_size,
+    find_arc_parameter,
     is_shallow,
-    local_size,
 )
 from workhold.kernels.base.tables import (
     BACKWARD_ERROR,
@@ -70,11 +70,11 @@ from workhold.kernels.chord.coincidences import (
     NONE,
     are_concentric,
     are_one_chord_apart,
-    coincidence,
-    misfit,
-    motion,
+    bound_misfit,
+    compute_motion,
+    find_coincidence,
 )
-from workhold.kernels.chord.shallow import line_to_shallow, shallow_to_arc
+from workhold.kernels.chord.shallow import compute_line_to_shallow, compute_shallow_to_arc
 
 Chord = tuple[float, float, float, float, float, float]
 State = tuple[float, float, float, float, float, float, float, float, float, float]
@@ -89,10 +89,14 @@ ROUNDINGS = 32.0 * 1.2e-16
 
 
 @inner
-def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """Tail on line a, head on arc b: the head lies on the line moved by w, cut with the circle of b."""
+def compute_line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
+    """Return the chord w with its tail on line a and its head on arc b, as :func:`compute_chord_along` does.
+
+    The head lies where the line moved by w meets the circle of b. See ``base.feature`` for the layout of
+    ``a`` and ``b``.
+    """
     if is_shallow(b):
-        return line_to_shallow(a, b, wx, wy, branch)
+        return compute_line_to_shallow(a, b, wx, wy, branch)
     nx, ny = a[AXIS_Y], -a[AXIS_X]
     across = nx * (a[X] + wx - b[X]) + ny * (a[Y] + wy - b[Y])
     half = sqrt(max((b[RADIUS] - across) * (b[RADIUS] + across), 0.0)) * branch
@@ -101,10 +105,16 @@ def line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chor
 
 
 @inner
-def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
-    """Tail on arc a, head on arc b: the tail lies on the circle of a and on that of b moved by -w."""
+def compute_arc_to_arc(
+    a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool
+) -> Chord:
+    """Return the chord w with its tail on arc a and its head on arc b, as :func:`compute_chord_along` does.
+
+    The tail lies where the circle of a meets the circle of b moved by -w. See ``base.feature`` for the layout
+    of ``a`` and ``b``.
+    """
     if (is_shallow(a) or is_shallow(b)) and not one_chord_apart:
-        return shallow_to_arc(a, b, wx, wy, branch)
+        return compute_shallow_to_arc(a, b, wx, wy, branch)
     cx, cy = b[X] - a[X], b[Y] - a[Y]
     gx, gy = cx - wx, cy - wy
     gap = sqrt(gx * gx + gy * gy)
@@ -125,61 +135,77 @@ def arc_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float, one_chor
 
 
 @inner
-def chord_along(a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool) -> Chord:
-    """Tail and the two contact directions of a chord w from feature a to feature b.
+def compute_chord_along(
+    a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool
+) -> Chord:
+    """Return the tail and the two contact directions of a chord w from feature a to feature b.
+
+    The features count as whole lines and circles. Where these do not meet, the nearest chord of a tangency is
+    given. See ``base.feature`` for the layout of ``a`` and ``b``.
 
     Parameters
     ----------
-    a, b : (8,) rows of the features of tail and head.
+    a, b : rows of the features of tail and head.
     wx, wy : the chord in mm.
-    branch : +1 or -1 where an arc takes part; ignored between lines.
+    branch : 1 or -1 where an arc takes part; ignored between lines.
     one_chord_apart : whether the features are equal arcs with centres one chord length apart.
 
     Returns
     -------
-    (ux, uy, r_ax, r_ay, r_bx, r_by)
+    (ux, uy, r_ax, r_ay, r_bx, r_by): tail in mm, and unit contact directions at tail and head
     """
     if a[IS_ARC] == 0.0:
         if b[IS_ARC] != 0.0:
-            return line_to_arc(a, b, wx, wy, branch)
+            return compute_line_to_arc(a, b, wx, wy, branch)
         nx, ny = b[AXIS_Y], -b[AXIS_X]
         s = (nx * (b[X] - a[X] - wx) + ny * (b[Y] - a[Y] - wy)) / (nx * a[AXIS_X] + ny * a[AXIS_Y])
         return (a[X] + s * a[AXIS_X], a[Y] + s * a[AXIS_Y], a[AXIS_Y], -a[AXIS_X], nx, ny)
     if b[IS_ARC] == 0.0:
-        vx, vy, rbx, rby, rax, ray = line_to_arc(b, a, -wx, -wy, branch)
+        vx, vy, rbx, rby, rax, ray = compute_line_to_arc(b, a, -wx, -wy, branch)
         return (vx - wx, vy - wy, rax, ray, rbx, rby)
-    return arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
+    return compute_arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
 
 
 @inner
-def chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
-    """The chord of length d in mm and direction alpha in radians; see ``chord_along``."""
-    return chord_along(a, b, d * cos(alpha), d * sin(alpha), branch, are_one_chord_apart(a, b, d))
+def compute_chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
+    """Return the chord of length d in mm and direction alpha in radians, in the form of :func:`compute_chord_along`.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
+    return compute_chord_along(a, b, d * cos(alpha), d * sin(alpha), branch, are_one_chord_apart(a, b, d))
 
 
 @inner
-def direction_at(row: Array, x: float, y: float) -> tuple[float, float]:
-    """Direction of a contact at a point on a feature: the normal of a line, the unit vector from an arc's
-    centre."""
+def compute_contact_direction(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Return the contact direction (x, y) at a point on a feature: a
+    line's normal, the unit vector from an arc's centre.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (row[AXIS_Y], -row[AXIS_X])
     return ((x - row[X]) / row[RADIUS], (y - row[Y]) / row[RADIUS])
 
 
 @inner
-def parameter_on(row: Array, x: float, y: float) -> float:
-    """Parameter of a point on a feature: mm on a line, radians in (-pi, pi] on an arc."""
+def find_parameter(row: Array, x: float, y: float) -> float:
+    """Return the parameter of a point on a feature: mm on a line,
+    radians in [-pi, pi] on an arc, 0 at its middle.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
-    return angle_on(row, x, y)
+    return find_arc_parameter(row, x, y)
 
 
 @inner
-def distance_to_end(row: Array, s: float) -> float:
-    """Distance in mm along a feature from a parameter to the nearer end; negative beyond it.
+def measure_end_distance(row: Array, s: float) -> float:
+    """Return the distance in mm along a feature from the parameter s
+    to the nearer end; negative beyond an end.
 
     A whole circle has no end: half its circumference is given, the farthest that a contact could be from any
-    point.
+    point. See ``base.feature`` for the layout of ``row``.
     """
     if row[IS_ARC] == 0.0:
         return row[HALF_EXTENT] - abs(s)
@@ -187,26 +213,30 @@ def distance_to_end(row: Array, s: float) -> float:
 
 
 @inner
-def end_slack(row: Array, x: float, y: float) -> float:
-    """How far in mm a contact on a feature is from breaking the rule of ends; infinite on a whole circle,
-    which has none.
+def measure_end_slack(row: Array, x: float, y: float) -> float:
+    """Return the least distance in mm along a feature from a contact to an end, plus that end's slack.
 
-    ``row`` has ten entries.
+    The contact breaks the rule of ends where this is below the margin. Return inf on a whole circle, which
+    has no ends. ``row`` is a feature row (12,) with LOW_SLACK and HIGH_SLACK. See ``base.feature`` for the
+    layout of ``row``.
     """
     if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
         return inf
-    s, half = parameter_on(row, x, y), row[HALF_EXTENT]
+    s, half = find_parameter(row, x, y), row[HALF_EXTENT]
     scale = 1.0 if row[IS_ARC] == 0.0 else row[RADIUS]
     # Where a zone cut the feature, the farther end may be the one whose margin is broken.
     return min((half - s) * scale + row[HIGH_SLACK], (half + s) * scale + row[LOW_SLACK])
 
 
 @inner
-def backward_error(a: Array, b: Array, d: float) -> float:
-    """Bound in mm of how far rounding puts the contacts of a computed chord off their features."""
+def bound_backward_error(a: Array, b: Array, d: float) -> float:
+    """Return a bound in mm of how far rounding puts the contacts of a computed chord off their features.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if (is_shallow(a) or is_shallow(b)) and not are_one_chord_apart(a, b, d):
         apart = hypot(a[X] - b[X], a[Y] - b[Y]) if are_concentric(a, b) else 0.0
-        return ROUNDINGS * (local_size(a) + local_size(b) + d) + apart
+        return ROUNDINGS * (compute_local_size(a) + compute_local_size(b) + d) + apart
     size = abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         # Nearly parallel lines are touched far from their middles.
@@ -223,28 +253,39 @@ def backward_error(a: Array, b: Array, d: float) -> float:
 
 
 @inner
-def curvature(row: Array) -> float:
-    """How fast in 1 / mm the unit vector towards a contact turns when the contact moves off or along its
-    feature."""
+def compute_curvature(row: Array) -> float:
+    """Return the curvature of a feature in 1 / mm: 0 for a line, 1 / R for an arc.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     return 0.0 if row[IS_ARC] == 0.0 else 1.0 / row[RADIUS]
 
 
 @inner
-def regular_error(curve: Array) -> float:
-    """Bound in mm of the error of a tail found by the regular formulas near a coincidence."""
+def bound_regular_error(curve: Array) -> float:
+    """Return a bound in mm of the error of a tail found by the regular formulas near a coincidence.
+
+    See ``base.tables`` for the layout of ``curve``.
+    """
     return 2.0 * curve[BACKWARD_ERROR] + 4.0 * EXACT
 
 
 @inner
 def write_shift(row: Array, shift: float) -> None:
-    """Writes to a row of the curve table what depends on the lattice step: arg Delta in radians (psi = alpha
-    - shift)."""
+    """Write SHIFT, COSINE and SINE to a curve's reals (16,), which depend on the lattice step.
+
+    ``shift`` is arg Delta in radians (psi = alpha - shift). See ``base.tables`` for the layout of ``row``.
+    Symbols are those of ``chord.evaluation``.
+    """
     row[SHIFT], row[COSINE], row[SINE] = shift, cos(shift), sin(shift)
 
 
 @inner
 def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: float) -> None:
-    """Writes to a row of the curve table what does not change along the curve.
+    """Write to a curve's reals (16,) all that does not change along the curve, except its range of alpha.
+
+    See ``base.tables`` for the layout of ``row``, ``base.feature`` for that of ``a`` and ``b``. Symbols are
+    those of ``chord.evaluation``.
 
     Parameters
     ----------
@@ -253,42 +294,45 @@ def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: 
     """
     row[LENGTH], row[BRANCH] = d, branch
     write_shift(row, shift)
-    row[BACKWARD_ERROR] = backward_error(a, b, d)
-    row[COINCIDENCE], row[MIDDLE], row[SIDE] = coincidence(a, b, d)
-    row[KAPPA] = curvature(a) + curvature(b)
+    row[BACKWARD_ERROR] = bound_backward_error(a, b, d)
+    row[COINCIDENCE], row[MIDDLE], row[SIDE] = find_coincidence(a, b, d)
+    row[KAPPA] = compute_curvature(a) + compute_curvature(b)
     if are_concentric(a, b):
         row[COINCIDENCE] = CONCENTRIC
 
 
 @inner
-def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float) -> State:
-    """A chord of a curve at an orientation.
+def compute_chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float) -> State:
+    """Return a chord of a curve at an orientation.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are
+    those of ``chord.evaluation``.
 
     Parameters
     ----------
-    a, b : (8,) rows of the features of tail and head.
-    curve : row of the curve table.
+    a, b : rows of the features of tail and head.
+    curve : reals (16,) of the curve.
     psi, cosine, sine : orientation in radians and its cosine and sine.
 
     Returns
     -------
     (ux, uy, r_ax, r_ay, r_bx, r_by, Px, Py, bound of the tail's error in mm, bound of the error of P over the
-    chord's own directions). The errors are infinite where these formulas do not bound them, too near a
-    tangency
+        chord's own directions in mm). The errors are inf where these formulas do not bound them, too near a
+        tangency
     """
     d = curve[LENGTH]
     wx = d * (cosine * curve[COSINE] - sine * curve[SINE])
     wy = d * (sine * curve[COSINE] + cosine * curve[SINE])
     kappa, kind = curve[KAPPA], curve[COINCIDENCE]
     if kind != NONE and kind != CONCENTRIC:
-        regular, u = motion(a, b, curve, psi)
+        regular, u = compute_motion(a, b, curve, psi)
         if regular:
-            rax, ray = direction_at(a, u[0], u[1])
-            rbx, rby = direction_at(b, u[0] + wx, u[1] + wy)
-            error = regular_error(curve) + misfit(a, b, curve, rax * rby - ray * rbx)
+            rax, ray = compute_contact_direction(a, u[0], u[1])
+            rbx, rby = compute_contact_direction(b, u[0] + wx, u[1] + wy)
+            error = bound_regular_error(curve) + bound_misfit(a, b, curve, rax * rby - ray * rbx)
             slope_error = error * (1.0 + d * kappa)
             return (u[0], u[1], rax, ray, rbx, rby, u[0] - u[3], u[1] + u[2], error, slope_error)
-    c = chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
+    c = compute_chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
     turn = c[2] * c[5] - c[3] * c[4]
     if kind == CONCENTRIC:
         p = -a[RADIUS]
@@ -306,10 +350,14 @@ def chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sin
 
 
 @inner
-def valued(
+def evaluate_state(
     a: Array, b: Array, state: State, cosine: float, sine: float, mode: float
 ) -> tuple[float, float, float, float]:
-    """Value and derivative over psi of a chord in place, and bounds of their errors; see ``curve_value``."""
+    """Return the value of a chord in place, its derivative over psi, and bounds of the errors of both.
+
+    ``state`` is that of :func:`chord_state`; see :func:`curve_value` for ``mode`` and units. See
+    ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     ux, uy, px, py = state[0], state[1], state[6], state[7]
     if mode == HEIGHT:
         doubt = state[9]
@@ -320,7 +368,7 @@ def valued(
             share = abs(cosine * nx + sine * ny)
             doubt = min(doubt, state[8] + share * (doubt + state[8]))
         return (cosine * uy - sine * ux, -(cosine * px + sine * py), state[8], doubt)
-    s = parameter_on(a, ux, uy)
+    s = find_parameter(a, ux, uy)
     p = (px - ux) * state[2] + (py - uy) * state[3]
     if a[IS_ARC] == 0.0:
         return (s, -p, state[8], state[9])
@@ -328,21 +376,24 @@ def valued(
 
 
 @inner
-def curve_value(
+def evaluate_curve(
     a: Array, b: Array, curve: Array, psi: float, mode: float
 ) -> tuple[float, float, float, float]:
-    """Value and derivative over psi of a chord curve.
+    """Return the value and derivative over psi of a chord curve at psi, with error bounds.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
 
     Parameters
     ----------
-    curve : row of the curve table.
+    curve : reals (16,) of the curve.
     psi : orientation in radians.
-    mode : ``HEIGHT`` for h in mm, ``POSITION`` for s of the tail on a (mm on a line, radians on an arc).
+    mode : ``HEIGHT`` for the height of the tail along the pegs' y axis in mm, ``POSITION`` for the tail's
+        parameter on a (mm on a line, radians on an arc).
 
     Returns
     -------
-    (value, derivative, bound of the value's error, bound of the derivative's error), the errors infinite
-    where these formulas do not bound them, too near a tangency
+    (value, derivative, bound of the value's error, bound of the derivative's error), the errors inf where
+        these formulas do not bound them, too near a tangency
     """
     cosine, sine = cos(psi), sin(psi)
-    return valued(a, b, chord_state(a, b, curve, psi, cosine, sine), cosine, sine, mode)
+    return evaluate_state(a, b, compute_chord_state(a, b, curve, psi, cosine, sine), cosine, sine, mode)

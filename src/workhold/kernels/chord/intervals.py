@@ -6,7 +6,7 @@ cosines. Between two neighbours of the sorted list a branch exists throughout or
 the middle decides.
 
 The ranges hold every chord between the features, in spite of rounding. The features' ends have been moved out
-by far more than rounding (``contact.curves.LOOSE``). A range too narrow for the test counts wherever the
+by far more than rounding (``conventions.LOOSE``). A range too narrow for the test counts wherever the
 carriers of the features meet, and what is found past an end is discarded later. The end of a range at a
 tangency is known to a stated error.
 """
@@ -27,20 +27,20 @@ from workhold.kernels.base.feature import (
     RADIUS,
     X,
     Y,
+    compute_local_size,
+    compute_point,
+    find_arc_middle,
     is_shallow,
-    local_size,
-    middle_of,
-    point_at,
 )
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.chord.coincidences import (
     are_concentric,
     are_one_chord_apart,
-    beyond_line,
-    touching_side,
+    find_line_side,
+    find_touching_side,
 )
-from workhold.kernels.chord.evaluation import chord, parameter_on
-from workhold.kernels.chord.shallow import arcs_cosine, is_turned, tangent_off
+from workhold.kernels.chord.evaluation import compute_chord, find_parameter
+from workhold.kernels.chord.shallow import compute_tangent_offset, enclose_arcs_cosine, is_turned
 
 MOST_EVENTS = 16
 # The column of an event that says whether the branch exists behind it.
@@ -65,8 +65,12 @@ ROUNDINGS = 10.0 * 1.2e-16
 
 @inner
 def add_event(events: Array, count: int, alpha: float, kind: float, error: float) -> int:
-    """Appends a direction, brought into [0, 2 pi), and a bound of its error to the events, and returns the
-    new count."""
+    """Append an event to ``events``: the direction alpha brought into
+    [0, 2 pi), its kind, and a bound of its error.
+
+    All angles are in radians. Return the new number of events. See ``chord.intervals`` for the layout of
+    ``events``.
+    """
     alpha = alpha % TURN
     events[count, 0] = alpha
     events[count, 1] = kind
@@ -76,8 +80,11 @@ def add_event(events: Array, count: int, alpha: float, kind: float, error: float
 
 @inner
 def add_pair(events: Array, count: int, middle: float, cosine: float, kind: float, rounding: float) -> int:
-    """Appends both solutions of cos(alpha - middle) = cosine, if there are any; ``rounding`` bounds the
-    cosine's error."""
+    """Append both solutions alpha of cos(alpha - middle) = cosine as events, if there are any.
+
+    ``rounding`` bounds the cosine's error. Return the new number of events. See ``chord.intervals`` for the
+    layout of ``events``.
+    """
     if abs(cosine) <= 1.0:
         offset = acos(cosine)
         error = 2e-15 + 2.0 * rounding / max(sin(offset), sqrt(rounding))
@@ -88,22 +95,25 @@ def add_pair(events: Array, count: int, middle: float, cosine: float, kind: floa
 
 @inner
 def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: float, turned: float) -> int:
-    """Directions at which the chord runs from an end of ``moving`` to the carrier of ``fixed``.
+    """Append the directions at which the chord runs from an end of
+    ``moving`` to the line or circle of ``fixed``.
 
     ``turned`` is 0 when ``moving`` carries the tail, pi when it carries the head. A tail on a whole circle
-    reaches its seam, where its position jumps by a turn; ranges are cut there.
+    reaches its seam, where its position jumps by a turn; ranges are cut there. Return the new number of
+    events. See ``chord.intervals`` for the layout of ``events``, ``base.feature`` for that of ``moving`` and
+    ``fixed``.
     """
     ends = 1 if moving[IS_ARC] != 0.0 and moving[HALF_EXTENT] >= pi else 2
     kind = CUT if ends == 1 and turned == 0.0 else END
     for k in range(ends):
-        x, y = point_at(moving, moving[HALF_EXTENT] if k == 0 else -moving[HALF_EXTENT])
+        x, y = compute_point(moving, moving[HALF_EXTENT] if k == 0 else -moving[HALF_EXTENT])
         dx, dy = fixed[X] - x, fixed[Y] - y
         if fixed[IS_ARC] == 0.0:
             nx, ny = fixed[AXIS_Y], -fixed[AXIS_X]
             count = add_pair(events, count, atan2(ny, nx) + turned, (nx * dx + ny * dy) / d, kind, 0.0)
         elif is_shallow(fixed):
             # With y from the arc's middle to the end: w . (t + k y) = -k (|y|^2 + d^2) / 2 - y . t.
-            mx, my = middle_of(fixed)
+            mx, my = find_arc_middle(fixed)
             dx, dy, k = x - mx, y - my, 1.0 / fixed[RADIUS]
             rx, ry = fixed[AXIS_X] + k * dx, fixed[AXIS_Y] + k * dy
             size = hypot(rx, ry)
@@ -121,21 +131,26 @@ def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: fl
 
 @inner
 def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: float, turned: float) -> int:
-    """Directions at which a chord between a line and an arc has parallel normals."""
+    """Append the directions at which a chord between a line and an
+    arc is a tangency, or ranges are cut at a coincidence.
+
+    ``turned`` is 0 when the tail is on the line, pi when the head is. Return the new number of events. See
+    ``chord.intervals`` for the layout of ``events``, ``base.feature`` for that of ``line`` and ``arc``.
+    """
     nx, ny = line[AXIS_Y], -line[AXIS_X]
     middle = atan2(ny, nx) + turned
     if is_shallow(arc):
-        mx, my = middle_of(arc)
-        apart = nx * (mx - line[X]) + ny * (my - line[Y]) + tangent_off(line, arc)
-        rounding = ROUNDINGS * (local_size(arc) + abs(line[X]) + abs(line[Y]) + abs(apart) + d) / d
+        mx, my = find_arc_middle(arc)
+        apart = nx * (mx - line[X]) + ny * (my - line[Y]) + compute_tangent_offset(line, arc)
+        rounding = ROUNDINGS * (compute_local_size(arc) + abs(line[X]) + abs(line[Y]) + abs(apart) + d) / d
         return add_pair(events, count, middle, apart / d, TANGENCY, rounding)
     apart = nx * (arc[X] - line[X]) + ny * (arc[Y] - line[Y])
     rounding = ROUNDINGS * (abs(arc[X]) + abs(arc[Y]) + abs(line[X]) + abs(line[Y]) + arc[RADIUS] + d) / d
-    if beyond_line(line, arc, d) != 0.0:
-        straight = middle if beyond_line(line, arc, d) > 0.0 else middle + pi
+    if find_line_side(line, arc, d) != 0.0:
+        straight = middle if find_line_side(line, arc, d) > 0.0 else middle + pi
         count = add_event(events, count, straight - SLIVER, CUT, 0.0)
         count = add_event(events, count, straight + SLIVER, CUT, 0.0)
-        other = (apart - arc[RADIUS]) / d if beyond_line(line, arc, d) > 0.0 else (apart + arc[RADIUS]) / d
+        other = (apart - arc[RADIUS]) / d if find_line_side(line, arc, d) > 0.0 else (apart + arc[RADIUS]) / d
         return add_pair(events, count, middle, other, TANGENCY, rounding)
     count = add_pair(events, count, middle, (apart + arc[RADIUS]) / d, TANGENCY, rounding)
     return add_pair(events, count, middle, (apart - arc[RADIUS]) / d, TANGENCY, rounding)
@@ -143,12 +158,17 @@ def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: f
 
 @inner
 def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) -> int:
-    """Directions at which a chord between two arcs has parallel normals."""
+    """Append the directions at which a chord between two arcs is a
+    tangency, or ranges are cut at a coincidence.
+
+    Return the new number of events. See ``chord.intervals`` for the layout of ``events``, ``base.feature``
+    for that of ``a`` and ``b``.
+    """
     dx, dy = b[X] - a[X], b[Y] - a[Y]
     apart = hypot(dx, dy)
     if apart == 0.0:
         return count
-    middle, side = atan2(dy, dx), touching_side(a, b, d)
+    middle, side = atan2(dy, dx), find_touching_side(a, b, d)
     if side != 0.0:
         straight = middle if side > 0.0 else middle + pi
         count = add_event(events, count, straight - SLIVER, CUT, 0.0)
@@ -159,7 +179,7 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
         count = add_event(events, count, middle - SLIVER, CUT, 0.0)
         count = add_event(events, count, middle + SLIVER, CUT, 0.0)
     elif is_shallow(a) or is_shallow(b):
-        near, far, swing, beta = arcs_cosine(a, b, d)
+        near, far, swing, beta = enclose_arcs_cosine(a, b, d)
         rounding = (near[1] - near[0] + far[1] - far[0]) / (2.0 * swing) + ROUNDINGS
         count = add_pair(events, count, beta, (near[0] + near[1]) / (2.0 * swing), TANGENCY, rounding)
         return add_pair(events, count, beta, -(far[0] + far[1]) / (2.0 * swing), TANGENCY, rounding)
@@ -172,11 +192,13 @@ def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) 
 def add_gap(
     events: Array, count: int, middle: float, apart: float, d: float, a: Array, b: Array, gap: float
 ) -> int:
-    """Appends the tangencies at which the centre of b, moved back by the chord, is ``gap`` away from the
-    centre of a.
+    """Append the tangencies at which the centre of b, moved back by
+    the chord, is ``gap`` away from the centre of a.
 
     That distance is g with g^2 = (apart - d)^2 + 4 apart d sin(gamma / 2)^2, gamma the angle between chord
-    and centres.
+    and centres' line. ``middle`` is the direction of that line in radians, ``apart`` its length in mm. Return
+    the new number of events. See ``chord.intervals`` for the layout of ``events``, ``base.feature`` for that
+    of ``a`` and ``b``.
     """
     difference = apart - d
     rounding = ROUNDINGS * (abs(a[X]) + abs(a[Y]) + abs(b[X]) + abs(b[Y]) + a[RADIUS] + b[RADIUS] + d)
@@ -196,7 +218,11 @@ def add_gap(
 
 @inner
 def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
-    """All directions at which a chord may begin or cease to exist, sorted, and their number."""
+    """Write all directions at which a chord may begin or cease to exist to ``events``, in ascending order.
+
+    Columns: alpha in [0, 2 pi), kind, bound of its error. Return their number. See ``chord.intervals`` for
+    the layout of ``events``, ``base.feature`` for that of ``a`` and ``b``.
+    """
     count = add_end_events(events, int(np.int64(0)), a, b, d, 0.0)
     count = add_end_events(events, count, b, a, d, pi)
     if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
@@ -217,7 +243,10 @@ def collect_events(events: Array, a: Array, b: Array, d: float) -> int:
 
 @inner
 def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
-    """Whether a chord of a direction fits between the lines and circles that carry two features."""
+    """Return whether a chord of direction alpha fits between the whole lines or circles of two features.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     wx, wy = d * cos(alpha), d * sin(alpha)
     if is_shallow(a) or is_shallow(b):
         return is_turned(a, b, wx, wy)
@@ -232,12 +261,11 @@ def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
 
 
 @inner
-def only_touch(a: Array, b: Array, d: float) -> bool:
-    """Whether a chord of length d between two carriers, one of them an arc, exists at one direction only or
-    at none.
+def can_only_touch(a: Array, b: Array, d: float) -> bool:
+    """Return whether a chord of length d between two whole lines or circles exists at one direction at most.
 
-    Its contacts then share one line of action, and nothing closes. It is not asked of shallow arcs, whose
-    ranges are short in any case.
+    Its contacts then share one line of action, and nothing closes. Return False for two lines, and for
+    shallow arcs, whose ranges are short in any case. See ``base.feature`` for the layout of ``a`` and ``b``.
     """
     if is_shallow(a) or is_shallow(b):
         return False
@@ -253,39 +281,50 @@ def only_touch(a: Array, b: Array, d: float) -> bool:
 
 @inner
 def are_parallel(a: Array, b: Array) -> bool:
-    """Whether two features are parallel lines."""
+    """Return whether two features are parallel lines.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     is_straight = a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0
     return is_straight and abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL
 
 
 @inner
 def share_one_line(a: Array, b: Array, d: float) -> bool:
-    """Whether pegs d mm apart that touch two features always do so along one line of action.
+    """Return whether pegs d mm apart that touch two features always do so along one line of action.
 
-    So they do square to parallel lines, on a diameter through a common centre, and where carriers only touch.
-    Wrenches of opposite or equal contacts are dependent: with a third they fix no pose, and nothing closes.
+    This is the case square to parallel lines, on a diameter through a common centre, and where the lines or
+    circles only touch. Wrenches of opposite or equal contacts are dependent: with a third they fix no pose,
+    and nothing closes. See ``base.feature`` for the layout of ``a`` and ``b``.
     """
     if are_parallel(a, b):
         apart = a[AXIS_Y] * (b[X] - a[X]) - a[AXIS_X] * (b[Y] - a[Y])
         return abs(apart) >= d * (1.0 - SQUARE)
     if are_concentric(a, b):
         return min(abs(d - a[RADIUS] - b[RADIUS]), abs(d - abs(a[RADIUS] - b[RADIUS]))) <= EXACT
-    return only_touch(a, b, d)
+    return can_only_touch(a, b, d)
 
 
 @inner
 def reaches(row: Array, x: float, y: float) -> bool:
-    """Whether a point of a feature's carrier is on the feature, or past its end by no more than ``SPARE``."""
+    """Return whether a point of a feature's line or circle is on the
+    feature, or beyond its end by at most ``SPARE`` mm.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     spare = SPARE if row[IS_ARC] == 0.0 else SPARE / row[RADIUS]
-    return abs(parameter_on(row, x, y)) <= row[HALF_EXTENT] + spare
+    return abs(find_parameter(row, x, y)) <= row[HALF_EXTENT] + spare
 
 
 @inner
 def exists(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
-    """Whether a chord of a direction lies on both features."""
+    """Return whether a chord of length d, direction alpha and a branch lies on both features.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if not carriers_meet(a, b, d, alpha):
         return False
-    c = chord(a, b, d, alpha, branch)
+    c = compute_chord(a, b, d, alpha, branch)
     return reaches(a, c[0], c[1]) and reaches(b, c[0] + d * cos(alpha), c[1] + d * sin(alpha))
 
 
@@ -293,7 +332,11 @@ def exists(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
 def is_alive(
     a: Array, b: Array, d: float, branch: float, low: float, high: float, kind_low: float, kind_high: float
 ) -> bool:
-    """Whether a branch may exist between two neighbouring events."""
+    """Return whether a branch may exist between two neighbouring events at ``low`` and ``high``.
+
+    ``kind_low`` and ``kind_high`` are the kinds of the events. See ``base.feature`` for the layout of ``a``
+    and ``b``.
+    """
     middle = (low + high) / 2.0
     if high - low > NARROW:
         return exists(a, b, d, middle, branch)
@@ -306,25 +349,27 @@ def is_alive(
     if kind_low == CUT or kind_high == CUT:
         return False
     # Both are ends: a steady chord cannot come in from a loosened end as far as the true one.
-    c = chord(a, b, d, middle, branch)
+    c = compute_chord(a, b, d, middle, branch)
     return high > low and abs(c[2] * c[5] - c[3] * c[4]) < STEADY
 
 
 @inner
 def write_chord_intervals(a: Array, b: Array, d: float, events: Array, out: Array) -> int:
-    """Write all ranges of direction of a chord of length d from feature a to feature b, and return how many
-    there are.
+    """Write all ranges of direction of a chord of length d from
+    feature a to feature b to ``out``; return their number.
+
+    Parallel lines give none: their chords are sliding pairs. Nor do features that the chord always touches
+    along one line of action, see :func:`share_one_line`. See ``base.feature`` for the layout of ``a`` and
+    ``b``, ``chord.intervals`` for that of ``events``.
 
     Parameters
     ----------
-    a, b : (8,) feature rows.
+    a, b : feature rows.
     d : length in mm, positive.
     events : (MOST_EVENTS, 4) work space.
-    out : (MOST_RANGES, 5) receives the ranges. Columns: lowest and highest alpha in radians (lowest in
-        [0, 4 pi)), branch, and for both alphas a bound of its error. It is in radians when the chord is a
-        tangency there, 0 when it is not. Parallel lines give none: their chords are sliding pairs. Nor do
-        concentric arcs whose chord lies on a line through the centre: their contacts share one line of
-        action.
+    out : (MOST_RANGES, 5) receives the ranges. Columns: lowest and highest alpha in radians (lowest in [0, 4
+        pi)), branch, and for both alphas a bound of its error in radians when the chord is a tangency there,
+        0 when it is not.
     """
     if are_parallel(a, b) or share_one_line(a, b, d):
         return 0
@@ -347,7 +392,11 @@ def write_chord_intervals(a: Array, b: Array, d: float, events: Array, out: Arra
 def write_branch_intervals(
     events: Array, count: int, a: Array, b: Array, d: float, branch: float, out: Array, found: int
 ) -> int:
-    """Write the ranges of one branch to ``out`` from row ``found`` on, and return the new number of rows."""
+    """Write the ranges of one branch to ``out`` from row ``found`` on; return the new number of rows.
+
+    ``count`` is the number of ``events``, at least 1; their column ALIVE is overwritten. See
+    ``chord.intervals`` for the layout of ``events``, ``base.feature`` for that of ``a`` and ``b``.
+    """
     start = -1
     for i in range(count):
         low = events[i, 0]

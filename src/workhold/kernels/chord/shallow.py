@@ -23,9 +23,9 @@ from workhold.kernels.base.feature import (
     RADIUS,
     X,
     Y,
-    beside_middle,
-    exact_dot,
-    middle_of,
+    compute_exact_dot,
+    find_arc_middle,
+    intersect_near_middle,
 )
 from workhold.kernels.base.interval import (
     Interval,
@@ -37,132 +37,166 @@ from workhold.kernels.base.interval import (
     isqrt,
     isquare,
     isub,
-    outward,
+    widen_outward,
 )
 
 Chord = tuple[float, float, float, float, float, float]
 
 
 @inner
-def line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """``evaluation.line_to_arc`` for a shallow arc."""
+def compute_line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
+    """Return ``evaluation.compute_line_to_arc`` for a shallow arc b.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     nx, ny = a[AXIS_Y], -a[AXIS_X]
-    mx, my = middle_of(b)
+    mx, my = find_arc_middle(b)
     off = nx * (a[X] + wx - mx) + ny * (a[Y] + wy - my)
-    x, y, rx, ry = beside_middle(
-        b, nx, ny, exact_dot(a[AXIS_X], a[AXIS_Y], b[AXIS_X], b[AXIS_Y]), off, branch
+    x, y, rx, ry = intersect_near_middle(
+        b, nx, ny, compute_exact_dot(a[AXIS_X], a[AXIS_Y], b[AXIS_X], b[AXIS_Y]), off, branch
     )
     return (mx + x - wx, my + y - wy, nx, ny, rx, ry)
 
 
 @inner
-def shallow_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """``evaluation.arc_to_arc`` where an arc is shallow: the tail lies where the circle of a meets the line
-    on which both circles' equations agree."""
+def compute_shallow_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
+    """Return ``evaluation.compute_arc_to_arc`` where one arc or both are shallow.
+
+    The tail lies where the circle of a meets the line on which both circles' equations agree. See
+    ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     gx, gy = b[X] - a[X] - wx, b[Y] - a[Y] - wy
     gap = hypot(gx, gy)
     nx, ny = gx / gap, gy / gap
-    ax, ay = middle_of(a)
-    bx, by = middle_of(b)
+    ax, ay = find_arc_middle(a)
+    bx, by = find_arc_middle(b)
     qx, qy = ax + wx - bx, ay + wy - by
     off = ((qx * qx + qy * qy) / 2.0 + b[RADIUS] * (qx * b[AXIS_X] + qy * b[AXIS_Y])) / gap
     # Cross products of c_b - w - c_a = R_a t_a - R_b t_b - q with t_a.
     across = (
         -(
-            b[RADIUS] * exact_dot(b[AXIS_X], -b[AXIS_Y], a[AXIS_Y], a[AXIS_X])
+            b[RADIUS] * compute_exact_dot(b[AXIS_X], -b[AXIS_Y], a[AXIS_Y], a[AXIS_X])
             + qx * a[AXIS_Y]
             - qy * a[AXIS_X]
         )
         / gap
     )
-    x, y, rx, ry = beside_middle(a, nx, ny, across, off, branch)
+    x, y, rx, ry = intersect_near_middle(a, nx, ny, across, off, branch)
     return (ax + x, ay + y, rx, ry, b[AXIS_X] + (x + qx) / b[RADIUS], b[AXIS_Y] + (y + qy) / b[RADIUS])
 
 
 @inner
-def parts_of(line: Array, arc: Array) -> tuple[float, float]:
-    """The parts of an arc's direction along a line's normal and along the line: nu and tau."""
+def split_direction(line: Array, arc: Array) -> tuple[float, float]:
+    """Return (nu, tau), the components of an arc's direction along a line's normal and along the line.
+
+    See ``base.feature`` for the layout of ``line`` and ``arc``. Symbols are those of ``chord.shallow``.
+    """
     along = line[AXIS_Y] * arc[AXIS_X] - line[AXIS_X] * arc[AXIS_Y]
-    return (along, exact_dot(line[AXIS_X], line[AXIS_Y], arc[AXIS_X], arc[AXIS_Y]))
+    return (along, compute_exact_dot(line[AXIS_X], line[AXIS_Y], arc[AXIS_X], arc[AXIS_Y]))
 
 
 @inner
-def tangent_off(line: Array, arc: Array) -> float:
-    """e of the tangency at a shallow arc's near side: R tau^2 / (1 + |nu|) towards it."""
-    along, across = parts_of(line, arc)
+def compute_tangent_offset(line: Array, arc: Array) -> float:
+    """Return e in mm of the tangency at a shallow arc's near side,
+    along the line's normal from the arc's middle.
+
+    Its size is R tau^2 / (1 + |nu|). See ``base.feature`` for the layout of ``line`` and ``arc``. Symbols are
+    those of ``chord.shallow``.
+    """
+    along, across = split_direction(line, arc)
     off = arc[RADIUS] * across * across / (1.0 + abs(along))
     return off if along > 0.0 else -off
 
 
 @inner
 def is_turned(a: Array, b: Array, wx: float, wy: float) -> bool:
-    """Whether the carriers of two features, one of them a shallow arc, meet for a chord: whether X^2 is
-    positive."""
+    """Return whether a chord w fits between the whole lines or
+    circles of two features, one of them a shallow arc.
+
+    It does where X^2 is positive. See ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those
+    of ``chord.shallow``.
+    """
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
-        near, far, swing, beta = arcs_cosine(a, b, hypot(wx, wy))
+        near, far, swing, beta = enclose_arcs_cosine(a, b, hypot(wx, wy))
         part = swing * (wx * cos(beta) + wy * sin(beta)) / hypot(wx, wy)
         return near[0] / 2.0 + near[1] / 2.0 > part and far[0] / 2.0 + far[1] / 2.0 > -part
     line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
-    mx, my = middle_of(arc)
+    mx, my = find_arc_middle(arc)
     sign = 1.0 if a[IS_ARC] == 0.0 else -1.0
     off = line[AXIS_Y] * (line[X] + sign * wx - mx) - line[AXIS_X] * (line[Y] + sign * wy - my)
-    along, across = parts_of(line, arc)
+    along, across = split_direction(line, arc)
     k = 1.0 / arc[RADIUS]
     return across * across > k * off * (2.0 * along + k * off)
 
 
 @inner
-def arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float, float]:
-    """What xi is made of between two arcs: 1 - xi = near - swing cos(alpha - beta), 1 + xi = far + swing
-    cos(alpha - beta).
+def enclose_arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float, float]:
+    """Return near, far, swing and beta of the cosine xi between the contact directions on two arcs.
+
+    1 - xi = near - swing cos(alpha - beta), 1 + xi = far + swing cos(alpha - beta). See ``base.feature`` for
+    the layout of ``a`` and ``b``. Symbols are those of ``chord.shallow``.
 
     Returns
     -------
     (enclosures of near and far, swing, beta in radians)
     """
-    ax, ay = middle_of(a)
-    bx, by = middle_of(b)
+    ax, ay = find_arc_middle(a)
+    bx, by = find_arc_middle(b)
     ka, kb = 1.0 / a[RADIUS], 1.0 / b[RADIUS]
     # Middles and differences are rounded once or so.
-    qx, qy = isub(outward(bx, bx), outward(ax, ax)), isub(outward(by, by), outward(ay, ay))
-    vx = isub(iscale(kb, outward(a[AXIS_X], a[AXIS_X])), iscale(ka, outward(b[AXIS_X], b[AXIS_X])))
-    vy = isub(iscale(kb, outward(a[AXIS_Y], a[AXIS_Y])), iscale(ka, outward(b[AXIS_Y], b[AXIS_Y])))
+    qx, qy = (
+        isub(widen_outward(bx, bx), widen_outward(ax, ax)),
+        isub(widen_outward(by, by), widen_outward(ay, ay)),
+    )
+    vx = isub(
+        iscale(kb, widen_outward(a[AXIS_X], a[AXIS_X])), iscale(ka, widen_outward(b[AXIS_X], b[AXIS_X]))
+    )
+    vy = isub(
+        iscale(kb, widen_outward(a[AXIS_Y], a[AXIS_Y])), iscale(ka, widen_outward(b[AXIS_Y], b[AXIS_Y]))
+    )
     drift = iadd(imul(qx, vx), imul(qy, vy))
     bend = iscale(0.5 * ka * kb, ishift(d * d, iadd(isquare(qx), isquare(qy))))
     both = iadd(drift, bend)
     lx, ly = a[AXIS_X] - b[AXIS_X], a[AXIS_Y] - b[AXIS_Y]
     mx, my = a[AXIS_X] + b[AXIS_X], a[AXIS_Y] + b[AXIS_Y]
-    less = iscale(0.5, iadd(isquare(outward(lx, lx)), isquare(outward(ly, ly))))
-    more = iscale(0.5, iadd(isquare(outward(mx, mx)), isquare(outward(my, my))))
+    less = iscale(0.5, iadd(isquare(widen_outward(lx, lx)), isquare(widen_outward(ly, ly))))
+    more = iscale(0.5, iadd(isquare(widen_outward(mx, mx)), isquare(widen_outward(my, my))))
     swing = d * ka * kb * hypot(b[X] - a[X], b[Y] - a[Y])
     return (iadd(less, both), isub(more, both), swing, atan2(b[Y] - a[Y], b[X] - a[X]))
 
 
 @inner
-def shallow_turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
-    """Enclosure of abs(X) for alpha in [low, high]; see ``stretches.turn_size``."""
+def enclose_shallow_turn(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
+    """Return an enclosure of abs(X) for alpha in [low, high] where an
+    arc is shallow; see ``stretches.enclose_turn``.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those of ``chord.shallow``.
+    """
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
-        near, far, swing, beta = arcs_cosine(a, b, d)
-        part = imul(outward(swing, swing), icos((low - beta, high - beta)))
+        near, far, swing, beta = enclose_arcs_cosine(a, b, d)
+        part = imul(widen_outward(swing, swing), icos((low - beta, high - beta)))
         return isqrt(imul(isub(near, part), iadd(far, part)))
     line, arc = (a, b) if a[IS_ARC] == 0.0 else (b, a)
-    mx, my = middle_of(arc)
+    mx, my = find_arc_middle(arc)
     fixed = iadd(
-        iscale(line[AXIS_Y], isub(outward(mx, mx), (line[X], line[X]))),
-        iscale(-line[AXIS_X], isub(outward(my, my), (line[Y], line[Y]))),
+        iscale(line[AXIS_Y], isub(widen_outward(mx, mx), (line[X], line[X]))),
+        iscale(-line[AXIS_X], isub(widen_outward(my, my), (line[Y], line[Y]))),
     )
     normal = atan2(-line[AXIS_X], line[AXIS_Y])
     # The contact's way from the arc's middle: w counts towards an arc that is touched by the head.
     sign = 1.0 if a[IS_ARC] == 0.0 else -1.0
     off = isub(iscale(sign * d, icos((low - normal, high - normal))), fixed)
-    along, across = parts_of(line, arc)
+    along, across = split_direction(line, arc)
     k = 1.0 / arc[RADIUS]
-    rise = imul(off, iadd(outward(2.0 * along, 2.0 * along), iscale(k, off)))
-    return isqrt(isub(isquare(outward(across, across)), iscale(k, rise)))
+    rise = imul(off, iadd(widen_outward(2.0 * along, 2.0 * along), iscale(k, off)))
+    return isqrt(isub(isquare(widen_outward(across, across)), iscale(k, rise)))
 
 
 @inner
-def shallow_half(a: Array, b: Array, turn: float, gap: float) -> float:
-    """Half the chord that two circles have in common, by X, where an arc is shallow
-    (``piece_bounds.arcs_radius``)."""
+def compute_shallow_half_chord(a: Array, b: Array, turn: float, gap: float) -> float:
+    """Return half the length in mm of the common chord of two circles, one of them a shallow arc's, from X.
+
+    ``turn`` is X, ``gap`` the distance of the circles' centres in mm. See ``base.feature`` for the layout of
+    ``a`` and ``b``. Symbols are those of ``chord.shallow``.
+    """
     return a[RADIUS] * b[RADIUS] * abs(turn) / gap

@@ -58,12 +58,12 @@ from workhold.kernels.base.interval import (
     isqrt,
     isquare,
     isub,
-    outward,
+    widen_outward,
 )
 from workhold.kernels.base.tables import BRANCH, COINCIDENCE, FROM, LENGTH, TANGENT_FROM, TANGENT_TO, TO
-from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, motion_box
-from workhold.kernels.chord.evaluation import chord, curvature
-from workhold.kernels.chord.shallow import shallow_turn_size
+from workhold.kernels.chord.coincidences import ARCS, CONCENTRIC, NONE, enclose_motion
+from workhold.kernels.chord.evaluation import compute_chord, compute_curvature
+from workhold.kernels.chord.shallow import enclose_shallow_turn
 
 # Circles with centres nearer than this part of the smaller radius have nearly the same contact directions.
 NEAR = 0.5
@@ -74,8 +74,11 @@ ANYTHING = (-inf, inf)
 
 
 @inner
-def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
-    """Enclosure of ``line_to_arc``."""
+def enclose_line_to_arc(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
+    """Return an enclosure of ``evaluation.compute_line_to_arc`` for all w in a box (wx, wy).
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     nx, ny = a[AXIS_Y], -a[AXIS_X]
     moved_x, moved_y = ishift(a[X] - b[X], wx), ishift(a[Y] - b[Y], wy)
     across = iadd(iscale(nx, moved_x), iscale(ny, moved_y))
@@ -88,10 +91,13 @@ def line_to_arc_box(a: Array, b: Array, wx: Interval, wy: Interval, branch: floa
 
 
 @inner
-def arc_to_arc_box(
+def enclose_arc_to_arc(
     a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool
 ) -> ChordBox:
-    """Enclosure of ``arc_to_arc``."""
+    """Return an enclosure of ``evaluation.compute_arc_to_arc`` for all w in a box (wx, wy).
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     cx, cy = b[X] - a[X], b[Y] - a[Y]
     gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
     gap = isqrt(iadd(isquare(gx), isquare(gy)))
@@ -115,8 +121,12 @@ def arc_to_arc_box(
 
 
 @inner
-def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox:
-    """Enclosure of the chord between two lines."""
+def enclose_line_to_line(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Return an enclosure of the chord between two lines for all w in
+    a box, in the form of ``evaluation.compute_chord_along``.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     nx, ny = b[AXIS_Y], -b[AXIS_X]
     reach = iadd(
         iscale(nx, isub((b[X] - a[X], b[X] - a[X]), wx)), iscale(ny, isub((b[Y] - a[Y], b[Y] - a[Y]), wy))
@@ -127,43 +137,53 @@ def line_to_line_box(a: Array, b: Array, wx: Interval, wy: Interval) -> ChordBox
 
 
 @inner
-def chord_box(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
-    """Enclosure of ``chord_along`` for all w in a box."""
+def enclose_chord(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
+    """Return an enclosure of ``evaluation.compute_chord_along`` for all w in a box (wx, wy).
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
+    """
     branch = curve[BRANCH]
     if a[IS_ARC] == 0.0:
         if b[IS_ARC] == 0.0:
-            return line_to_line_box(a, b, wx, wy)
-        return line_to_arc_box(a, b, wx, wy, branch)
+            return enclose_line_to_line(a, b, wx, wy)
+        return enclose_line_to_arc(a, b, wx, wy, branch)
     if b[IS_ARC] == 0.0:
-        vx, vy, rbx, rby, rax, ray = line_to_arc_box(b, a, ineg(wx), ineg(wy), branch)
+        vx, vy, rbx, rby, rax, ray = enclose_line_to_arc(b, a, ineg(wx), ineg(wy), branch)
         return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
     if a[RADIUS] <= b[RADIUS]:
-        return arc_to_arc_box(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
+        return enclose_arc_to_arc(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
     # Seen from the smaller circle, the contact on the larger one is known better.
-    vx, vy, rbx, rby, rax, ray = arc_to_arc_box(b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS)
+    vx, vy, rbx, rby, rax, ray = enclose_arc_to_arc(
+        b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS
+    )
     return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
 
 
 @inner
-def one_sided(turn: Interval, sign: float) -> Interval:
-    """Cuts a cross product known to keep its sign (0 at a tangency) to that side."""
+def cut_to_side(turn: Interval, sign: float) -> Interval:
+    """Return an interval cut to non-negative numbers where ``sign``
+    is positive, else to non-positive numbers.
+
+    It is a cross product known to keep its sign, 0 at a tangency.
+    """
     if sign > 0.0:
         return (max(turn[0], 0.0), max(turn[1], 0.0))
     return (min(turn[0], 0.0), min(turn[1], 0.0))
 
 
 @inner
-def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
-    r"""Enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
+def enclose_turn(a: Array, b: Array, d: float, low: float, high: float) -> Interval:
+    """Return an enclosure of abs(X) for alpha in [low, high], by the sides of a triangle.
 
-    Between a line and an arc X^2 = 1 - (across / R)^2. Between two arcs let g = \|c - w\|, and gamma the
-    angle between w and c. Then X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and
-    g^2 = (\|c\| - d)^2 + 4 \|c\| d sin(gamma / 2)^2.
+    Between a line and an arc X^2 = 1 - (across / R)^2. Between two arcs let g = |c - w|, and gamma the angle
+    between w and c. Then X^2 = (g^2 - (R_a - R_b)^2) ((R_a + R_b)^2 - g^2) / (2 R_a R_b)^2 and g^2 =
+    (|c| - d)^2 + 4 |c| d sin(gamma / 2)^2. See ``base.feature`` for the layout of ``a`` and ``b``. Symbols
+    are those of ``chord.stretches``.
     """
     if is_shallow(a) or is_shallow(b):
-        return shallow_turn_size(a, b, d, low, high)
+        return enclose_shallow_turn(a, b, d, low, high)
     # Differences of coordinates are intervals too: beside a tangency only their rounding is left of them.
-    cx, cy = outward(b[X] - a[X], b[X] - a[X]), outward(b[Y] - a[Y], b[Y] - a[Y])
+    cx, cy = widen_outward(b[X] - a[X], b[X] - a[X]), widen_outward(b[Y] - a[Y], b[Y] - a[Y])
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         turn = icross(
             (a[AXIS_X], a[AXIS_X]), (a[AXIS_Y], a[AXIS_Y]), (b[AXIS_X], b[AXIS_X]), (b[AXIS_Y], b[AXIS_Y])
@@ -181,22 +201,26 @@ def turn_size(a: Array, b: Array, d: float, low: float, high: float) -> Interval
     half = isin(((low - middle) / 2.0, (high - middle) / 2.0))
     square = iadd(isquare(ishift(-d, apart)), iscale(4.0 * d, imul(apart, isquare(half))))
     difference, total = a[RADIUS] - b[RADIUS], a[RADIUS] + b[RADIUS]
-    less, more = outward(difference, difference), outward(total, total)
+    less, more = widen_outward(difference, difference), widen_outward(total, total)
     inside = imul(isub(square, isquare(less)), isub(isquare(more), square))
     return iscale(0.5 / (a[RADIUS] * b[RADIUS]), isqrt(inside))
 
 
 @inner
-def arcs_motion(
+def enclose_center_motion_of_arcs(
     a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float
 ) -> CenterMotion:
-    """``center_motion`` between arcs of which each contact direction is nearly the other."""
+    """Return :func:`enclose_center_motion` for a chord between two arcs whose contact directions nearly agree.
+
+    ``chord`` is its enclosure; the last two intervals, which are not bounded here, are infinite. See
+    ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     _, _, rx, ry, _, _ = chord
     cx, cy = b[X] - a[X], b[Y] - a[Y]
     gx, gy = isub((cx, cx), wx), isub((cy, cy), wy)
     rho, inverse, own = a[RADIUS] / b[RADIUS], 1.0 / b[RADIUS], 1.0 / a[RADIUS]
     swing = icross(rx, ry, gx, gy)
-    turn = one_sided(iscale(-inverse, swing), turn_sign)
+    turn = cut_to_side(iscale(-inverse, swing), turn_sign)
     cross_a = icross(wx, wy, rx, ry)
     across = icross(wx, wy, (cx, cx), (cy, cy))
     rest = isub(cross_a, swing)
@@ -215,45 +239,48 @@ def arcs_motion(
 
 
 @inner
-def center_motion(
+def enclose_center_motion(
     a: Array, b: Array, curve: Array, low: float, high: float, turn_sign: float
 ) -> CenterMotion:
-    """Enclosures over alpha in [low, high] of what the instant centre's speed P' is made of.
+    """Return enclosures over alpha in [low, high] of the terms of the instant centre's velocity P'.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are
+    those of ``chord.stretches``.
 
     Parameters
     ----------
-    curve : row of the curve table.
+    curve : reals (16,) of the curve.
+    low, high : range of alpha in radians.
     turn_sign : sign of X inside the range (X vanishes at most at its ends).
 
     Returns
     -------
-    (X, x and y of X^3 P', X^3 P' . r_a, its part along r_a, its part against r_b). Near a coincidence P' is
-    enclosed itself,
-     X is 1, and what cannot be bounded is infinite
+    Intervals (X, x and y of X^3 P', X^3 P' . r_a, part of X^3 P' along r_a, part against r_b). Near a
+        coincidence P' itself is enclosed, X is 1, and what cannot be bounded is (-inf, inf)
     """
     unit, zero = (1.0, 1.0), (0.0, 0.0)
     if curve[COINCIDENCE] == CONCENTRIC:
         # The instant centre is the common centre.
         return (unit, zero, zero, zero, zero, zero)
     if curve[COINCIDENCE] != NONE:
-        regular, u = motion_box(a, b, curve, low, high)
+        regular, u = enclose_motion(a, b, curve, low, high)
         if regular:
             # P = u + J u', J the quarter turn.
             return (unit, isub(u[2], u[5]), iadd(u[3], u[4]), ANYTHING, ANYTHING, ANYTHING)
     d = curve[LENGTH]
     wx, wy = iscale(d, icos((low, high))), iscale(d, isin((low, high)))
-    box = chord_box(a, b, curve, wx, wy)
+    box = enclose_chord(a, b, curve, wx, wy)
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
         gap = hypot(b[X] - a[X] - (wx[0] + wx[1]) / 2.0, b[Y] - a[Y] - (wy[0] + wy[1]) / 2.0)
         if gap < NEAR * min(a[RADIUS], b[RADIUS]):
-            return arcs_motion(a, b, wx, wy, box, turn_sign)
+            return enclose_center_motion_of_arcs(a, b, wx, wy, box, turn_sign)
     _, _, rax, ray, rbx, rby = box
-    turn = turn_size(a, b, d, low, high)
+    turn = enclose_turn(a, b, d, low, high)
     if turn_sign < 0.0:
         turn = ineg(turn)
     cross_a, cross_b = icross(wx, wy, rax, ray), icross(wx, wy, rbx, rby)
-    part_a = imul(cross_a, iadd(turn, iscale(curvature(b), cross_a)))
-    part_b = imul(cross_b, iadd(turn, iscale(curvature(a), cross_b)))
+    part_a = imul(cross_a, iadd(turn, iscale(compute_curvature(b), cross_a)))
+    part_b = imul(cross_b, iadd(turn, iscale(compute_curvature(a), cross_b)))
     nx, ny = isub(imul(part_a, rax), imul(part_b, rbx)), isub(imul(part_a, ray), imul(part_b, rby))
     along = isub(part_a, imul(part_b, idot(rax, ray, rbx, rby)))
     return (turn, nx, ny, along, part_a, part_b)
@@ -281,13 +308,15 @@ MOST_MOTION = 1.0
 
 @inner
 def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high: float, sign: float) -> bool:
-    """Writes the stretch over [low, high] to a (13,) row, and returns whether it is good enough not to be
-    cut.
+    """Write the stretch over [low, high] to ``row`` (13,); return
+    whether it is good enough not to be divided.
 
-    The speed is good enough when it is of the order of that in the middle, so that a shorter stretch would
-    bound it no better. It also is when P moves no farther than some part of the chord's length.
+    ``sign`` is that of X. The speed is good enough when it is of the order of that in the middle, so that a
+    shorter stretch would bound it no better. It also is when P moves no farther than ``MOST_MOTION`` chord
+    lengths. See ``chord.stretches`` for the layout of ``row``, ``base.feature`` for that of ``a`` and ``b``,
+    ``base.tables`` for that of ``curve``. Symbols are those of ``chord.stretches``.
     """
-    turn, x, y, along, part_a, part_b = center_motion(a, b, curve, low, high, sign)
+    turn, x, y, along, part_a, part_b = enclose_center_motion(a, b, curve, low, high, sign)
     row[STRETCH_HIGH], row[PARTS] = high, 0.0
     row[X_LOW], row[X_HIGH], row[Y_LOW], row[Y_HIGH] = x[0], x[1], y[0], y[1]
     row[ALONG_LOW], row[ALONG_HIGH] = along
@@ -316,8 +345,13 @@ def add_parts(
     error: float,
     sign: float,
 ) -> int:
-    """Append the parts of the last stretch, in order, which begins (``at_low``) or ends at a tangency known
-    to ``error``, and return the new number of stretches, -1 when there is no room."""
+    """Append the parts of the last stretch in ``out``, in ascending
+    order; return the new number of rows, -1 for no room.
+
+    The stretch [left, right] begins (``at_low``) or ends at a tangency known to ``error`` in radians. Its
+    PARTS are set. See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of
+    ``curve``.
+    """
     width, number = right - left, 1
     last = max(LAST_OF_LINE if a[IS_ARC] + b[IS_ARC] == 1.0 else LAST_OF_ARCS, 8.0 * error)
     while width > last:
@@ -344,10 +378,14 @@ def add_parts(
 
 @inner
 def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array, stack: Array) -> int:
-    """Append the stretches of a curve, in order, to ``out``, and return their new number, -1 when there is no
-    room; ``stack`` is (DEPTH,) work space."""
+    """Append the stretches of a curve, in ascending order of alpha, to ``out`` (S, 13).
+
+    Return the new number of rows, -1 when there is no room. ``curve`` are its reals (16,), ``stack`` is
+    (DEPTH,) work space. See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of
+    ``curve``.
+    """
     low, high = curve[FROM], curve[TO]
-    c = chord(a, b, curve[LENGTH], (low + high) / 2.0, curve[BRANCH])
+    c = compute_chord(a, b, curve[LENGTH], (low + high) / 2.0, curve[BRANCH])
     sign = 1.0 if c[2] * c[5] - c[3] * c[4] > 0.0 else -1.0
     depth = 0
     left, right = low, high

@@ -29,16 +29,19 @@ from workhold.kernels.base.compiling import (
     inner,
 )
 
-# Columns of a clamp: what locators take up per unit of force on its face (3), its push per unit of its own
-# force, how far the former may be off, and the place of its tip in mm.
+# Columns of a clamp: TAKEN (3), the force of each locator per unit of the clamp's force on its face; PUSH,
+# that force per unit of the clamp's own force; DOUBT, the error bound of TAKEN; TIP (2), its tip on the plate
+# in mm.
 TAKEN, PUSH, DOUBT, TIP = 0, 3, 4, 5
 CLAMP_LENGTH = 7
-# Whole numbers of a clamp: direction, the number of its line, first and past-the-last of its holes.
+# Whole numbers of a clamp: direction (0 and 1 along x, 2 and 3 along y), lattice row or column of its line,
+# first and past-the-last of its holes.
 DIRECTION, LINE, FIRST_HOLE, END_HOLE = range(4)
 # Columns of a hole: column and row, place in mm, travel in mm.
 HOLE_COLUMN, HOLE_ROW, HOLE_X, HOLE_Y, TRAVEL = range(5)
-# Columns of a pair: seat, kind, clamps (2), holes (2), how many pairs it stands for, clamp freedom in
-# degrees, closure margin, and 1 where it is not decided whether it closes.
+# Columns of a pair: index of its seat, its kind (``Hardware.kinds``), indices of its clamps (2) and holes
+# (2), how many pairs it stands for, clamp freedom in degrees, closure margin, and 1 where it is undecided
+# whether it closes.
 SEAT, KIND, CLAMPS, HOLES, COUNT, FREEDOM, MARGIN, OPEN = 0, 1, 2, 4, 6, 7, 8, 9
 PAIR_LENGTH = 10
 # Of pairs whose freedom (in degrees) and then margin differ by less, the first is taken.
@@ -50,13 +53,16 @@ ROUNDING = 1e-14
 
 
 class Clamps(NamedTuple):
-    """The clamps of some seats, one seat after the other and each seat's in the order of directions.
+    """The clamps of S seats, seat by seat, those of a seat in the order of directions.
 
     Parameters
     ----------
-    starts : (S + 1,) where those of each seat begin.
-    integers, reals : (M, 4) and (M, 7), see above.
-    holes : (H, 5) in which they may be bolted, each clamp's nearest first.
+    starts : (S + 1,) index of the first clamp of each seat, then M.
+    integers : (M, 4) with columns DIRECTION, LINE, FIRST_HOLE, END_HOLE.
+    reals : (M, 7) with columns TAKEN (3): locators' forces per unit of force on the clamp's face, PUSH: that
+        force per unit of the clamp's own, DOUBT: error bound of TAKEN, TIP (2): in mm.
+    holes : (H, 5) in which the clamps may be bolted, each clamp's in order of distance; columns HOLE_COLUMN,
+        HOLE_ROW, HOLE_X, HOLE_Y, TRAVEL.
     """
 
     starts: IntVector
@@ -66,13 +72,13 @@ class Clamps(NamedTuple):
 
 
 class Hardware(NamedTuple):
-    """What bounds pairs.
+    """Limits on a pair of clamps and their places on the plate.
 
     Parameters
     ----------
-    kinds : (4, 4) number of each pair of directions, -1 where it is not asked for.
+    kinds : (4, 4) number of each pair of directions, -1 where the pair is not asked for.
     apart : least distance in mm between the centre lines of two clamps.
-    columns, rows : most columns and rows of holes less one, infinite where there is no end.
+    columns, rows : largest difference of columns and of rows of the holes in use, inf where unbounded.
     bolted : whether clamps stand in holes.
     """
 
@@ -84,28 +90,40 @@ class Hardware(NamedTuple):
 
 
 @inner
-def entry(clamp: Array, k: int, own: int) -> float:
-    """Entry k of a clamp's null vector (a, 1, 0) or (a, 0, 1); its own is entry ``own``."""
+def get_null_entry(clamp: Array, k: int, own: int) -> float:
+    """Return entry k (0 to 4) of a clamp's null vector: (a, 1, 0)
+    where ``own`` is 3, (a, 0, 1) where it is 4.
+
+    ``clamp`` is a (7,) row of ``Clamps.reals``; a is at its columns TAKEN. See ``contact.clamp_pairs`` for
+    the layout of ``clamp``.
+    """
     return clamp[TAKEN + k] if k < 3 else (1.0 if k == own else 0.0)
 
 
 @inner
-def closure_margin(one: Array, other: Array) -> tuple[float, float]:
-    """How well three locators and two clamps close.
+def compute_closure_margin(one: Array, other: Array) -> tuple[float, float]:
+    """Return the closure margin of three locators and two clamps, and its lead.
+
+    ``one`` and ``other`` are (7,) clamp rows, of which only the columns TAKEN are read: a_1 and a_2, the
+    locators' forces per unit of each clamp's. A null vector holds forces of locators and clamps that balance:
+    (a_1, 1, 0), (a_2, 0, 1) and their combinations. See ``contact.clamp_pairs`` for the layout of ``one`` and
+    ``other``.
 
     Returns
     -------
-    (the largest least entry of null vectors that sum to 1, -1 where none is positive; the lead)
+    (largest least entry of null vectors scaled to sum 1, -1 where no null vector has a positive sum; the
+        lead)
 
     The lead is the most by which the least entry of a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds
-    ``LEAST_CLOSURE`` of its sum. Its sign decides whether they close, and it is off by no more than entries
+    ``LEAST_CLOSURE`` times its sum. Its sign decides whether the five close, and it is off by no more than
+        entries
     of a_1 and a_2 are.
     """
     best, lead = -1.0, -inf
     for i in range(5):
         for j in range(i):
-            at_one = entry(one, i, 3) - entry(one, j, 3)
-            at_other = entry(other, i, 4) - entry(other, j, 4)
+            at_one = get_null_entry(one, i, 3) - get_null_entry(one, j, 3)
+            at_other = get_null_entry(other, i, 4) - get_null_entry(other, j, 4)
             if at_one == at_other:
                 continue
             share = at_one / (at_one - at_other)
@@ -113,7 +131,7 @@ def closure_margin(one: Array, other: Array) -> tuple[float, float]:
                 continue
             total, least = 0.0, inf
             for k in range(5):
-                value = (1.0 - share) * entry(one, k, 3) + share * entry(other, k, 4)
+                value = (1.0 - share) * get_null_entry(one, k, 3) + share * get_null_entry(other, k, 4)
                 total, least = total + value, min(least, value)
             if total > 0.0:
                 best = max(best, least / total)
@@ -128,8 +146,12 @@ def closure_margin(one: Array, other: Array) -> tuple[float, float]:
 
 
 @inner
-def pressed_range(low: float, high: float, a: float, b: float) -> tuple[float, float]:
-    """The ends of the part of an interval of ratios t in which a locator that carries a + b t is pressed."""
+def narrow_pressed_range(low: float, high: float, a: float, b: float) -> tuple[float, float]:
+    """Return (low, high) narrowed to the ratios t at which a locator
+    that carries a + b t is pressed (a + b t > 0).
+
+    Where none is, low >= high.
+    """
     if b > 0.0:
         low = max(low, -a / b)
     elif b < 0.0:
@@ -140,19 +162,29 @@ def pressed_range(low: float, high: float, a: float, b: float) -> tuple[float, f
 
 
 @inner
-def ratio_range(one: Array, other: Array) -> tuple[float, float]:
-    """The ends of the open interval of f2 / f1 in which all locators are pressed."""
+def find_ratio_range(one: Array, other: Array) -> tuple[float, float]:
+    """Return (low, high), the open interval of f2 / f1 in which all
+    three locators are pressed; low >= high for none.
+
+    ``one`` and ``other`` are (7,) rows of the clamps that push with forces f1 and f2. See
+    ``contact.clamp_pairs`` for the layout of ``one`` and ``other``.
+    """
     low, high = 0.0, inf
     for k in range(3):
         a, b = one[TAKEN + k] / one[PUSH], other[TAKEN + k] / other[PUSH]
         a, b = (0.0 if abs(a) < NO_REACTION else a), (0.0 if abs(b) < NO_REACTION else b)
-        low, high = pressed_range(low, high, a, b)
+        low, high = narrow_pressed_range(low, high, a, b)
     return (low, high)
 
 
 @inner
-def boxes_apart(one: Array, hole: Array, other: Array, other_hole: Array) -> float:
-    """Distance in mm between the pieces along the axes from the tips of two clamps to their holes."""
+def measure_box_distance(one: Array, hole: Array, other: Array, other_hole: Array) -> float:
+    """Return the distance in mm between the pieces from the tip of each of two clamps to its hole.
+
+    The pieces are parallel to the axes; the distance is that of their bounding boxes. ``one`` and ``other``
+    are (7,) clamp rows, ``hole`` and ``other_hole`` (5,) hole rows. See ``contact.clamp_pairs`` for the
+    layout of ``one``, ``hole``, ``other`` and ``other_hole``.
+    """
     ax, ay, bx, by = one[TIP], one[TIP + 1], hole[HOLE_X], hole[HOLE_Y]
     cx, cy, dx, dy = other[TIP], other[TIP + 1], other_hole[HOLE_X], other_hole[HOLE_Y]
     across = max(min(ax, bx) - max(cx, dx), min(cx, dx) - max(ax, bx), 0.0)
@@ -161,9 +193,12 @@ def boxes_apart(one: Array, hole: Array, other: Array, other_hole: Array) -> flo
 
 
 @inner
-def spread_of(clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) -> None:
-    """Widens ``out``, the least and largest column and row of what stands on the plate, by a clamp in a
-    hole."""
+def widen_spread(clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) -> None:
+    """Widen ``out`` in place to hold clamp number ``m`` in a hole.
+
+    ``out`` (4,) holds the least and largest column, then the least and largest row, of what stands on the
+    plate. Along its push, only a bolted clamp counts. See ``contact.clamp_pairs`` for the layout of ``hole``.
+    """
     line = clamps.integers[m, LINE]
     if clamps.integers[m, DIRECTION] < ALONG_X:
         out[2], out[3] = min(out[2], line), max(out[3], line)
@@ -176,12 +211,12 @@ def spread_of(clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArray) 
 
 
 class ClampedSeat(NamedTuple):
-    """A seat and what its pairs are made of.
+    """A seat of three locators, and what is needed to pair its clamps.
 
     Parameters
     ----------
-    number : among the seats.
-    largest : (2,) column and row of its locators, whose lowest are 0.
+    number : index among the seats.
+    largest : (2,) largest column and row of its locators, whose lowest are 0.
     spread : (4,) work space.
     """
 
@@ -193,9 +228,11 @@ class ClampedSeat(NamedTuple):
 
 
 @inner
-def best_holes(seat: ClampedSeat, i: int, j: int) -> tuple[int, int]:
-    """The holes of two clamps with the least total travel in which they have a place together, (-1, -1) for
-    none."""
+def find_best_holes(seat: ClampedSeat, i: int, j: int) -> tuple[int, int]:
+    """Return the indices of the holes of clamps i and j with the least total travel, (-1, -1) for none.
+
+    Only holes count in which both clamps fit on the plate and keep their distance from each other.
+    """
     clamps, hardware, spread = seat.clamps, seat.hardware, seat.spread
     best, one, other = inf, -1, -1
     holes, tips = clamps.holes, clamps.reals
@@ -205,11 +242,11 @@ def best_holes(seat: ClampedSeat, i: int, j: int) -> tuple[int, int]:
             if travel >= best:
                 continue
             spread[0], spread[1], spread[2], spread[3] = 0, seat.largest[0], 0, seat.largest[1]
-            spread_of(clamps, i, holes[a], hardware.bolted, spread)
-            spread_of(clamps, j, holes[b], hardware.bolted, spread)
+            widen_spread(clamps, i, holes[a], hardware.bolted, spread)
+            widen_spread(clamps, j, holes[b], hardware.bolted, spread)
             if spread[1] - spread[0] > hardware.columns or spread[3] - spread[2] > hardware.rows:
                 continue
-            apart = boxes_apart(tips[i], holes[a], tips[j], holes[b])
+            apart = measure_box_distance(tips[i], holes[a], tips[j], holes[b])
             if apart >= hardware.apart - GAP_SLACK:
                 best, one, other = travel, a, b
     return (one, other)
@@ -217,18 +254,21 @@ def best_holes(seat: ClampedSeat, i: int, j: int) -> tuple[int, int]:
 
 @inner
 def add_pair(out: Array, count: int, kind: int, i: int, j: int, seat: ClampedSeat) -> int:
-    """Appends a pair of clamps of a seat if it closes and has a place, and returns how many rows there
-    are."""
+    """Append the pair of clamps i and j to row ``count`` of ``out``
+    if it closes, or may close, and has a place.
+
+    Return the new number of rows. ``out`` must have room for one more row (10,).
+    """
     one, other = seat.clamps.reals[i], seat.clamps.reals[j]
-    margin, lead = closure_margin(one, other)
+    margin, lead = compute_closure_margin(one, other)
     doubt = 1.1 * max(one[DOUBT], other[DOUBT]) + ROUNDING
     if lead + doubt <= 0.0:
         return count
-    low, high = ratio_range(one, other)
+    low, high = find_ratio_range(one, other)
     if low >= high and lead - doubt > 0.0:
         # Reactions that are zero to rounding.
         return count
-    first, second = best_holes(seat, i, j)
+    first, second = find_best_holes(seat, i, j)
     if first < 0:
         return count
     row = out[count]
@@ -241,8 +281,11 @@ def add_pair(out: Array, count: int, kind: int, i: int, j: int, seat: ClampedSea
 
 @inner
 def keep_best(out: Array, first: int, count: int) -> int:
-    """Keeps of the rows from ``first`` on, pairs of one seat and kind, the best one, which stands for all,
-    and those that are not decided. Returns how many rows there are then."""
+    """Reduce ``out[first:count]``, all pairs of one seat and kind, in
+    place to the best pair and the undecided ones.
+
+    The best pair's COUNT becomes the number of decided pairs. Return the new number of rows.
+    """
     pairs = 0
     freest, widest = -inf, -inf
     for k in range(first, count):
@@ -268,8 +311,11 @@ def keep_best(out: Array, first: int, count: int) -> int:
 
 @inner
 def add_pairs_of_kind(out: Array, count: int, one: int, two: int, seat: ClampedSeat) -> int:
-    """Appends the pairs of two directions at a seat, and returns how many rows there are, -1 when there is
-    no room for more."""
+    """Append the pairs of a clamp with direction ``one`` and a clamp
+    with direction ``two`` at a seat to ``out``.
+
+    Return the new number of rows, -1 when ``out`` is full.
+    """
     clamps, kind = seat.clamps, seat.hardware.kinds[one, two]
     end = clamps.starts[seat.number + 1]
     for i in range(clamps.starts[seat.number], end):
@@ -286,8 +332,12 @@ def add_pairs_of_kind(out: Array, count: int, one: int, two: int, seat: ClampedS
 
 @inner
 def add_pairs(out: Array, count: int, half: bool, seat: ClampedSeat, every: bool) -> int:
-    """Appends the pairs of a seat, see :func:`pairs_of`, and returns how many rows there are, -1 when there
-    is no room for more."""
+    """Append the pairs of a seat to ``out``, see :func:`write_pairs`;
+    return the new number of rows, -1 when it is full.
+
+    ``half`` tells whether the orientation is in the first half turn. Pairs of opposite directions are left
+    out elsewhere, as half a turn makes such a pair one of the same kind.
+    """
     for one in range(4):
         for two in range(one, 4):
             # Opposite directions: half a turn makes such a pair one of the same kind.
@@ -303,13 +353,18 @@ def add_pairs(out: Array, count: int, half: bool, seat: ClampedSeat, every: bool
     return count
 
 
-def pairs_of(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardware, every: bool) -> Array:
-    """Return the pairs of clamps that close and have a place, seat by seat: (N, 10) rows, see above.
+def list_pairs(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hardware, every: bool) -> Array:
+    """Return the pairs of clamps that close, or may close, and have a place: (N, 10) rows, seat by seat.
 
-    Parameters are those of :func:`write_pairs`.
+    Columns are SEAT (index), KIND (see ``Hardware.kinds``), CLAMPS (2 indices), HOLES (2 indices), COUNT of
+    the pairs that the row stands for, FREEDOM in degrees, MARGIN (closure margin), and OPEN: 1 where it is
+    undecided whether the pair closes. Parameters are those of :func:`write_pairs`.
     """
 
     def write(rows: int) -> Array | None:
+        """Write the pairs to an array with ``rows`` rows; return those written, None where there is
+        no room.
+        """
         out = np.empty((rows, PAIR_LENGTH))
         count = write_pairs(seats, halves, clamps, hardware, every, np.empty(4, np.int64), out)
         return None if count < 0 else out[:count].copy()
@@ -327,17 +382,19 @@ def write_pairs(
     spread: IntVector,
     out: Matrix,
 ) -> int:
-    """Write the pairs of clamps that close and have a place, and return their number, -1 when there is no
-    room.
+    """Write the pairs of clamps that close, or may close, and have a place to ``out``, seat by seat.
+
+    Return their number, or -1 when ``out`` has too few rows.
 
     Parameters
     ----------
-    seats : (S, 2) the largest column and row of their locators, whose lowest are 0.
-    halves : (S,) 1 where the orientation is in the first half turn, else 0; less where the seat is left out.
-    every : all pairs, or of each seat and kind the best, which is the one of the largest clamp freedom, then
-        of the largest closure margin, then the first.
+    seats : (S, 2) the largest column and row of each seat's locators, whose lowest are 0.
+    halves : (S,) 1 where the orientation is in the first half turn, else 0; negative where the seat is left
+        out.
+    every : whether to write all pairs; if not, of each seat and kind the undecided ones and the best, which
+        is the one of the largest clamp freedom, then of the largest closure margin, then the first.
     spread : (4,) work space.
-    out : (N, 10) receives the pairs.
+    out : (N, 10) receives the pairs, see :func:`list_pairs`.
     """
     count = int(np.int64(0))
     for number in range(seats.shape[0]):
@@ -350,15 +407,15 @@ def write_pairs(
 
 
 @compiled
-def closures_of(clamps: Stack, out: Matrix) -> None:
-    """Closure margins and clamp freedoms in degrees of N fixtures with two clamps.
+def write_closures(clamps: Stack, out: Matrix) -> None:
+    """Write the closure margins and clamp freedoms (degrees) of N fixtures with two clamps to ``out``.
 
     Parameters
     ----------
-    clamps : (N, 2, 7) rows of both clamps, of which only the first four columns count.
-    out : (N, 2) receives margins and freedoms.
+    clamps : (N, 2, 7) clamp rows, of which only the columns TAKEN and PUSH are read.
+    out : (N, 2) receives margins (no unit, -1 where none) and freedoms in degrees.
     """
     for n in range(clamps.shape[0]):
-        out[n, 0], _ = closure_margin(clamps[n, 0], clamps[n, 1])
-        low, high = ratio_range(clamps[n, 0], clamps[n, 1])
+        out[n, 0], _ = compute_closure_margin(clamps[n, 0], clamps[n, 1])
+        low, high = find_ratio_range(clamps[n, 0], clamps[n, 1])
         out[n, 1] = max(degrees(atan(high) - atan(low)), 0.0)

@@ -1,4 +1,4 @@
-"""Where the four contacts of a fixture are, and the contact matrix that all its figures come from.
+"""The four contacts of a fixture in place, and the contact matrix from which all its figures follow.
 
 Let c be the centre of the part, L the length of the wrenches and x the direction against which the moving
 carrier clamps. The contact matrix A (4, 4) has a row for each peg:
@@ -43,13 +43,17 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
-from workhold.kernels.chord.evaluation import distance_to_end, parameter_on
+from workhold.kernels.chord.evaluation import find_parameter, measure_end_distance
 
 
 @inner
-def distance_to_edge(row: Array, s: float) -> float:
-    """Distance in mm along a feature from a parameter to the nearer end that is no tangent joint; infinite
-    without one."""
+def measure_edge_distance(row: Array, s: float) -> float:
+    """Return the distance in mm along a feature from the parameter s
+    to its nearer end that is not a tangent joint.
+
+    Return inf where neither end is such, as on a whole circle. A contact may slide across a tangent joint.
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
         return inf
     low = row[HALF_EXTENT] + s if row[LOW_SLACK] <= 0.0 else inf
@@ -58,7 +62,7 @@ def distance_to_edge(row: Array, s: float) -> float:
 
 
 @compiled
-def contact_matrices_of(
+def write_contact_matrices(
     pegs: Stack,
     pose: Matrix,
     moves: Matrix,
@@ -75,26 +79,27 @@ def contact_matrices_of(
     inverses: Stack,
     matrix: Matrix,
 ) -> None:
-    """Contacts of N fixtures and the inverses of their contact matrices.
+    """Write the contacts of N fixtures with P pegs each and the inverses of their contact matrices.
 
     Parameters
     ----------
     pegs : (N, P, 2) peg centres in the toolkit's frame, in mm.
-    pose : (N, 3) orientation in radians and translation in mm.
+    pose : (N, 3) orientation of the part in radians and translation x, y in mm.
     moves : (N, P) 1 for a peg on the moving carrier, 0 for others.
-    axes : (N, 2) the unit vector x of each in the toolkit's frame.
-    faces : (N, P) number of the face each peg touches.
+    axes : (N, 2) for each fixture the unit vector x in the toolkit's frame, against which the moving carrier
+        clamps.
+    faces : (N, P) number of the face that each peg touches.
     features : (F, 12) rows of contact features about c with the slacks of their ends, ordered by face.
-    starts : where the features of each face number begin, one more than there are numbers.
-    center : (2,) c.
-    length : L in mm.
+    starts : index of the first feature of each face number, then F.
+    center : (2,) c in the part's frame, in mm.
+    length : L in mm, by which moments are divided.
     points : (N, P, 2) receives the peg centres in the part's frame about c, in mm.
     normals : (N, P, 2) receives the outward unit normals in the part's frame.
     ends : (N, P) receives the distances in mm along the features to their nearer ends.
     edges : (N, P) receives the distances in mm along them to their nearer edges, see
-        :func:`distance_to_edge`.
-    inverses : (N, 4, P) receives the inverses where P is 4; NaN where there is none, or a face has no
-        feature.
+        :func:`measure_edge_distance`.
+    inverses : (N, 4, P) receives the inverses where P is 4; NaN, as are ends and edges, where there is none
+        or a face has no feature.
     matrix : (P, 4) work space.
     """
     count = pegs.shape[1]
@@ -107,8 +112,8 @@ def contact_matrices_of(
             # Of a face's features the peg stands on one, and beyond the ends of the others.
             nearest, chosen, parameter = -inf, -1, 0.0
             for f in range(starts[faces[k, i]], starts[faces[k, i] + 1]):
-                s = parameter_on(features[f], x, y)
-                distance = distance_to_end(features[f], s)
+                s = find_parameter(features[f], x, y)
+                distance = measure_end_distance(features[f], s)
                 if distance > nearest:
                     nearest, chosen, parameter = distance, f, s
             known = known and chosen >= 0
@@ -120,7 +125,7 @@ def contact_matrices_of(
                 nx, ny = nx / size, ny / size
             points[k, i, 0], points[k, i, 1] = x, y
             normals[k, i, 0], normals[k, i, 1] = nx, ny
-            ends[k, i], edges[k, i] = nearest, distance_to_edge(row, parameter)
+            ends[k, i], edges[k, i] = nearest, measure_edge_distance(row, parameter)
             matrix[i, 0], matrix[i, 1], matrix[i, 2] = nx, ny, (x * ny - y * nx) / length
             matrix[i, 3] = moves[k, i] * (
                 (nx * cosine - ny * sine) * axes[k, 0] + (nx * sine + ny * cosine) * axes[k, 1]

@@ -45,24 +45,25 @@ from workhold.kernels.base.feature import IS_ARC, RADIUS
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import NearSpots, Precision
 from workhold.kernels.contact.record import Angle
-from workhold.kernels.contact.rules import outward_normal
+from workhold.kernels.contact.rules import compute_outward_normal
 
-# Columns of a spot, a stretch of a feature: its normal, its moment about the centre over L, what contacts in
-# it may be off by for a location error of 1, its feature, the first of the spots that it is made of, and how
-# many these are (0: it is one of the finest, and has the number that stands for the first).
 # Parts of three spots wait in no more rows than this: each level adds seven, and has half as large spots.
 MOST_WAITING = 512
+# Columns of a spot, a stretch of a feature: the normal at its middle (2), its moment about the centre over L,
+# the error that contacts in it may have for a location error of 1, its feature, the index of the first of the
+# spots that it consists of (its children), and their number. A finest spot has no children (0); its column
+# SPOT_FIRST is its own number among the finest.
 SPOT_NX, SPOT_NY, SPOT_MOMENT, SPOT_GIVE, SPOT_FEATURE, SPOT_FIRST, SPOT_COUNT = range(7)
 SPOT_LENGTH = 7
-# Of a contact in place no more than these are known.
+# A contact in place has only the first five of these columns.
 CONTACT_LENGTH = 5
 # Errors this part beyond the limit are surely beyond it, whatever is rounded.
 BEYOND = 1.001
-# By how many times what a minor may be off by movements may be, at most: with three locators, and with two and two.
+# Error bound of movements, as a multiple of that of a minor: with three locators, and with two and two.
 # Let normals turn by s and points move by r. The components of the cross product of two wrenches are then
-# off by 5.7 s + 2 r / L, half of ``minor_band``. A probe multiplies them by no more than 1.42 + 1.42 together,
-# and three contacts make 4.3 minors. A determinant is off by one. Of two and two, wrenches of sizes up to 2
-# are combined before.
+# off by 5.7 s + 2 r / L, half of ``bound_minor_error``. A probe multiplies them by no more than 1.42 + 1.42
+# together, and three contacts make 4.3 minors. A determinant is off by one. Of two and two, wrenches of sizes
+# up to 2 are combined before.
 WIDE_OF_THREE, WIDE_OF_FOUR = 4.5, 40.0
 # Radians beside a quarter turn that count as such.
 SQUARE = 1e-4
@@ -70,7 +71,7 @@ SQUARE = 1e-4
 
 @inner
 def cross_rows(one: Array, two: Array, out: Array) -> None:
-    """Writes the cross product of two rows of three."""
+    """Write the cross product ``one`` x ``two`` of two vectors of three to ``out`` (3,)."""
     out[0] = one[1] * two[2] - one[2] * two[1]
     out[1] = one[2] * two[0] - one[0] * two[2]
     out[2] = one[0] * two[1] - one[1] * two[0]
@@ -78,7 +79,11 @@ def cross_rows(one: Array, two: Array, out: Array) -> None:
 
 @inner
 def probe_error(moves: Array, features: Array, count: int, precision: Precision, probe: int) -> float:
-    """The largest movement of one probe in mm, see ``error_times``."""
+    """Return the largest movement in mm of one probe over all signs of the errors of pegs and faces.
+
+    See :func:`bound_error` for ``moves``, ``features`` and ``count``; ``probe`` is the row of
+    ``precision.probes``.
+    """
     total, probes, faces = 0.0, precision.probes, precision.faces
     x, y, turn = probes[probe, 0], probes[probe, 1], probes[probe, 2]
     for i in range(count):
@@ -97,11 +102,17 @@ def probe_error(moves: Array, features: Array, count: int, precision: Precision,
 
 
 @inner
-def error_times(moves: Array, features: Array, count: int, precision: Precision, enough: float) -> float:
-    """A lower bound of the location error in mm for movements (C, 3) that errors of 1 of contacts make.
+def bound_error(moves: Array, features: Array, count: int, precision: Precision, enough: float) -> float:
+    """Return a lower bound in mm of the location error: the largest movement of any probe.
 
-    ``features`` (C,) are those touched. Where movements are multiplied by something, so is the result.
     A bound above ``enough`` is as good as any larger one.
+
+    Parameters
+    ----------
+    moves : (C, 3) movement of the part (x, y, turn times L) per unit error of each contact. Where it is
+        multiplied by a number, so is the result.
+    features : (C,) index of the feature that each contact touches.
+    count : C.
     """
     most = 0.0
     for p in range(precision.probes.shape[0]):
@@ -112,8 +123,10 @@ def error_times(moves: Array, features: Array, count: int, precision: Precision,
 
 
 @inner
-def doubt_at(features: Array, count: int, precision: Precision) -> float:
-    """The factor by which contacts on features (C,) count more, at least."""
+def find_doubt(features: Array, count: int, precision: Precision) -> float:
+    """Return the largest of 1 and ``precision.doubts`` of the first
+    ``count`` features (C,), the factor on their errors.
+    """
     doubt = 1.0
     for i in range(count):
         doubt = max(doubt, precision.doubts[int(features[i])])
@@ -121,8 +134,12 @@ def doubt_at(features: Array, count: int, precision: Precision) -> float:
 
 
 @inner
-def most_allowed(low: float, high: float, precision: Precision) -> float:
-    """The largest error of interest at orientations from ``low`` to ``high`` in radians."""
+def find_most_allowed(low: float, high: float, precision: Precision) -> float:
+    """Return the largest error of interest in mm at orientations from ``low`` to ``high`` in radians.
+
+    It is ``precision.most`` where the range holds, or nearly holds, a multiple of a quarter turn, else
+    ``most_aslant``.
+    """
     quarter = TURN / 4.0
     if floor((high + SQUARE) / quarter) > floor((low - SQUARE) / quarter):
         return precision.most
@@ -133,22 +150,26 @@ def most_allowed(low: float, high: float, precision: Precision) -> float:
 def is_beyond(
     moves: Array, features: Array, count: int, size: float, band: float, psi: float, precision: Precision
 ) -> bool:
-    """Whether contacts surely have a larger effective error than is of interest.
+    """Return whether contacts certainly have a larger effective error than is of interest.
 
     Parameters
     ----------
-    moves : (C, 3) movements that errors of 1 make, times ``size``, of which ``band`` may be wrong.
-    features : (C,) touched.
+    moves : (C, 3) movement of the part per unit error of each contact, times ``size``, see
+        :func:`bound_error`.
+    features : (C,) index of the feature that each contact touches.
+    count : C, 3 or 4.
+    size : absolute determinant that ``moves`` are multiplied by.
+    band : error bound of a minor, see ``contact.rules.bound_minor_error``.
     psi : orientation in radians.
     """
-    most = BEYOND * most_allowed(psi, psi, precision) / doubt_at(features, count, precision)
+    most = BEYOND * find_most_allowed(psi, psi, precision) / find_doubt(features, count, precision)
     wide = band * (WIDE_OF_THREE if count == 3 else WIDE_OF_FOUR)
     enough = most * (size + wide) + wide * (precision.peg + precision.face)
-    return error_times(moves, features, count, precision, enough) > enough
+    return bound_error(moves, features, count, precision, enough) > enough
 
 
 @inner
-def two_and_two_beyond(
+def is_two_and_two_beyond(
     points: Array,
     normals: Array,
     features: Array,
@@ -159,17 +180,20 @@ def two_and_two_beyond(
     precision: Precision,
     room: Array,
 ) -> bool:
-    """Whether two pegs on each of two carriers surely have a larger effective error than is of interest.
+    """Return whether two pegs on each of two carriers certainly have
+    a larger effective error than is of interest.
 
-    The travel of the carrier that moves is free. What its two pegs say besides is one wrench across it.
+    The moving carrier's travel is free, so its two pegs together constrain only one wrench, a combination
+    without a component along the travel.
 
     Parameters
     ----------
-    points, normals : (4, 2) of the contacts, two of either carrier after each other.
-    features : (4,) touched.
+    points, normals : (4, 2) of the contacts in the part's frame, the pegs of a carrier next to each other.
+    features : (4,) index of the feature that each touches.
+    angle : orientation with its cosine and sine.
     still : 0 where the first two pegs stand still, 2 where the last two do.
-    length : L in mm.
-    band : what a minor may be off by.
+    length : L in mm, by which moments are divided.
+    band : error bound of a minor.
     room : (8, 3) work space.
     """
     wrenches, moves = room[:4], room[4:]
@@ -202,17 +226,27 @@ def write_spot(
     length: float,
     out: Array,
 ) -> None:
-    """Writes a contact on a feature, known to a radius in mm, as a spot (5,)."""
-    nx, ny = outward_normal(row, x, y)
+    """Write a contact at (x, y) on a feature, known to ``radius`` in
+    mm, to ``out`` as the first five columns of a spot.
+
+    ``row`` is the feature numbered ``feature``; ``length`` is L in mm, by which moments are divided.
+    SPOT_GIVE becomes the contact's error for a location error of 1 that follows from the radius. See
+    ``base.feature`` for the layout of ``row``.
+    """
+    nx, ny = compute_outward_normal(row, x, y)
     out[SPOT_NX], out[SPOT_NY], out[SPOT_FEATURE] = nx, ny, feature
     out[SPOT_MOMENT] = (x * ny - y * nx) / length
-    off = radius if row[IS_ARC] == 0.0 else swing_within(row, radius)
+    off = radius if row[IS_ARC] == 0.0 else bound_normal_swing(row, radius)
     out[SPOT_GIVE] = off * precision.gives[feature]
 
 
 @inner
-def swing_within(row: Array, radius: float) -> float:
-    """By how many radians the normal of a contact may be off that is known to a radius in mm."""
+def bound_normal_swing(row: Array, radius: float) -> float:
+    """Return by how many radians a contact's normal may be off when
+    the contact is known to ``radius`` in mm, 0 on a line.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return 0.0
     # See ``curves.near_spots``.
@@ -220,19 +254,21 @@ def swing_within(row: Array, radius: float) -> float:
 
 
 @inner
-def least_error_in(
+def bound_least_error(
     first: Array, second: Array, third: Array, precision: Precision, room: Array, enough: float
 ) -> float:
-    """What the effective error of any seat with contacts in three spots is no less than, in mm.
+    """Return a lower bound in mm of the effective error of every seat with contacts in three spots.
 
-    ``room`` is (4, 3) work space; a bound above ``enough`` is as good as any larger one.
+    ``first``, ``second`` and ``third`` are spot rows, ``room`` is (4, 3) work space. A bound above ``enough``
+    is as good as any larger one. See ``contact.location_bounds`` for the layout of ``first``, ``second`` and
+    ``third``.
     """
     cross_rows(second, third, room[0])
     cross_rows(third, first, room[1])
     cross_rows(first, second, room[2])
     size = abs(first[0] * room[0, 0] + first[1] * room[0, 1] + first[2] * room[0, 2])
     room[3, 0], room[3, 1], room[3, 2] = first[SPOT_FEATURE], second[SPOT_FEATURE], third[SPOT_FEATURE]
-    least, probes, doubt = 0.0, precision.probes, doubt_at(room[3], 3, precision)
+    least, probes, doubt = 0.0, precision.probes, find_doubt(room[3], 3, precision)
     for p in range(probes.shape[0]):
         give = 0.0
         for i in range(3):
@@ -247,7 +283,7 @@ def least_error_in(
 
 
 @inner
-def least_error_of_four(
+def bound_least_error_of_four(
     first: Array,
     second: Array,
     third: Array,
@@ -259,14 +295,17 @@ def least_error_of_four(
     numbers: Array,
     enough: float,
 ) -> float:
-    """What the effective error of any seat of two and two pegs with contacts in four spots is no less than, in mm.
+    """Return a lower bound in mm of the effective error of every seat
+    of two and two pegs with contacts in four spots.
+
+    See ``contact.location_bounds`` for the layout of ``first``, ``second``, ``third`` and ``fourth``.
 
     Parameters
     ----------
-    first, second : spots of the standing pegs.
-    third, fourth : spots of the moving pegs.
-    along : the normals of the moving pegs' contacts along the travel.
-    extra : what contacts of the moving pegs may be off by for a location error of 1, because of the travel.
+    first, second : spot rows of the standing pegs.
+    third, fourth : spot rows of the moving pegs.
+    along : component along the travel of the normal at each moving peg.
+    extra : additional error of each moving peg's contact for a location error of 1, because of the travel.
     room : (8, 3) work space.
     numbers : (4,) work space.
     enough : a bound above this is as good as any larger one.
@@ -284,7 +323,7 @@ def least_error_of_four(
     numbers[0], numbers[1] = first[SPOT_FEATURE], second[SPOT_FEATURE]
     numbers[2], numbers[3] = third[SPOT_FEATURE], fourth[SPOT_FEATURE]
     gives = (first[SPOT_GIVE], second[SPOT_GIVE], third[SPOT_GIVE] + extra[0], fourth[SPOT_GIVE] + extra[1])
-    least, probes, doubt = 0.0, precision.probes, doubt_at(numbers, 4, precision)
+    least, probes, doubt = 0.0, precision.probes, find_doubt(numbers, 4, precision)
     for p in range(probes.shape[0]):
         give = 0.0
         for i in range(4):
@@ -300,7 +339,7 @@ def least_error_of_four(
 
 @inner
 def mark_triple(triples: ByteArray, a: int, b: int, c: int) -> None:
-    """Marks three spots in every order."""
+    """Set ``triples`` to 1 at the indices a, b, c in every order."""
     triples[a, b, c] = triples[a, c, b] = 1
     triples[b, a, c] = triples[b, c, a] = 1
     triples[c, a, b] = triples[c, b, a] = 1
@@ -317,14 +356,19 @@ def join_near_spots(
     stack: IntMatrix,
     room: Matrix,
 ) -> None:
-    """Mark the spots that locators with no larger effective error may touch.
+    """Mark the pairs and triples of finest spots that locators with
+    an effective error up to ``most`` may touch.
+
+    See ``contact.location_bounds`` for the layout of ``spots``.
 
     Parameters
     ----------
-    spots : (S, 7), the first so many of them the ``roots``, in the order of features.
+    spots : (S, 7) spots, each a stretch of a feature, with those that it is divided into further down; the
+        first ``roots`` rows are whole, in the order of features.
     most : effective error in mm.
-    near : receives the marks, for the finest spots.
-    counts : (2,) to which is added how many triples of spots were looked at, and how many were ruled out.
+    near : ``joined`` and ``triples`` receive 1 for finest spots that may be touched together; other entries
+        stay.
+    counts : (2,) to which the numbers of triples examined and of triples ruled out are added.
     stack : (MOST_WAITING, 3) work space.
     room : (4, 3) work space.
     """
@@ -339,7 +383,7 @@ def join_near_spots(
                     one, two, three = stack[height, 0], stack[height, 1], stack[height, 2]
                     counts[0] += 1
                     first, second, third = spots[one], spots[two], spots[three]
-                    if least_error_in(first, second, third, precision, room, most) > most:
+                    if bound_least_error(first, second, third, precision, room, most) > most:
                         counts[1] += 1
                         continue
                     if first[SPOT_COUNT] + second[SPOT_COUNT] + third[SPOT_COUNT] == 0.0:
@@ -354,22 +398,29 @@ def join_near_spots(
                     for a in range(max(int(first[SPOT_COUNT]), 1)):
                         for b in range(max(int(second[SPOT_COUNT]), 1)):
                             for c in range(max(int(third[SPOT_COUNT]), 1)):
-                                stack[height, 0] = part_of(spots, one, a)
-                                stack[height, 1] = part_of(spots, two, b)
-                                stack[height, 2] = part_of(spots, three, c)
+                                stack[height, 0] = get_part(spots, one, a)
+                                stack[height, 1] = get_part(spots, two, b)
+                                stack[height, 2] = get_part(spots, three, c)
                                 height += 1
 
 
 @inner
-def part_of(spots: Array, spot: int, number: int) -> int:
-    """A spot that another is made of, by its number among these; one of the finest is itself."""
+def get_part(spots: Array, spot: int, number: int) -> int:
+    """Return the index of child ``number`` of a spot, one of those that
+    it is divided into; a finest spot is its own child.
+
+    See ``contact.location_bounds`` for the layout of ``spots``.
+    """
     return int(spots[spot, SPOT_FIRST]) + number if spots[spot, SPOT_COUNT] > 0.0 else spot
 
 
 @compiled
-def least_middle_error(spots: Matrix, roots: int, precision: Precision, room: Matrix) -> float:
-    """Return the least effective error in mm of three contacts in the middles of the first spots; infinite
-    when no three fix the pose. ``room`` is (4, 3) work space."""
+def find_least_middle_error(spots: Matrix, roots: int, precision: Precision, room: Matrix) -> float:
+    """Return the least effective error in mm of three contacts in the middles of the first ``roots`` spots.
+
+    Two or three of the contacts may be in one spot. Return inf when no three fix the pose. ``room`` is (4, 3)
+    work space. See ``contact.location_bounds`` for the layout of ``spots``.
+    """
     least = np.inf
     for i in range(roots):
         for j in range(i, roots):
@@ -383,5 +434,5 @@ def least_middle_error(spots: Matrix, roots: int, precision: Precision, room: Ma
                 cross_rows(first, second, room[2])
                 room[3, 0], room[3, 1] = first[SPOT_FEATURE], second[SPOT_FEATURE]
                 room[3, 2] = third[SPOT_FEATURE]
-                least = min(least, error_times(room, room[3], 3, precision, np.inf) / size)
+                least = min(least, bound_error(room, room[3], 3, precision, np.inf) / size)
     return least

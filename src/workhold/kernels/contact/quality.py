@@ -32,8 +32,11 @@ LOAD_LENGTH = 11
 
 
 @inner
-def largest_value(x: float, y: float, load: Array) -> float:
-    """Largest value of x cos + y sin over the directions of a load row."""
+def find_largest_value(x: float, y: float, load: Array) -> float:
+    """Return the largest value of x cos t + y sin t over the range of directions t of a load row (11,).
+
+    See ``contact.quality`` for the layout of ``load``.
+    """
     size = hypot(x, y)
     if x * load[MIDDLE_X] + y * load[MIDDLE_Y] >= size * load[HALF]:
         return size
@@ -41,21 +44,21 @@ def largest_value(x: float, y: float, load: Array) -> float:
 
 
 @inner
-def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
-    """Largest peg force in N that resists some load with the least clamping that keeps all forces from being
-    negative.
+def find_largest_reaction(inverse: Array, length: float, loads: Array) -> float:
+    """Return the largest peg force in N over all loads, each with the
+    least clamping that leaves no force negative.
 
     Forces that balance a load are f = f0 + k lambda for any k. The smallest k without a negative force is the
     largest of -f0_i / lambda_i, so f_j is the largest over i of f0_j - f0_i lambda_j / lambda_i. This is a
-    sinusoid in the load's direction for each i. Rank by this: R. C. Brost, K. Y. Goldberg, *A complete
-    algorithm for designing planar fixtures using modular components*, IEEE Transactions on Robotics and
-    Automation 12 (1996).
+    sinusoid in the load's direction for each i. Ranking by this force: R. C. Brost, K. Y. Goldberg, *A
+    complete algorithm for designing planar fixtures using modular components*, IEEE Transactions on Robotics
+    and Automation 12 (1996). See ``contact.quality`` for the layout of ``loads``.
 
     Parameters
     ----------
     inverse : (4, P) of the contact matrix, see ``kernels.contact.contact_matrix``.
-    length : L in mm.
-    loads : (M, 11) rows.
+    length : L in mm, by which moments are divided.
+    loads : (M, 11) rows; 0 is returned for none.
     """
     most = 0.0
     for m in range(len(loads)):
@@ -69,7 +72,7 @@ def largest_reaction(inverse: Array, length: float, loads: Array) -> float:
                     a = inverse[0, j] - ratio * inverse[0, i]
                     b = inverse[1, j] - ratio * inverse[1, i]
                     c = inverse[2, j] - ratio * inverse[2, i]
-                    most = max(most, moment * c + force * largest_value(a - py * c, b + px * c, load))
+                    most = max(most, moment * c + force * find_largest_value(a - py * c, b + px * c, load))
     return most
 
 
@@ -80,18 +83,25 @@ SURELY = 1.0 + 1e-12
 
 
 @inner
-def moment(points: Array, normals: Array, k: int, length: float) -> float:
-    """Third component of a wrench: the moment over L."""
+def compute_moment(points: Array, normals: Array, k: int, length: float) -> float:
+    """Return the third component of wrench k: the moment of normal k
+    at point k about the part's centre, over L; no unit.
+
+    ``points`` (4 or 5, 2) are about the centre in mm, ``length`` is L in mm, by which moments are divided.
+    """
     return (points[k, 0] * normals[k, 1] - points[k, 1] * normals[k, 0]) / length
 
 
 @inner
-def plane_distance(points: Array, normals: Array, length: float, a: int, b: int, c: int) -> float:
-    """Distance from the origin to the plane of three of five wrenches where it is a facet of their hull,
-    else infinite."""
-    ax, ay, az = normals[a, 0], normals[a, 1], moment(points, normals, a, length)
-    ux, uy, uz = normals[b, 0] - ax, normals[b, 1] - ay, moment(points, normals, b, length) - az
-    vx, vy, vz = normals[c, 0] - ax, normals[c, 1] - ay, moment(points, normals, c, length) - az
+def measure_plane_distance(points: Array, normals: Array, length: float, a: int, b: int, c: int) -> float:
+    """Return the distance from the origin to the plane of wrenches a,
+    b, c where it is a facet of the hull of all five.
+
+    Return inf where it is no facet, or where the three lie on a line. ``points`` and ``normals`` are (5, 2).
+    """
+    ax, ay, az = normals[a, 0], normals[a, 1], compute_moment(points, normals, a, length)
+    ux, uy, uz = normals[b, 0] - ax, normals[b, 1] - ay, compute_moment(points, normals, b, length) - az
+    vx, vy, vz = normals[c, 0] - ax, normals[c, 1] - ay, compute_moment(points, normals, c, length) - az
     nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     size = sqrt(nx * nx + ny * ny + nz * nz)
     if size < FLAT:
@@ -99,29 +109,36 @@ def plane_distance(points: Array, normals: Array, length: float, a: int, b: int,
     low, high = 0.0, 0.0
     for k in range(5):
         if k != a and k != b and k != c:
-            dx, dy, dz = normals[k, 0] - ax, normals[k, 1] - ay, moment(points, normals, k, length) - az
+            dx, dy, dz = (
+                normals[k, 0] - ax,
+                normals[k, 1] - ay,
+                compute_moment(points, normals, k, length) - az,
+            )
             side = (nx * dx + ny * dy + nz * dz) / size
             low, high = min(low, side), max(high, side)
     return abs(nx * ax + ny * ay + nz * az) / size if low > -FLAT or high < FLAT else inf
 
 
 @inner
-def wrench_radius_of_five(points: Array, normals: Array, length: float) -> float:
-    """The wrench radius of five wrenches, whose hull has up to six facets; see :func:`wrench_radius`."""
+def compute_wrench_radius_of_five(points: Array, normals: Array, length: float) -> float:
+    """Return the distance from the origin to the nearest facet plane of
+    the hull of five wrenches, see :func:`compute_wrench_radius`.
+    """
     least = inf
     for a in range(5):
         for b in range(a + 1, 5):
             for c in range(b + 1, 5):
-                least = min(least, plane_distance(points, normals, length, a, b, c))
+                least = min(least, measure_plane_distance(points, normals, length, a, b, c))
     return least
 
 
 @inner
-def wrench_radius(points: Array, normals: Array, length: float) -> float:
-    """Distance from the origin to the nearest facet of the tetrahedron of the wrenches w = (n, q x n / L); no
-    unit.
+def compute_wrench_radius(points: Array, normals: Array, length: float) -> float:
+    """Return the distance from the origin to the nearest facet plane
+    of the tetrahedron of four wrenches; no unit.
 
-    The largest unit-norm load that pegs resist with forces that sum to 1.
+    A wrench is (n, q x n / L). For pegs in force closure the distance is the largest norm up to which every
+    load is resisted by peg forces with sum 1; elsewhere it has no such meaning.
 
     Reference: C. Ferrari, J. Canny, *Planning optimal grasps*, IEEE ICRA (1992).
 
@@ -129,7 +146,7 @@ def wrench_radius(points: Array, normals: Array, length: float) -> float:
     ----------
     points : (4, 2) peg centres or contact points about c in mm (both lie on the lines of action).
     normals : (4, 2) outward unit normals.
-    length : L in mm.
+    length : L in mm, by which moments are divided.
     """
     least = inf
     for k in range(4):
@@ -146,11 +163,19 @@ def wrench_radius(points: Array, normals: Array, length: float) -> float:
 
 
 @inner
-def generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Array) -> int:
-    """Movements of the part (x, y, turn times L) that the tolerances make, each with either sign; (10, 3) and
-    their number.
+def write_generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Array) -> int:
+    """Write the part's movement for each independent error at its
+    tolerance to ``out``, and return their number.
 
-    A face that one peg touches adds its error to the peg's; one that several pegs touch moves them all alike.
+    ``out`` (10, 3) has the columns x and y in mm and turn times L. Each movement may have either sign. A face
+    that one peg touches adds its tolerance to the peg's; a face that several pegs touch moves them alike, as
+    one error.
+
+    Parameters
+    ----------
+    inverse : (4, P) of the contact matrix.
+    faces : (P,) number of the face that each peg touches.
+    peg, face : tolerances in mm.
     """
     count = 0
     pegs = inverse.shape[1]
@@ -175,8 +200,8 @@ def generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Ar
 
 
 @inner
-def farthest_movement(vx: float, vy: float, turn: float, corners: Array, arcs: Array) -> float:
-    """Largest movement of a point of the silhouette, to first order.
+def find_farthest_movement(vx: float, vy: float, turn: float, corners: Array, arcs: Array) -> float:
+    """Return the largest movement in mm of a point of the silhouette, to first order.
 
     A point q about c moves by v + turn (-q_y, q_x). On an arc with centre m and radius r the point that moves
     most lies in the direction in which the turn adds to the centre's movement. It moves by |v(m)| + r |turn|.
@@ -185,9 +210,9 @@ def farthest_movement(vx: float, vy: float, turn: float, corners: Array, arcs: A
     ----------
     vx, vy : movement of c in mm.
     turn : in radians.
-    corners : (C, 2) corners of the silhouette about c.
-    arcs : (A, 6) its convex arcs: centre about c, radius, direction from the centre to the middle (x, y),
-        cosine of half the sweep.
+    corners : (C, 2) corners of the silhouette about c, in mm.
+    arcs : (A, 6) its convex arcs: centre about c (x, y) and radius in mm, unit vector from the centre to the
+        middle (x, y), cosine of half the sweep.
     """
     most = 0.0
     for k in range(len(corners)):
@@ -207,7 +232,7 @@ def farthest_movement(vx: float, vy: float, turn: float, corners: Array, arcs: A
 
 
 @inner
-def location_error(
+def compute_location_error(
     inverse: Array,
     faces: IntArray,
     length: float,
@@ -217,22 +242,25 @@ def location_error(
     farthest: float,
     work: Array,
 ) -> float:
-    """Worst movement in mm of a point of the silhouette when pegs and faces are off by their tolerances.
+    """Return the largest movement in mm of a point of the silhouette
+    when pegs and faces are off by their tolerances.
 
-    Movement is a convex function of the errors, so the corners of their box suffice, and opposite corners
-    move alike. No point moves farther than c and by more than the turn times its distance from c. That leaves
-    most corners of the box out, after the one at which all errors turn the part the same way.
+    Movement is a convex function of the errors, so it is largest at a corner of their box, and opposite
+    corners move alike. No point moves farther than c does plus the turn times the point's distance from c.
+    That excludes most corners of the box, once the corner at which all errors turn the part the same way has
+    been evaluated.
 
     Parameters
     ----------
     inverse : (4, P) of the contact matrix.
-    faces : (P,) touched.
-    length : L in mm.
+    faces : (P,) number of the face that each peg touches.
+    length : L in mm, by which moments are divided.
     tolerances : (2,) of a peg and of a face, in mm.
-    corners, arcs, farthest : see :func:`farthest_movement` and :func:`farthest_point`.
+    corners, arcs : see :func:`find_farthest_movement`.
+    farthest : see :func:`measure_farthest_point`.
     work : (10, 3) work space.
     """
-    count = generators(inverse, faces, tolerances[0], tolerances[1], work)
+    count = write_generators(inverse, faces, tolerances[0], tolerances[1], work)
     first = int(np.int64(0))
     for m in range(count - 1):
         if work[m, 2] * work[count - 1, 2] > 0.0:
@@ -248,13 +276,15 @@ def location_error(
             turn += sign * work[m, 2]
         turn /= length
         if not SURELY * (sqrt(x * x + y * y) + abs(turn) * farthest) <= worst:
-            worst = max(worst, farthest_movement(x, y, turn, corners, arcs))
+            worst = max(worst, find_farthest_movement(x, y, turn, corners, arcs))
     return worst
 
 
 @inner
-def farthest_point(corners: Array, arcs: Array) -> float:
-    """Distance in mm from c that no point of the silhouette exceeds; see :func:`farthest_movement`."""
+def measure_farthest_point(corners: Array, arcs: Array) -> float:
+    """Return a distance in mm from c that no point of the silhouette exceeds, see
+    :func:`find_farthest_movement`.
+    """
     most = 0.0
     for k in range(len(corners)):
         most = max(most, hypot(corners[k, 0], corners[k, 1]))
@@ -264,7 +294,7 @@ def farthest_point(corners: Array, arcs: Array) -> float:
 
 
 @compiled
-def figures(
+def write_figures(
     points: Stack,
     normals: Stack,
     ends: Matrix,
@@ -279,21 +309,23 @@ def figures(
     out: Matrix,
     work: Matrix,
 ) -> None:
-    """Closure margin, clamp amplification, wrench radius, location error, end distance, load reaction and
-    edge distance of N fixtures.
+    """Write the figures of quality of N fixtures to the first seven columns of ``out``.
+
+    Columns: closure margin, clamp amplification (largest peg force per unit of clamping force), wrench
+    radius, location error in mm, end distance in mm, load reaction in N, edge distance in mm (``length`` at
+    most).
 
     Parameters
     ----------
-    points, normals, ends, edges, inverses : see ``kernels.contact.contact_matrix.contact_matrices_of``.
-    faces : (N, P) touched.
-    length, tolerances, corners, arcs : see :func:`location_error`. No edge is given as farther than the
-        length.
+    points, normals, ends, edges, inverses : see ``kernels.contact.contact_matrix.write_contact_matrices``.
+    faces : (N, P) number of the face that each peg touches; P is 4, or 5 with two clamps.
+    length, tolerances, corners, arcs : see :func:`location_error`.
     loads : (M, 11) rows, see ``kernels.contact.quality``.
     out : (N, 7 or more) receives the figures; NaN for the load reaction without loads, and for all where the
         contact matrix has no inverse.
     work : (10, 3) work space.
     """
-    farthest = farthest_point(corners, arcs)
+    farthest = measure_farthest_point(corners, arcs)
     for k in range(len(points)):
         inverse = inverses[k]
         # The last row of the inverse: peg forces per unit of clamping force, as in the null vector.
@@ -309,12 +341,14 @@ def figures(
         out[k, 1] = most if known else np.nan
         out[k, 2] = np.nan
         if known and inverse.shape[1] == 4:
-            out[k, 2] = wrench_radius(points[k], normals[k], length)
+            out[k, 2] = compute_wrench_radius(points[k], normals[k], length)
         elif known:
-            out[k, 2] = wrench_radius_of_five(points[k], normals[k], length)
+            out[k, 2] = compute_wrench_radius_of_five(points[k], normals[k], length)
         out[k, 3] = np.nan
         if known:
-            out[k, 3] = location_error(inverse, faces[k], length, tolerances, corners, arcs, farthest, work)
+            out[k, 3] = compute_location_error(
+                inverse, faces[k], length, tolerances, corners, arcs, farthest, work
+            )
         out[k, 4] = nearest if known else np.nan
-        out[k, 5] = largest_reaction(inverse, length, loads) if known and len(loads) > 0 else np.nan
+        out[k, 5] = find_largest_reaction(inverse, length, loads) if known and len(loads) > 0 else np.nan
         out[k, 6] = edge if known else np.nan

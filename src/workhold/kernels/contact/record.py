@@ -45,7 +45,16 @@ import numpy as np
 
 from workhold.kernels.base.arrays import eliminate
 from workhold.kernels.base.compiling import Array, IntArray, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow, off_shallow
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    IS_ARC,
+    RADIUS,
+    X,
+    Y,
+    is_shallow,
+    measure_shallow_offset,
+)
 from workhold.kernels.base.tables import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL, Lattice
 
 # An orientation psi in radians, its cosine and its sine.
@@ -63,8 +72,8 @@ RECORD_LENGTH = 19
 
 
 @inner
-def angle_of(psi: float) -> Angle:
-    """An orientation in radians with its cosine and sine, which all that is placed at it shares."""
+def make_angle(psi: float) -> Angle:
+    """Return (psi, cos psi, sin psi) of an orientation psi in radians."""
     return (psi, cos(psi), sin(psi))
 
 
@@ -72,7 +81,11 @@ def angle_of(psi: float) -> Angle:
 def place_peg(
     peg: Array, x: float, y: float, feature: int, column: float, line: float, radius: float
 ) -> None:
-    """Writes one peg to its (6,) place in a work array."""
+    """Write one peg to the row ``peg`` (6,): centre (x, y) in mm,
+    feature, lattice column and row, error radius in mm.
+
+    See ``contact.record`` for the layout of ``peg``.
+    """
     peg[PEG_X], peg[PEG_Y], peg[PEG_FEATURE] = x, y, feature
     peg[PEG_COLUMN], peg[PEG_ROW], peg[PEG_RADIUS] = column, line, radius
 
@@ -81,7 +94,12 @@ def place_peg(
 def write_record(
     row: Array, standing: float, pegs: Array, psi: float, separation: float, reach: float
 ) -> None:
-    """Writes four pegs in place to a (19,) row of the records."""
+    """Write four pegs in place to ``row`` (19,), a row of the records.
+
+    ``pegs`` is (4, 6); the first ``standing`` pegs are on the carrier that stands still. ``psi`` is the
+    orientation and ``reach`` its error bound in radians, ``separation`` the x distance in mm from the first
+    standing to the first moving peg. See ``contact.record`` for the layout of ``row`` and ``pegs``.
+    """
     row[STANDING], row[PSI], row[SEPARATION], row[REACH] = standing, psi, separation, reach
     row[TAIL_X], row[TAIL_Y] = pegs[0, PEG_X], pegs[0, PEG_Y]
     row[LARGEST_RADIUS] = max(
@@ -95,8 +113,12 @@ def write_record(
 
 @inner
 def write_given_up(row: Array, standing: float, first: Array, second: Array, integers: IntArray) -> None:
-    """Writes a pair of pieces that was given up, with the middle of their common range, to a (19,) row of
-    the records."""
+    """Write a row (19,) of the records for a pair of pieces of chord curves whose crossings were not found.
+
+    STANDING is ``-standing``, PSI the middle of the pieces' common range, the error radii are inf. ``first``
+    and ``second`` are piece rows, ``integers`` the whole numbers of the curves. See ``contact.record`` for
+    the layout of ``row``, ``base.tables`` for that of ``first``, ``second`` and ``integers``.
+    """
     for k in range(RECORD_LENGTH):
         row[k] = 0.0
     psi = (max(first[LOW], second[LOW]) + min(first[HIGH], second[HIGH])) / 2.0
@@ -113,7 +135,12 @@ WORK_LENGTH = 19
 
 @inner
 def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
-    """Brings the pegs of a (19,) record to their places on the carriers, and the unknowns to its own."""
+    """Copy a record (19,) to the work space ``w``: its unknowns, and
+    for each peg whether it moves and its lattice place in mm.
+
+    They are the rows UNKNOWNS, MOVING, STEP_X and STEP_Y. See ``contact.record`` for the layout of ``record``
+    and ``w``.
+    """
     w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
     w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[SEPARATION]
     for k in range(4):
@@ -123,8 +150,16 @@ def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
 
 
 @inner
-def touch(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
-    """Fills in centres, distances and Jacobian for the unknowns in place; ``length`` is L in mm."""
+def write_contact_equations(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
+    """Compute the contacts at the unknowns in ``w``: write the rows
+    OFF and SLOPES of ``w``, and the centres to ``points``.
+
+    OFF is each peg's distance in mm from its feature's line or circle, SLOPES its derivatives over (L psi,
+    tail x, tail y, separation). ``points`` (4, 2) is in the workpiece's frame, in mm. ``features`` are
+    (F, 12) rows, ``length`` is L in mm, by which moments are divided. In the centre of an arc, which has no
+    direction, the slopes of the peg are 0. See ``contact.record`` for the layout of ``record`` and ``w``,
+    ``base.feature`` for that of ``features``.
+    """
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     for k in range(4):
         row = features[int(record[FEATURES + k])]
@@ -137,7 +172,7 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
         if row[IS_ARC] == 0.0:
             w[OFF, k] = dx * gx + dy * gy
         elif is_shallow(row):
-            w[OFF, k], gx, gy = off_shallow(row, x, y)
+            w[OFF, k], gx, gy = measure_shallow_offset(row, x, y)
         else:
             size = hypot(dx, dy)
             w[OFF, k] = size - row[RADIUS]
@@ -150,12 +185,16 @@ def touch(record: Array, features: Array, length: float, w: Array, points: Array
 
 @inner
 def invert(w: Array) -> float:
-    """Inverts the Jacobian and makes the Newton step.
+    """Invert the Jacobian in ``w`` (rows SLOPES) to its rows INVERSE,
+    and write the Newton step to its row NEWTON.
+
+    The step is INVERSE times OFF in mm, to be subtracted from (L psi, tail x, tail y, separation). See
+    ``contact.record`` for the layout of ``w``.
 
     Returns
     -------
     float
-        The size of the determinant; where it is 0 or NaN there is no inverse.
+        Absolute value of the determinant; where it is 0 or NaN, INVERSE and NEWTON are no result.
     """
     for i in range(4):
         for j in range(4):

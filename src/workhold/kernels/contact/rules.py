@@ -34,7 +34,7 @@ from workhold.conventions import (
 from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.tables import COLUMN_STEP, ROW_STEP, Features, Limits
-from workhold.kernels.chord.evaluation import end_slack
+from workhold.kernels.chord.evaluation import measure_end_slack
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle
 
 # Rounding of a minor.
@@ -43,26 +43,26 @@ ROUNDING = 1e-14
 
 @inner
 def cross(ax: float, ay: float, bx: float, by: float) -> float:
-    """Cross product of two vectors of the plane."""
+    """Return the cross product ax by - ay bx of two plane vectors."""
     return ax * by - ay * bx
 
 
 @inner
-def minors(points: Array, normals: Array, length: float, out: Array) -> float:
-    """Null vector of the four wrenches, not scaled: their signed 3x3 minors.
+def write_minors(points: Array, normals: Array, length: float, out: Array) -> float:
+    """Write the signed 3x3 minors of four wrenches, a null vector that is not scaled, to ``out``.
 
     Parameters
     ----------
     points : (4, 2) contact points (or peg centres: they lie on the same lines of action) about the centre c,
         in mm.
     normals : (4, 2) outward unit normals.
-    length : L in mm.
-    out : (4,) receives the minors.
+    length : L in mm, by which moments are divided.
+    out : (4,) receives the minors; entry k is that of the wrenches other than k.
 
     Returns
     -------
     float
-        The sum of their sizes; 0 when the wrenches do not span the space.
+        The sum of the absolute values; 0 when the wrenches do not span the space.
     """
     t0 = cross(points[0, 0], points[0, 1], normals[0, 0], normals[0, 1]) / length
     t1 = cross(points[1, 0], points[1, 1], normals[1, 0], normals[1, 1]) / length
@@ -82,9 +82,9 @@ def minors(points: Array, normals: Array, length: float, out: Array) -> float:
 
 
 @inner
-def minor_band(swing: float, away: float, length: float) -> float:
-    """How far a minor may be off when normals may be turned by ``swing`` radians and points be off by
-    ``away`` mm.
+def bound_minor_error(swing: float, away: float, length: float) -> float:
+    """Return an error bound of a minor when normals are off by up to
+    ``swing`` radians and points by up to ``away`` mm.
 
     Moments over L, of size 1.42 at most, are off by away / L + 1.42 swing, and products of two normals by 2
     swing. A minor is three products of one with the other, so it is off by 12.8 swing + 3 away / L; the rest
@@ -94,8 +94,11 @@ def minor_band(swing: float, away: float, length: float) -> float:
 
 
 @inner
-def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
-    """Outward unit normal of a feature at a point on it."""
+def compute_outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Return the outward unit normal (x, y) of a feature at the point (x, y) on it, in the part's frame.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (row[AXIS_Y], -row[AXIS_X])
     scale = row[SIGN] / row[RADIUS]
@@ -104,16 +107,21 @@ def outward_normal(row: Array, x: float, y: float) -> tuple[float, float]:
 
 @inner
 def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> bool:
-    """Whether a contact, known to ``radius``, may lie on its feature, at least ``margin`` mm from its
-    ends."""
-    return end_slack(row, x, y) >= margin - 1.2 * radius
+    """Return whether a contact at (x, y), known to ``radius`` in mm,
+    may lie on its feature, ``margin`` mm from its ends.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
+    return measure_end_slack(row, x, y) >= margin - 1.2 * radius
 
 
 @inner
 def hold_along_lines(pegs: Array, count: int, rows: Array) -> bool:
-    """Whether three of so many pegs, the first ones, touch parallel lines.
+    """Return whether three of the first ``count`` pegs (3 or 4) touch parallel lines.
 
-    Their three forces then lie in one direction, and nothing takes up the fourth.
+    Their three forces then have one direction, and nothing balances the fourth force. ``pegs`` are (4, 6),
+    ``rows`` those of the features. See ``contact.record`` for the layout of ``pegs``, ``base.feature`` for
+    that of ``rows``.
     """
     for k in range(count):
         three = True
@@ -142,21 +150,22 @@ def is_fixture(
     work: Array,
     null: Array,
 ) -> tuple[int, float]:
-    """Checks four pegs at simultaneous contact.
+    """Return the verdict on four pegs at simultaneous contact, and their separation.
 
     Parameters
     ----------
-    pegs : (4, 6) places; the first ``standing`` on the carrier that stands still.
-    angle, reach : orientation of the pegs in the workpiece's frame, and how far in radians it may be off.
+    pegs : (4, 6) rows, see ``contact.record``; the first ``standing`` on the carrier that stands still.
+    angle : orientation of the pegs in the workpiece's frame, with its cosine and sine.
+    reach : how far in radians the orientation may be off.
     work : (8, 2) work space.
-    null : (4,) receives the null vector, not scaled.
+    null : (4,) receives the null vector, not scaled, unless the function returns before.
 
     Returns
     -------
-    (verdict; x distance from the first standing to the first moving peg, but 0 for verdict 0)
+    (verdict; x distance in mm from the first standing to the first moving peg, but 0 for verdict 0)
 
-    The verdict is 2 when it may be a fixture, 1 when the four contacts may be inside their features, 0 when
-    they are not.
+    The verdict is 2 when the pegs may be a fixture, 1 when all four contacts may be inside their features but
+    another rule is broken, 0 when some contact is outside its feature.
     """
     _, cx, cy = angle
     rows, length = features.rows, limits.wrench_length
@@ -171,7 +180,7 @@ def is_fixture(
             return (0, 0.0)
         radius = max(radius, pegs[k, PEG_RADIUS])
         points[k, 0], points[k, 1] = x, y
-        normals[k, 0], normals[k, 1] = outward_normal(row, x, y)
+        normals[k, 0], normals[k, 1] = compute_outward_normal(row, x, y)
         if row[IS_ARC] != 0.0:
             swing = max(swing, pegs[k, PEG_RADIUS] / row[RADIUS])
         along = cx * x + cy * y
@@ -188,8 +197,8 @@ def is_fixture(
         return (1, separation)
     if hold_along_lines(pegs, 4 if limits.pairing == 0.0 else 3, rows):
         return (1, separation)
-    size = minors(points, normals, length, null)
-    band = minor_band(swing, radius, length)
+    size = write_minors(points, normals, length, null)
+    band = bound_minor_error(swing, radius, length)
     if limits.pairing != 0.0:
         push = limits.clamping * (normals[3, 0] * cx + normals[3, 1] * cy)
         sure = abs(null[3]) + band > LEAST_SEAT and push + swing + reach > LEAST_PUSH
@@ -215,8 +224,11 @@ def is_fixture(
 
 @inner
 def is_listed(verdict: int, counting: bool, count: int, limits: Limits) -> bool:
-    """Whether four contacts with a verdict of :func:`is_fixture` are written to the records, ``count`` of
-    which there are. Those that may be a fixture are, or, when contacts are counted, all up to so many."""
+    """Return whether four contacts with this verdict of :func:`is_fixture` are to be written to the records.
+
+    Contacts that may be a fixture (verdict 2) are. When ``counting``, those with verdict 1 are as well, but
+    none once ``count``, the number of contacts so far, has reached ``limits.most_listed``.
+    """
     if counting:
         return verdict > 0 and count < limits.most_listed
     return verdict == 2
@@ -224,8 +236,11 @@ def is_listed(verdict: int, counting: bool, count: int, limits: Limits) -> bool:
 
 @inner
 def share_a_carrier(one: IntArray, two: IntArray, limits: Limits) -> bool:
-    """Whether the heads of two chords with a common tail, given by their whole numbers, are different holes
-    of one carrier."""
+    """Return whether the heads of two chords with a common tail can be different holes of one carrier.
+
+    ``one`` and ``two`` are the whole numbers (7,) of the chords' curves. The columns of tail and heads may
+    differ by ``limits.most_column_steps``. See ``base.tables`` for the layout of ``one`` and ``two``.
+    """
     k, m = one[COLUMN_STEP], two[COLUMN_STEP]
     if k == m and one[ROW_STEP] == two[ROW_STEP]:
         return False

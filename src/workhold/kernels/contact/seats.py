@@ -23,7 +23,7 @@ from workhold.kernels.base.compiling import (
     compiled,
     inner,
 )
-from workhold.kernels.contact.clamp_pairs import closure_margin, pressed_range
+from workhold.kernels.contact.clamp_pairs import compute_closure_margin, narrow_pressed_range
 from workhold.kernels.contact.record import COLUMNS, PSI, ROWS, TAIL_X, TAIL_Y
 
 # What mixes two coordinates to one number.
@@ -34,7 +34,7 @@ FIRST, SECOND, THIRD = -4658895280553007687, -7723592293110705685, -296083668705
 
 
 @compiled
-def numbers_of_seats(
+def write_seat_numbers(
     records: Matrix,
     turn: Vector,
     pitch: Vector,
@@ -43,17 +43,19 @@ def numbers_of_seats(
     theta: Vector,
     places: Vector,
 ) -> None:
-    """What distinguishes the seats of contacts.
+    """Write numbers by which contacts of three locators are grouped into seats.
 
     Parameters
     ----------
     records : (N, 19), see ``kernels.contact.record``.
-    turn : (3,) cosine, sine and angle in radians by which the frame is turned on the plate.
-    pitch : (2,) of the holes in mm.
+    turn : (3,) cosine, sine and angle in radians by which the frame is turned on the plate, a multiple of a
+        quarter turn.
+    pitch : (2,) of the holes in mm, along x and y of the plate.
     start : the angle in radians from which orientations are counted.
-    holes : (N,) receives a number for the holes of the locators, the same wherever they are on the plate.
-    theta : (N,) receives orientations from ``start`` on.
-    places : (N,) receives a number for the place of the part beside the lowest holes in mm.
+    holes : (N,) receives a hash of the holes of the locators, the same wherever these are on the plate.
+    theta : (N,) receives the orientations of the part, minus ``start``, in [0, 2 pi).
+    places : (N,) receives one number in mm for the position of the part beside the lowest holes: x +
+        ``ASIDE`` y.
     """
     cosine, sine = int(turn[0]), int(turn[1])
     for n in range(records.shape[0]):
@@ -77,28 +79,39 @@ def numbers_of_seats(
         theta[n] = (angle - start) % (2.0 * pi)
 
 
-# Columns of forces per unit of a clamp's own: three locators', that on its face, how far they may be off.
+# Columns of forces per unit of a clamp's own force: on three locators, on its face, and their error bound.
 LOCATOR, FACE, OFF = 0, 3, 4
 FORCE_LENGTH = 5
-# Columns of what bounds the pairs of a seat.
+# Columns of the bounds of the pairs of a seat: freedom in degrees, closure margin, clamp amplification.
 FREEDOM, MARGIN, AMPLIFICATION = range(3)
 BOUND_LENGTH = 3
-# The best that they can be where forces are not known.
+# The largest freedom and margin possible, used where forces are not known.
 FREE, WIDE = 90.0, 0.2
 
 
 @inner
-def widened_range(one: Array, other: Array, off: float, off_other: float) -> tuple[float, float]:
-    """The ends of the interval of f2 / f1 in which locators are pressed, were forces larger by ``off``."""
+def find_widened_range(one: Array, other: Array, off: float, off_other: float) -> tuple[float, float]:
+    """Return (low, high), the interval of f2 / f1 in which three
+    locators are pressed if their forces are increased.
+
+    ``one`` and ``other`` are (5,) rows of forces per unit of f1 and f2. To each force of a locator ``off`` or
+    ``off_other`` is added. No ratio is left where low >= high. See ``contact.seats`` for the layout of
+    ``one`` and ``other``.
+    """
     low, high = 0.0, inf
     for k in range(3):
-        low, high = pressed_range(low, high, one[LOCATOR + k] + off, other[LOCATOR + k] + off_other)
+        low, high = narrow_pressed_range(low, high, one[LOCATOR + k] + off, other[LOCATOR + k] + off_other)
     return (low, high)
 
 
 @inner
-def least_amplification(one: Array, other: Array, first: float, last: float) -> float:
-    """What some peg carries at least of f1 + f2, the angle of (f1, f2) being from ``first`` to ``last``."""
+def bound_amplification(one: Array, other: Array, first: float, last: float) -> float:
+    """Return a lower bound of the largest peg force relative to f1 +
+    f2, for angles of (f1, f2) between two in radians.
+
+    ``one`` and ``other`` are (5,) rows of forces per unit of f1 and f2; the angles run from ``first`` to
+    ``last``, in [0, pi / 2]. See ``contact.seats`` for the layout of ``one`` and ``other``.
+    """
     c, s, d, t = cos(first), sin(first), cos(last), sin(last)
     most = max(
         min(c / (c + s), d / (d + t)) * one[FACE],
@@ -112,32 +125,38 @@ def least_amplification(one: Array, other: Array, first: float, last: float) -> 
 
 @inner
 def widen(out: Array, one: Array, other: Array, work: Array, wants_margin: bool) -> None:
-    """Widens what bounds the pairs of a seat (3,) by a pair of clamps, if it may close."""
+    """Widen the bounds ``out`` (3,) of a seat in place to hold those
+    of a pair of clamps, if the pair may close.
+
+    ``one`` and ``other`` are (5,) rows of forces; where they are not known (OFF is inf), the bounds are the
+    best possible. ``out`` has the columns FREEDOM, MARGIN, AMPLIFICATION; ``work`` is (2, 3) work space. See
+    ``contact.seats`` for the layout of ``one`` and ``other``.
+    """
     e, f = one[OFF], other[OFF]
     if e == inf or f == inf:
         out[FREEDOM], out[MARGIN], out[AMPLIFICATION] = FREE, WIDE, 0.0
         return
-    low, high = widened_range(one, other, e, f)
+    low, high = find_widened_range(one, other, e, f)
     if low >= high:
         return
     first, last = atan(low), atan(high)
     out[FREEDOM] = max(out[FREEDOM], degrees(last - first))
-    low, high = widened_range(one, other, -e, -f)
+    low, high = find_widened_range(one, other, -e, -f)
     if low < high:
         # The working ratio is in the middle of an interval whose ends are known so well.
         first, last = (first + atan(high)) / 2.0, (atan(low) + last) / 2.0
-    out[AMPLIFICATION] = min(out[AMPLIFICATION], least_amplification(one, other, first, last))
+    out[AMPLIFICATION] = min(out[AMPLIFICATION], bound_amplification(one, other, first, last))
     if not wants_margin:
         out[MARGIN] = WIDE
         return
     for k in range(3):
         work[0, k], work[1, k] = one[LOCATOR + k] / one[FACE], other[LOCATOR + k] / other[FACE]
-    margin, _ = closure_margin(work[0], work[1])
+    margin, _ = compute_closure_margin(work[0], work[1])
     out[MARGIN] = max(out[MARGIN], max(margin, 0.0) + 3.0 * max(e, f))
 
 
 @compiled
-def bounds_of_pairs(
+def write_pair_bounds(
     starts: IntVector,
     directions: IntVector,
     forces: Matrix,
@@ -146,15 +165,19 @@ def bounds_of_pairs(
     out: Matrix,
     work: Matrix,
 ) -> None:
-    """What no pair of clamps of seats exceeds.
+    """Write, for each of S seats, bounds that no pair of its clamps exceeds.
+
+    See ``contact.seats`` for the layout of ``forces``.
 
     Parameters
     ----------
-    starts : (S + 1,) where the clamps of each seat begin.
-    directions : (M,) of the clamps.
-    forces : (M, 5), see above; infinitely far off where they are not known.
+    starts : (S + 1,) index of the first clamp of each seat, then M.
+    directions : (M,) number of each clamp's direction, 0 to 3.
+    forces : (M, 5) per unit of the clamp's own force: LOCATOR (3), the locators' forces, FACE, that on its
+        face, and OFF, their error bound, inf where they are not known.
     asked : (4, 4) 1 for pairs of directions that are asked for, else 0.
-    wants_margin : whether closure margins are bounded by their pairs; by 1/5 alone if not.
+    wants_margin : whether to bound closure margins by the pairs; if not, the bound is ``WIDE`` for each seat
+        with a pair.
     out : (S, 3) receives the largest clamp freedom in degrees, the largest closure margin and the least clamp
         amplification of a pair. They are -inf, -inf and inf where none can close.
     work : (2, 3) work space.

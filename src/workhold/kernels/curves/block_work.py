@@ -1,4 +1,4 @@
-"""What the kernels of one block of a search are given and work in, and how they list what they find.
+"""Inputs and work space of the kernels of one block of a search, and how these list what they find.
 
 Memory is made by the caller, once for many blocks. A kernel that lists fixtures and has no room for all of
 them says so, and is called again with more: :data:`NO_ROOM_FOR_RECORDS`, :data:`NO_ROOM_FOR_PIECES`.
@@ -27,7 +27,7 @@ from workhold.kernels.base.tables import (
     Lattice,
     Limits,
 )
-from workhold.kernels.contact.location_bounds import two_and_two_beyond
+from workhold.kernels.contact.location_bounds import is_two_and_two_beyond
 from workhold.kernels.contact.record import (
     PEG_FEATURE,
     PEG_LENGTH,
@@ -40,42 +40,43 @@ from workhold.kernels.contact.record import (
     place_peg,
     write_record,
 )
-from workhold.kernels.contact.rules import is_fixture, is_listed, minor_band
-from workhold.kernels.curves.piece_bounds import chord_tail
+from workhold.kernels.contact.rules import bound_minor_error, is_fixture, is_listed
+from workhold.kernels.curves.piece_bounds import compute_tail
 from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
 
 # Columns of the statistics a block returns: pairs of pieces looked at, pairs whose crossings were sought,
 # four contacts examined, and those that may be inside their features.
 PAIRS, CROSSED, CANDIDATES, CONTACTS = range(4)
-# Beside these is what another thread asks for: any number but 0 at STOPPED ends the work soon.
+# The column STOPPED is written by another thread: any number but 0 there ends the work soon.
 STOPPED = 4
 STATISTICS = 5
 # What a kernel returns instead of a number of records where its memory did not suffice.
 NO_ROOM_FOR_RECORDS, NO_ROOM_FOR_PIECES = -1, -2
-# Columns of roles in ``two_and_two`` and of limbs in ``three_and_one``, and how many parts ``sliding_pairs``
-# cuts the range of a sliding pair to.
+# Columns of roles in ``two_and_two`` and of limbs in ``three_and_one``, and the number of parts into which
+# ``sliding_pairs`` cuts the range of a sliding pair.
 ROLE_LENGTH, LIMB_LENGTH, SLIDE_PARTS = 20, 20, 8
-# Rows of what moving pegs need of three standing ones.
+# Rows of the array of three standing pegs, see ``moving_pegs.write_triple``.
 TRIPLE_ROWS = 8
-# mm. A tail known no better than this is looked for on its other curve, too.
+# mm. A tail that one curve determines no better than this is computed from its other curve, too.
 BADLY = 1e-3
 
 
 class BlockSpace(NamedTuple):
-    """The memory that kernels of blocks work in, one after the other; see :func:`make_block_space`.
+    """The memory that kernels of blocks work in, made by
+    :func:`make_block_space` and used by one block after another.
 
     Parameters
     ----------
     stack, roots : see ``roots.crossings``.
-    pegs : (4, 6) places, see ``kernels.contact.record``.
+    pegs : (4, 6) pegs in place, see ``kernels.contact.record``.
     contacts, null : see ``contact.rules.is_fixture``.
-    triple : see ``moving_pegs.write_triple``.
-    edges : (2, 14) ends of a piece.
-    out : (R, 19) receives the records.
-    pieces : (P, 24) the pieces of a cell.
+    triple : (8, 3), see ``moving_pegs.write_triple``.
+    edges : (2, 14) ends of a piece, see ``base.tables``.
+    out : (R, 19) receives the records, see ``kernels.contact.record``.
+    pieces : (P, 24) the pieces of a cell, see ``base.tables``.
     standing, moving, unordered : (P, 20) roles, see ``two_and_two``.
     limbs, unordered_limbs : (P, 20), see ``three_and_one``.
-    keys, order : (P,) of what is sorted.
+    keys, order : (P,) work space for sorting.
     kept : (M, 15), see ``piece_bounds.clear_edges``.
     spots, slides : (M, 4) and (SLIDE_PARTS, 4), see ``sliding_pairs``.
     """
@@ -102,7 +103,9 @@ class BlockSpace(NamedTuple):
 
 
 def make_block_space(records: int, pieces: int, members: int) -> BlockSpace:
-    """Return memory for blocks with so many records, pieces in a cell, and curves."""
+    """Return memory, not initialized, for blocks with these numbers of
+    records, of pieces in a cell, and of member curves.
+    """
     return BlockSpace(
         stack=np.empty((STACK_DEPTH, STACK_LENGTH)),
         roots=np.empty((MOST_ROOTS, 3)),
@@ -127,12 +130,15 @@ def make_block_space(records: int, pieces: int, members: int) -> BlockSpace:
 
 
 class BlockWork(NamedTuple):
-    """What a block is given, and the memory that it works in.
+    """The inputs of a block, and the memory that it works in.
 
     Parameters
     ----------
-    counting : count all simultaneous contacts instead of looking for fixtures only.
-    stats : (5,) counts to add to.
+    counting : whether to count all simultaneous contacts instead of looking for fixtures only.
+    stats : (5,) counts to add to: PAIRS of pieces examined, CROSSED pairs whose crossings were sought,
+        CANDIDATES (four contacts examined) and CONTACTS (those that may be inside their features). Any number
+        but 0 at STOPPED ends the work soon.
+    stack, roots, pegs, contacts, null, triple : see :class:`BlockSpace`.
     """
 
     features: Features
@@ -150,7 +156,7 @@ class BlockWork(NamedTuple):
 
 
 @inner
-def block_work(
+def make_block_work(
     features: Features,
     curves: Curves,
     lattice: Lattice,
@@ -159,7 +165,7 @@ def block_work(
     stats: IntArray,
     space: BlockSpace,
 ) -> BlockWork:
-    """Return the work of a block in some memory."""
+    """Return a :class:`BlockWork` of these inputs with memory from ``space``."""
     return BlockWork(
         features,
         curves,
@@ -178,7 +184,7 @@ def block_work(
 
 @inner
 def is_among(feature: int, touched: tuple[int, int]) -> bool:
-    """Whether a feature is among those that the pegs of a carrier touch."""
+    """Return whether ``touched[0] <= feature < touched[1]``: whether pegs of a carrier touch that feature."""
     return touched[0] <= feature < touched[1]
 
 
@@ -186,19 +192,25 @@ def is_among(feature: int, touched: tuple[int, int]) -> bool:
 def place_tail(
     pegs: Array, curve: int, angle: Angle, reach: float, line: float, features: Array, curves: Curves
 ) -> None:
-    """Writes the tail of a curve's chord to the first of some places, in row ``line`` of column 0.
+    """Write the tail of a curve's chord to ``pegs[0]`` (6,), in lattice row ``line`` and column 0.
 
-    ``reach`` is how far in radians psi may be off; the peg's radius follows from it.
+    ``curve`` is the curve's index. ``angle`` is an orientation psi in the curve's range, off by up to
+    ``reach`` radians; the peg's error radius in mm follows from that. See ``contact.record`` for the layout
+    of ``pegs``, ``base.feature`` for that of ``features``.
     """
     step = curves.integers[curve]
     tail, head = step[TAIL], step[HEAD]
-    x, y, radius = chord_tail(features[tail], features[head], curves.reals[curve], *angle, reach)
+    x, y, radius = compute_tail(features[tail], features[head], curves.reals[curve], *angle, reach)
     place_peg(pegs[0], x, y, tail, 0.0, line, radius)
 
 
 @inner
 def place_head(pegs: Array, place: int, curve: int, angle: Angle, reach: float, curves: Curves) -> None:
-    """Writes the head of a curve's chord to a place, from the tail in the first; see ``place_tail``."""
+    """Write the head of a curve's chord to ``pegs[place]``, starting
+    from the tail in ``pegs[0]``; see :func:`place_tail`.
+
+    See ``contact.record`` for the layout of ``pegs``.
+    """
     step, reals = curves.integers[curve], curves.reals[curve]
     d, alpha = reals[LENGTH], angle[0] + reals[SHIFT]
     x, y = pegs[0, PEG_X] + d * cos(alpha), pegs[0, PEG_Y] + d * sin(alpha)
@@ -211,7 +223,10 @@ def place_head(pegs: Array, place: int, curve: int, angle: Angle, reach: float, 
 def place_chord(
     pegs: Array, curve: int, angle: Angle, reach: float, line: float, features: Array, curves: Curves
 ) -> None:
-    """Writes the pegs of a curve's chord to (2, 6) places; see ``place_tail``."""
+    """Write the tail and head of a curve's chord to ``pegs[0]`` and ``pegs[1]``; see :func:`place_tail`.
+
+    See ``contact.record`` for the layout of ``pegs``, ``base.feature`` for that of ``features``.
+    """
     place_tail(pegs, curve, angle, reach, line, features, curves)
     place_head(pegs, 1, curve, angle, reach, curves)
 
@@ -220,10 +235,12 @@ def place_chord(
 def place_triple(
     pegs: Array, one: int, two: int, angle: Angle, reach: float, features: Array, curves: Curves
 ) -> None:
-    """Writes the three standing pegs of two curves with a common tail; see ``place_tail``.
+    """Write the three standing pegs of curves ``one`` and ``two``, which share their tail, to ``pegs[:3]``.
 
-    Where one curve says badly where the tail is, as beside two arcs that are nearly one chord apart, the
-    other one may say it well.
+    They are the tail and the heads of ``one`` and ``two``; see :func:`place_tail`. Where curve ``one``
+    determines the tail only to more than ``BADLY`` mm, as beside two arcs that are nearly one chord apart,
+    the tail is taken from the curve that determines it better. See ``contact.record`` for the layout of
+    ``pegs``, ``base.feature`` for that of ``features``.
     """
     place_tail(pegs, one, angle, reach, 0.0, features, curves)
     radius = pegs[0, PEG_RADIUS]
@@ -237,15 +254,19 @@ def place_triple(
 
 @inner
 def limits_errors(work: BlockWork) -> bool:
-    """Whether only fixtures up to some location error are of interest."""
+    """Return whether only fixtures up to some location error are sought (and contacts are not just
+    counted).
+    """
     return not work.counting and work.features.precision.most < inf
 
 
 @inner
 def is_far_off(angle: Angle, work: BlockWork) -> bool:
-    """Whether two and two pegs in place, just found to be a fixture, have too large a location error.
+    """Return whether the fixture of two and two pegs in place certainly has too large a location error.
 
-    Where a half turn swaps the carriers, either may turn out to be the one that stands still.
+    It must be too large whichever carrier stands still, as a half turn may swap the carriers.
+    ``work.contacts`` must hold what ``is_fixture`` has just written there. False where location errors are
+    not limited.
     """
     features, pegs = work.features, work.pegs
     if not limits_errors(work):
@@ -259,28 +280,30 @@ def is_far_off(angle: Angle, work: BlockWork) -> bool:
             swing = max(swing, pegs[k, PEG_RADIUS] / row[RADIUS])
         numbers[k] = pegs[k, PEG_FEATURE]
     length = work.limits.wrench_length
-    band, points, normals = minor_band(swing, radius, length), work.contacts[:4], work.contacts[4:]
+    band, points, normals = bound_minor_error(swing, radius, length), work.contacts[:4], work.contacts[4:]
     given = features.precision
-    return two_and_two_beyond(
+    return is_two_and_two_beyond(
         points, normals, numbers, angle, length, band, 0, given, work.triple
-    ) and two_and_two_beyond(points, normals, numbers, angle, length, band, 2, given, work.triple)
+    ) and is_two_and_two_beyond(points, normals, numbers, angle, length, band, 2, given, work.triple)
 
 
 @inner
 def add_listed(
     out: Array, count: int, standing: float, angle: Angle, reach: float, once: bool, work: BlockWork
 ) -> int:
-    """Examines the four pegs in place, and appends their record to ``out`` where it is listed.
+    """Examine the four pegs in ``work.pegs``; append their record to ``out`` if it is to be listed.
 
     Parameters
     ----------
+    out, count : (R, 19) records, of which the first ``count`` are written.
     standing : how many pegs, the first ones, are on the carrier that stands still.
     angle, reach : the orientation, and how far in radians it may be off.
-    once : whether the contacts count, where other pegs in place are the same ones.
+    once : whether to add the contacts to ``stats[CONTACTS]``; False where the same contacts are examined
+        twice.
 
     Returns
     -------
-    how many records there are, or that there is no room for another
+    New number of records, or NO_ROOM_FOR_RECORDS (-1)
     """
     pegs, limits, stats = work.pegs, work.limits, work.stats
     verdict, separation = is_fixture(
@@ -301,9 +324,11 @@ def add_listed(
 
 @inner
 def add_seat(out: Array, count: int, angle: Angle, reach: float, work: BlockWork) -> int:
-    """Appends the record of three standing pegs in place, for a search in which nothing moves.
+    """Append the record of the three standing pegs in ``work.pegs``
+    to ``out``, for a search without moving pegs.
 
-    The place of a fourth peg repeats the first one. Result as for :func:`add_listed`.
+    The fourth peg of the record repeats the first one. Return the new number of records, or
+    NO_ROOM_FOR_RECORDS (-1).
     """
     pegs = work.pegs
     work.stats[CANDIDATES] += 1
@@ -316,5 +341,5 @@ def add_seat(out: Array, count: int, angle: Angle, reach: float, work: BlockWork
 
 @inner
 def moves_nothing(features: Features) -> bool:
-    """Whether three standing pegs are sought alone, and no moving one."""
+    """Return whether only three standing pegs are sought: no feature is touched by moving pegs."""
     return features.moving[0] == features.moving[1]

@@ -20,15 +20,15 @@ from workhold.kernels.base.feature import (
     SIGN,
     X,
     Y,
-    beside_middle,
-    exact_dot,
+    compute_exact_dot,
+    find_arc_middle,
+    intersect_near_middle,
     is_shallow,
-    middle_of,
 )
 from workhold.kernels.base.tables import Limits
 from workhold.kernels.contact.location_bounds import is_beyond
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
-from workhold.kernels.contact.rules import minor_band, outward_normal
+from workhold.kernels.contact.rules import bound_minor_error, compute_outward_normal
 from workhold.kernels.curves.block_work import BlockWork, add_listed, add_seat, limits_errors, moves_nothing
 from workhold.kernels.curves.piece_bounds import HAIR
 
@@ -37,21 +37,27 @@ SPARE = 1e-6
 
 
 @inner
-def lines_between(
+def find_lines_between(
     lowest: float, highest: float, base: float, pitch_y: float, error: float
 ) -> tuple[int, int]:
-    """First and last number of the lines of holes between two heights, each known to ``error``.
+    """Return the first and last number of the rows of holes with
+    heights in [lowest, highest]; first > last for none.
 
-    Line 0 is at the height ``base``; all but the numbers is in mm.
+    Row k is at the height ``base`` + k ``pitch_y``. Heights are in mm and known to ``error``, so rows up to
+    that far outside are included.
     """
     slack = 1e-9 + error / pitch_y
     return int(ceil((lowest - base) / pitch_y - slack)), int(floor((highest - base) / pitch_y + slack))
 
 
 @inner
-def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
-    """Lowest and highest value of a . q over a feature's points q; those up to ``SPARE`` beyond an arc's
-    ends count."""
+def find_height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
+    """Return the lowest and highest value of a . q in mm over a
+    feature's points q, with a = (ax, ay) a unit vector.
+
+    Points up to ``SPARE`` mm beyond an arc's ends count as its points. See ``base.feature`` for the layout of
+    ``row``.
+    """
     if row[IS_ARC] == 0.0:
         middle, reach = ax * row[X] + ay * row[Y], row[HALF_EXTENT] * abs(ax * row[AXIS_X] + ay * row[AXIS_Y])
         return (middle - reach, middle + reach)
@@ -62,39 +68,46 @@ def height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
     if half >= pi:
         middle = ax * row[X] + ay * row[Y]
         return (middle - row[RADIUS], middle + row[RADIUS])
-    x, y = middle_of(row)
+    x, y = find_arc_middle(row)
     middle = ax * x + ay * y
-    one, two = height_beside(row, half, along, across), height_beside(row, -half, along, across)
+    one, two = (
+        compute_height_above_middle(row, half, along, across),
+        compute_height_above_middle(row, -half, along, across),
+    )
     lowest, highest = min(one, two), max(one, two)
     if abs(top) <= half:
-        highest = max(highest, height_beside(row, top, along, across))
+        highest = max(highest, compute_height_above_middle(row, top, along, across))
     if abs(top) >= pi - half:
-        lowest = min(lowest, height_beside(row, top + pi, along, across))
+        lowest = min(lowest, compute_height_above_middle(row, top + pi, along, across))
     return (middle + lowest, middle + highest)
 
 
 @inner
-def height_beside(row: Array, parameter: float, along: float, across: float) -> float:
-    """How far above its middle an arc's point at a parameter is, in a direction of parts along and square to
-    it."""
+def compute_height_above_middle(row: Array, parameter: float, along: float, across: float) -> float:
+    """Return the height in mm of an arc's point at a parameter above the arc's middle.
+
+    The direction of height has the component ``along`` on the arc's axis and ``across`` square to it. See
+    ``base.feature`` for the layout of ``row``.
+    """
     sine = sin(parameter / 2.0)
     return row[RADIUS] * (sin(parameter) * across - 2.0 * sine * sine * along)
 
 
 @inner
-def row_meets(
+def intersect_at_height(
     row: Array, ax: float, ay: float, height: float, error: float, side: float
 ) -> tuple[bool, float, float, float]:
-    """A point of a feature's carrier at a height y . q, with (ax, ay) = y; ``side`` picks one of an arc's
-    two.
+    """Return a point with height y . q = ``height`` on a feature's
+    line or circle, whether or not within its ends.
 
-    Where the feature runs square to the motion, a moving peg cannot push along it: the clamping force is at
-    most abs(n . x). Such points are left out.
+    (ax, ay) is the unit vector y; ``side`` 1 or -1 picks one of an arc's two points (a line has one, for side
+    1). Points at which a moving peg cannot clamp are left out: the clamping force is at most abs(n . x), and
+    is too small where the feature runs nearly along x. See ``base.feature`` for the layout of ``row``.
 
     Returns
     -------
-    (whether there may be one that clamps, x, y, how far in mm it may be off when the height is off by
-    ``error``)
+    (whether there may be such a point; its x and y in the part's frame in mm; how far in mm it may be off
+        when the height is off by ``error``)
     """
     if row[IS_ARC] == 0.0:
         slope = ax * row[AXIS_X] + ay * row[AXIS_Y]
@@ -103,7 +116,7 @@ def row_meets(
         s = (height - ax * row[X] - ay * row[Y]) / slope
         return (True, row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], 1.1 * error / abs(slope))
     if is_shallow(row):
-        return row_meets_shallow(row, ax, ay, height, error, side)
+        return intersect_shallow_at_height(row, ax, ay, height, error, side)
     rise = height - ax * row[X] - ay * row[Y]
     square = (row[RADIUS] - rise) * (row[RADIUS] + rise)
     # The square is off by at most 2.2 R error.
@@ -118,12 +131,15 @@ def row_meets(
 
 
 @inner
-def row_meets_shallow(
+def intersect_shallow_at_height(
     row: Array, ax: float, ay: float, height: float, error: float, side: float
 ) -> tuple[bool, float, float, float]:
-    """``row_meets`` for a shallow arc."""
-    x, y = middle_of(row)
-    along, across = ax * row[AXIS_X] + ay * row[AXIS_Y], exact_dot(ax, -ay, row[AXIS_Y], row[AXIS_X])
+    """Return the result of :func:`intersect_at_height` for a shallow arc.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
+    x, y = find_arc_middle(row)
+    along, across = ax * row[AXIS_X] + ay * row[AXIS_Y], compute_exact_dot(ax, -ay, row[AXIS_Y], row[AXIS_X])
     off, inverse = height - ax * x - ay * y, 1.0 / row[RADIUS]
     # All squares over that of the radius.
     square = across * across - inverse * off * (2.0 * along + inverse * off)
@@ -131,20 +147,22 @@ def row_meets_shallow(
     if most <= (0.5 * LEAST_CLAMPING) ** 2:
         return (False, 0.0, 0.0, 0.0)
     radius = 1.3 * error / sqrt(square) if square > 16.0 * inverse * error else 2.0 * row[RADIUS] * sqrt(most)
-    dx, dy, _, _ = beside_middle(row, ax, ay, across, off, -side)
+    dx, dy, _, _ = intersect_near_middle(row, ax, ay, across, off, -side)
     return (True, x + dx, y + dy, radius + error)
 
 
 @inner
 def write_triple(triple: Array, pegs: Array, cx: float, cy: float, features: Array, length: float) -> None:
-    """Writes what moving pegs need of three standing pegs in place to (8, 3) rows, the last three of them
-    work space. The x axis of the pegs lies along (cx, cy).
+    """Write to ``triple`` what is needed to test moving pegs against the three standing pegs ``pegs[:3]``.
 
-    Let w_i = (n_i, t_i) be the wrenches of the standing pegs and D their determinant. Rows 0 to 2 hold the
-    cross products of two of them, cyclically, with the sign of D. Let a moving peg have the wrench w. The
-    null vector's entries of the standing pegs over that of the moving peg are minus the scalar products of
-    those rows with w, over abs(D). Row 3 holds the place along x of the rightmost standing peg, the largest
-    radius of the pegs, and the largest turn of a normal by that, in radians. Row 4 holds abs(D).
+    The rows (8, 3), of which the last three are work space: let w_i = (n_i, t_i) be the wrenches of the
+    standing pegs and D their determinant. Rows 0 to 2 hold the cross products of the other two wrenches,
+    cyclically, with the sign of D. For a moving peg with wrench w, the null vector's entries of the standing
+    pegs over that of the moving peg are minus the scalar products of these rows with w, over abs(D). Row 3
+    holds the place in mm along x of the rightmost standing peg, the largest error radius of the pegs in mm,
+    and the largest turn of a normal by that, in radians. Row 4 begins with abs(D). The x axis of the pegs has
+    the direction (cx, cy) in the part's frame. See ``contact.record`` for the layout of ``pegs``,
+    ``base.feature`` for that of ``features``.
     """
     wrenches, first = triple[:3], triple[5:]
     rightmost = -np.inf
@@ -152,7 +170,7 @@ def write_triple(triple: Array, pegs: Array, cx: float, cy: float, features: Arr
     for k in range(3):
         x, y = pegs[k, PEG_X], pegs[k, PEG_Y]
         row = features[int(pegs[k, PEG_FEATURE])]
-        nx, ny = outward_normal(row, x, y)
+        nx, ny = compute_outward_normal(row, x, y)
         first[k, 0], first[k, 1], first[k, 2] = nx, ny, (x * ny - y * nx) / length
         rightmost = max(rightmost, cx * x + cy * y)
         radius = max(radius, pegs[k, PEG_RADIUS])
@@ -184,23 +202,26 @@ def may_close(
     gap: float,
     limits: Limits,
 ) -> bool:
-    """Whether a moving peg may make a fixture with three standing pegs: a quick look before ``is_fixture``.
+    """Return whether a moving peg may make a fixture with three
+    standing pegs: a quick necessary test before ``is_fixture``.
+
+    It tests the gap and the least closure margin. See ``base.feature`` for the layout of ``row``.
 
     Parameters
     ----------
-    triple : (8, 3) rows of ``write_triple``.
-    row, x, y, radius : the moving peg's feature and place.
+    triple : (8, 3) rows of :func:`write_triple`.
+    row, x, y, radius : the moving peg's feature, its centre and error radius in mm.
     cx, cy : cosine and sine of psi.
-    gap : smallest gap in mm, less the doubt of orientation.
+    gap : smallest gap in mm, reduced by the doubt about the orientation.
     """
     length = limits.wrench_length
     doubt = max(triple[3, 1], radius)
     if cx * x + cy * y - triple[3, 0] < gap - 2.0 * doubt:
         return False
-    nx, ny = outward_normal(row, x, y)
+    nx, ny = compute_outward_normal(row, x, y)
     swing = max(triple[3, 2], 0.0 if row[IS_ARC] == 0.0 else radius / row[RADIUS])
     t = (x * ny - y * nx) / length
-    band = minor_band(swing, doubt, length)
+    band = bound_minor_error(swing, doubt, length)
     determinant = triple[4, 0]
     if determinant <= band:
         return True
@@ -212,26 +233,28 @@ def may_close(
 
 
 @inner
-def closing_heights(
+def find_closing_heights(
     triple: Array, row: Array, ax: float, ay: float, error: float, length: float
 ) -> tuple[float, float]:
-    """Lowest and highest value of a . q over the points q of a straight feature where a moving peg may close.
+    """Return the lowest and highest a . q in mm over points q of a
+    straight feature where a moving peg may close.
 
-    The lowest is larger where none may. What the standing pegs take up changes evenly along the feature, and
-    must not be negative.
+    Return (inf, -inf) where none may. The forces of the standing pegs are linear in the position along the
+    feature, and must not be negative. See ``base.feature`` for the layout of ``row``.
 
     Parameters
     ----------
-    triple : (8, 3) rows of ``write_triple``.
-    ax, ay : across the rows of holes.
+    triple : (8, 3) rows of :func:`write_triple`.
+    row : a line.
+    ax, ay : unit vector across the rows of holes, in the part's frame.
     error : how far in mm heights may be off.
-    length : L in mm.
+    length : L in mm, by which moments are divided.
     """
     slope = ax * row[AXIS_X] + ay * row[AXIS_Y]
     if abs(slope) <= 0.5 * LEAST_CLAMPING:
         return (inf, -inf)
     low, high = -row[HALF_EXTENT] - SPARE, row[HALF_EXTENT] + SPARE
-    band = minor_band(triple[3, 2], max(triple[3, 1], 1.1 * error / abs(slope)), length)
+    band = bound_minor_error(triple[3, 2], max(triple[3, 1], 1.1 * error / abs(slope)), length)
     nx, ny = row[AXIS_Y], -row[AXIS_X]
     t = (row[X] * ny - row[Y] * nx) / length
     if triple[4, 0] > band:
@@ -253,16 +276,24 @@ def closing_heights(
 
 @inner
 def faces_away(row: Array, cx: float, cy: float, clamping: float, doubt: float) -> bool:
-    """Whether a moving peg cannot clamp on a feature: it is straight and faces the way that the peg would
-    push."""
+    """Return whether a moving peg cannot clamp on a feature because
+    that is straight and faces the peg's push direction.
+
+    ``clamping`` is 1 or -1 as in ``Limits``; ``doubt`` is in radians. See ``base.feature`` for the layout of
+    ``row``.
+    """
     return row[IS_ARC] == 0.0 and clamping * (row[AXIS_Y] * cx - row[AXIS_X] * cy) < -HAIR - doubt
 
 
 @inner
-def locators_beyond(angle: Angle, work: BlockWork) -> bool:
-    """Whether three standing pegs in place, see ``write_triple``, have too large a location error."""
+def are_locators_beyond(angle: Angle, work: BlockWork) -> bool:
+    """Return whether the three standing pegs in place certainly have
+    a larger location error than is of interest.
+
+    ``work.triple`` must be theirs, see :func:`write_triple`.
+    """
     triple, length = work.triple, work.limits.wrench_length
-    band = minor_band(triple[3, 2], triple[3, 1], length)
+    band = bound_minor_error(triple[3, 2], triple[3, 1], length)
     numbers = work.null
     for k in range(3):
         numbers[k] = work.pegs[k, PEG_FEATURE]
@@ -271,13 +302,13 @@ def locators_beyond(angle: Angle, work: BlockWork) -> bool:
 
 @inner
 def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: BlockWork) -> int:
-    """Tries every moving peg for the three standing pegs in place, and appends the fixtures to ``out``.
+    """Try every moving peg with the three standing pegs in ``work.pegs[:3]``; append the fixtures to ``out``.
 
-    Where nothing moves the three pegs are appended by themselves.
+    Where no pegs move, append the three standing pegs by themselves.
 
     Returns
     -------
-    how many records there are, -1 when there is no room for another
+    New number of records, or NO_ROOM_FOR_RECORDS (-1)
     """
     pegs, triple, lattice, limits, features = work.pegs, work.triple, work.lattice, work.limits, work.features
     if moves_nothing(features):
@@ -289,7 +320,7 @@ def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: Bl
     error = pegs[0, PEG_RADIUS] + 4.0 * length * reach
     gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
     write_triple(triple, pegs, cx, cy, rows, length)
-    if limits_errors(work) and locators_beyond(angle, work):
+    if limits_errors(work) and are_locators_beyond(angle, work):
         return count
     asks_closure = not work.counting and limits.pairing == 0.0
     for e in range(features.moving[0], features.moving[1]):
@@ -297,18 +328,20 @@ def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: Bl
         if not work.counting and faces_away(row, cx, cy, limits.clamping, reach):
             continue
         if asks_closure and limits.least_margin > 0.0 and row[IS_ARC] == 0.0:
-            lowest, highest = closing_heights(triple, row, -cy, cx, error, length)
+            lowest, highest = find_closing_heights(triple, row, -cy, cx, error, length)
             if lowest > highest:
                 continue
         else:
-            lowest, highest = height_range(row, -cy, cx)
-        first, last = lines_between(lowest, highest, base, pitch_y, error)
+            lowest, highest = find_height_range(row, -cy, cx)
+        first, last = find_lines_between(lowest, highest, base, pitch_y, error)
         # Nor does the side of an arc count that faces away.
         sides = 2 if work.counting or row[IS_ARC] == 0.0 else 1
         begin = 0 if sides == 2 or limits.clamping * row[SIGN] > 0.0 else 1
         for line in range(first, last + 1):
             for k in range(begin, begin + sides):
-                meets, x, y, radius = row_meets(row, -cy, cx, base + line * pitch_y, error, 1.0 - 2.0 * k)
+                meets, x, y, radius = intersect_at_height(
+                    row, -cy, cx, base + line * pitch_y, error, 1.0 - 2.0 * k
+                )
                 if not meets:
                     continue
                 if asks_closure and not may_close(triple, row, x, y, radius, cx, cy, gap, limits):

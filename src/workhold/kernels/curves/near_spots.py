@@ -1,4 +1,4 @@
-"""Which spots contacts may touch that are known to a disc, and whether locators of interest touch them."""
+"""Spots that contacts known to a disc may touch, and whether locators of interest may touch them."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from workhold.kernels.base.tables import (
     Features,
     NearSpots,
 )
-from workhold.kernels.chord.evaluation import parameter_on
+from workhold.kernels.chord.evaluation import find_parameter
 from workhold.kernels.contact.location_bounds import write_spot
-from workhold.kernels.curves.piece_bounds import tail_disc
+from workhold.kernels.curves.piece_bounds import enclose_tail
 
 # A disc that holds a contact: its middle and its radius in mm.
 Disc = tuple[float, float, float]
@@ -32,10 +32,17 @@ NEARLY_WHOLE = 3.0
 
 
 @inner
-def spots_of(row: Array, feature: int, near: NearSpots, x: float, y: float, radius: float) -> tuple[int, int]:
-    """First and past-the-last spot of a feature that a contact within ``radius`` mm of a place may touch."""
+def find_spots(
+    row: Array, feature: int, near: NearSpots, x: float, y: float, radius: float
+) -> tuple[int, int]:
+    """Return the first and past-the-last spot of a feature that a
+    contact within ``radius`` mm of (x, y) may touch.
+
+    ``row`` is the feature numbered ``feature``. Spots are numbered through all features, see ``NearSpots``.
+    See ``base.feature`` for the layout of ``row``.
+    """
     first, end, half = near.starts[feature], near.starts[feature + 1], row[HALF_EXTENT]
-    s, off = parameter_on(row, x, y), radius + ROUNDING
+    s, off = find_parameter(row, x, y), radius + ROUNDING
     if row[IS_ARC] != 0.0:
         # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
         if not off <= 0.5 * row[RADIUS] or half > NEARLY_WHOLE:
@@ -52,12 +59,17 @@ def spots_of(row: Array, feature: int, near: NearSpots, x: float, y: float, radi
 def write_piece_spots(
     piece: Array, tail_spot: Array, head_spot: Array, features: Features, curves: Curves, length: float
 ) -> tuple[Disc, Disc]:
-    """Write the spots of both contacts of a piece, and return the discs that hold them."""
+    """Write the contacts of a piece's tail and head as spots to
+    ``tail_spot`` and ``head_spot``; return their discs.
+
+    Each disc (x, y, radius) in mm holds the contact over the whole piece. ``length`` is L in mm, by which
+    moments are divided. See ``base.tables`` for the layout of ``piece``.
+    """
     number, given = int(piece[CURVE]), features.precision
     curve, tail, head = curves.reals[number], curves.integers[number, TAIL], curves.integers[number, HEAD]
     a, b = features.loose[tail], features.loose[head]
     psi, half = (piece[LOW] + piece[HIGH]) / 2.0, (piece[HIGH] - piece[LOW]) / 2.0
-    x, y, radius = tail_disc(a, b, curve, psi, half)
+    x, y, radius = enclose_tail(a, b, curve, psi, half)
     alpha, d = psi + curve[SHIFT], curve[LENGTH]
     at_x, at_y, off = x + d * cos(alpha), y + d * sin(alpha), radius + d * half
     write_spot(a, tail, x, y, radius, given, length, tail_spot)
@@ -74,15 +86,22 @@ def may_join(
     tail: Disc,
     head: Disc,
 ) -> bool:
-    """Whether contacts in two discs, on the features of ``ends``, may be those of locators of interest."""
-    first, end = spots_of(a, ends[0], near, tail[0], tail[1], tail[2])
-    begin, last = spots_of(b, ends[1], near, head[0], head[1], head[2])
+    """Return whether contacts in two discs may be those of two locators of interest.
+
+    ``tail`` is on the feature ``a`` with the number ``ends[0]``, ``head`` on ``b`` with the number
+    ``ends[1]``. See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
+    first, end = find_spots(a, ends[0], near, tail[0], tail[1], tail[2])
+    begin, last = find_spots(b, ends[1], near, head[0], head[1], head[2])
     return is_any_joined(near, first, end, begin, last)
 
 
 @inner
 def may_be_three(near: NearSpots, tail: int, head: int, third: int) -> bool:
-    """Whether three spots, the tail's first, may be those of locators of interest."""
+    """Return whether the spots of a tail, a head and a third contact may be those of locators of interest.
+
+    Where triples are not kept, only the pairs with the tail are looked up.
+    """
     if near.triples.shape[0] > 0:
         return near.triples[tail, head, third] != 0
     return near.joined[tail, head] != 0 and near.joined[tail, third] != 0
@@ -90,7 +109,9 @@ def may_be_three(near: NearSpots, tail: int, head: int, third: int) -> bool:
 
 @inner
 def is_any_joined(near: NearSpots, first: int, end: int, begin: int, last: int) -> bool:
-    """Whether any two spots of two ranges may be those of locators of interest."""
+    """Return whether a spot in [first, end) and a spot in [begin,
+    last) may be those of two locators of interest.
+    """
     for i in range(first, end):
         for j in range(begin, last):
             if near.joined[i, j] != 0:

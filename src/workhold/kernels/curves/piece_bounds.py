@@ -1,4 +1,4 @@
-"""What bounds a piece of a chord curve: discs that hold tails, edges, and directions of forces.
+"""Bounds of a piece of a chord curve: discs that hold tails, edges, and directions of forces.
 
 Glossary
 --------
@@ -65,25 +65,33 @@ from workhold.kernels.chord.coincidences import (
     CONCENTRIC,
     NONE,
     TOUCHING,
-    from_coincidence,
+    bound_misfit,
+    bound_touching_speed,
+    get_regular_radius,
     is_regular,
-    misfit,
-    regular_radius,
-    touching_speed,
+    measure_from_coincidence,
 )
-from workhold.kernels.chord.evaluation import HEIGHT, State, chord_state, parameter_on, regular_error, valued
-from workhold.kernels.chord.shallow import shallow_half
+from workhold.kernels.chord.evaluation import (
+    HEIGHT,
+    State,
+    bound_regular_error,
+    compute_chord_state,
+    evaluate_state,
+    find_parameter,
+)
+from workhold.kernels.chord.shallow import compute_shallow_half_chord
 
 
 @inner
-def tail_radius(curve: Array, state: State, reach: float) -> float:
-    """How far in mm the exact tail may be from a computed one when the orientation may be ``reach`` radians
-    off.
+def bound_tail_error(curve: Array, state: State, reach: float) -> float:
+    """Return how far in mm the exact tail may be from the computed
+    one ``state`` if psi may be ``reach`` radians off.
 
-    The tail moves at a speed of at most d / |X|. X^2 changes at a rate of at most 4 d kappa, here by no more
-    than a quarter of itself. So the speed stays below 1.16 d / |X|, and the theorem of
-    ``chord.evaluation`` holds with h <= 1 / 3. By it the tail is off by no more than 3 eta / |X|. Infinite
-    where this does not bound it, too near a tangency.
+    ``state`` is that of ``chord.evaluation.compute_chord_state``. Return inf too near a tangency, where the following
+    does not bound it. With d the chord's length, the tail moves at a speed of at most d / |X|. X^2 changes at
+    a rate of at most 4 d kappa, here by no more than a quarter of itself. So the speed stays below 1.16 d /
+    |X|, and the theorem of ``chord.evaluation`` holds with h <= 1 / 3. By it the tail is off by no more than
+    3 eta / |X|. See ``base.tables`` for the layout of ``curve``.
     """
     eta, d = curve[BACKWARD_ERROR], curve[LENGTH]
     kappa = curve[KAPPA]
@@ -95,17 +103,23 @@ def tail_radius(curve: Array, state: State, reach: float) -> float:
 
 
 @inner
-def root_error(square: float, doubt: float) -> float:
-    """Error of a root of a number that may be ``doubt`` off (negative ones count as 0)."""
+def bound_root_error(square: float, doubt: float) -> float:
+    """Return an error bound of the square root of a number that may
+    be ``doubt`` off; negative numbers count as 0.
+    """
     if square <= 0.0:
         return sqrt(doubt)
     return min(sqrt(doubt), doubt / sqrt(square))
 
 
 @inner
-def arcs_radius(a: Array, b: Array, state: State, e: float, eta: float) -> float:
-    """How far in mm a tail on an arc may be from a computed one when the chord, to another arc, is known to
-    ``e``."""
+def bound_arc_tail_error(a: Array, b: Array, state: State, e: float, eta: float) -> float:
+    """Return how far in mm a chord's tail on arc ``a`` may be from
+    the computed one, with the head on arc ``b``.
+
+    The chord is known to ``e`` mm, the tail besides only to ``eta`` mm; ``state`` is the computed chord. See
+    ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those of ``chord.evaluation``.
+    """
     gap = hypot(a[RADIUS] * state[2] - b[RADIUS] * state[4], a[RADIUS] * state[3] - b[RADIUS] * state[5])
     if gap <= 2.0 * e:
         return 2.2 * a[RADIUS]
@@ -114,71 +128,85 @@ def arcs_radius(a: Array, b: Array, state: State, e: float, eta: float) -> float
     along = (gap + (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) / gap) / 2.0
     square = (a[RADIUS] - along) * (a[RADIUS] + along)
     if is_shallow(a) or is_shallow(b):
-        square = shallow_half(a, b, state[2] * state[5] - state[3] * state[4], gap) ** 2
+        square = compute_shallow_half_chord(a, b, state[2] * state[5] - state[3] * state[4], gap) ** 2
     return (
-        shift + eta + 1.01 * root_error(square, shift * (2.0 * a[RADIUS] + shift)) + 1.6 * a[RADIUS] * e / gap
+        shift
+        + eta
+        + 1.01 * bound_root_error(square, shift * (2.0 * a[RADIUS] + shift))
+        + 1.6 * a[RADIUS] * e / gap
     )
 
 
 @inner
-def disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
-    """How far in mm tails of a curve within ``reach`` of an orientation may be from the computed one
-    there."""
+def bound_disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
+    """Return how far in mm the tails of a curve within ``reach``
+    radians of psi may be from the computed one at psi.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
+    """
     d, eta, kind = curve[LENGTH], curve[BACKWARD_ERROR], curve[COINCIDENCE]
     if kind == CONCENTRIC:
         # The chord turns about the centre; nearly along a diameter its length is known better than its place.
-        return a[RADIUS] * reach + arcs_radius(a, b, state, eta, eta)
-    radius = regular_radius(a, b, kind)
-    gamma = from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
+        return a[RADIUS] * reach + bound_arc_tail_error(a, b, state, eta, eta)
+    radius = get_regular_radius(a, b, kind)
+    gamma = measure_from_coincidence(psi + curve[SHIFT], curve[MIDDLE])
     if is_regular(kind, radius, d, gamma - reach) and is_regular(kind, radius, d, gamma + reach):
         if kind == TOUCHING:
-            off = regular_error(curve) + misfit(a, b, curve, 0.0)
-            return off + touching_speed(a, b, curve[SIDE], d) * reach
-        return regular_error(curve) + 2.6 * (d + radius) * reach
+            off = bound_regular_error(curve) + bound_misfit(a, b, curve, 0.0)
+            return off + bound_touching_speed(a, b, curve[SIDE], d) * reach
+        return bound_regular_error(curve) + 2.6 * (d + radius) * reach
     e = d * reach + eta
     if is_regular(kind, radius, d, gamma):
         # The computed chord has exactly the lengths of the coincidence, others within reach have not.
         e += EXACT
-        eta += regular_error(curve)
+        eta += bound_regular_error(curve)
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         return 1.1 * e / abs(state[2] * state[5] - state[3] * state[4])
     if a[IS_ARC] == 0.0:
         half = b[RADIUS] * (a[AXIS_X] * state[4] + a[AXIS_Y] * state[5])
-        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * b[RADIUS] + e))
+        return 2.0 * e + eta + 1.01 * bound_root_error(half * half, e * (2.0 * b[RADIUS] + e))
     if b[IS_ARC] == 0.0:
         half = a[RADIUS] * (b[AXIS_X] * state[2] + b[AXIS_Y] * state[3])
-        return 2.0 * e + eta + 1.01 * root_error(half * half, e * (2.0 * a[RADIUS] + e))
+        return 2.0 * e + eta + 1.01 * bound_root_error(half * half, e * (2.0 * a[RADIUS] + e))
     if is_shallow(a) and a[RADIUS] > b[RADIUS]:
         # Seen from the smaller circle, the contact on the larger one is known better.
         seen = (0.0, 0.0, state[4], state[5], state[2], state[3], 0.0, 0.0, 0.0, 0.0)
-        return e + arcs_radius(b, a, seen, e, eta)
-    return arcs_radius(a, b, state, e, eta)
+        return e + bound_arc_tail_error(b, a, seen, e, eta)
+    return bound_arc_tail_error(a, b, state, e, eta)
 
 
 @inner
-def tail_disc(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
-    """A disc (x, y, radius in mm) that holds the tails of a curve for all orientations within ``reach`` of
-    psi."""
-    state = chord_state(a, b, curve, psi, cos(psi), sin(psi))
-    return (state[0], state[1], disc_radius(a, b, curve, state, psi, reach + 1e-15))
+def enclose_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
+    """Return a disc (x, y, radius) in mm that holds the tails of a
+    curve for all orientations within ``reach`` of psi.
+
+    ``a`` and ``b`` are the features of tail and head, ``curve`` the reals (16,) of the curve; angles are in
+    radians. See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
+    """
+    state = compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))
+    return (state[0], state[1], bound_disc_radius(a, b, curve, state, psi, reach + 1e-15))
 
 
 @inner
-def chord_tail(
+def compute_tail(
     a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float, reach: float
 ) -> tuple[float, float, float]:
-    """The tail of a chord at an orientation with its cosine and sine, and how far in mm the exact one may be
-    from it.
+    """Return (x, y, radius) in mm of a chord's tail: the computed
+    centre, and how far the exact one may be from it.
 
-    The orientation psi is off by up to ``reach``.
+    The orientation psi, given with its cosine and sine, is off by up to ``reach`` radians. As tails that
+    count are on their feature, the radius never exceeds about the feature's size. See ``base.feature`` for
+    the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
     """
-    state = chord_state(a, b, curve, psi, cosine, sine)
-    radius = tail_radius(curve, state, reach)
+    state = compute_chord_state(a, b, curve, psi, cosine, sine)
+    radius = bound_tail_error(curve, state, reach)
     coincides = curve[COINCIDENCE] != NONE
     if coincides:
-        radius += regular_error(curve) + misfit(a, b, curve, state[2] * state[5] - state[3] * state[4])
+        radius += bound_regular_error(curve) + bound_misfit(
+            a, b, curve, state[2] * state[5] - state[3] * state[4]
+        )
     if coincides or not isfinite(radius):
-        radius = min(radius, disc_radius(a, b, curve, state, psi, reach + 1e-15))
+        radius = min(radius, bound_disc_radius(a, b, curve, state, psi, reach + 1e-15))
     # A tail that counts is on its feature.
     if a[IS_ARC] != 0.0:
         return (state[0], state[1], min(radius, 2.2 * a[RADIUS]))
@@ -188,18 +216,22 @@ def chord_tail(
 
 
 @inner
-def value_disc(
+def enclose_value(
     a: Array, b: Array, curve: Array, psi: float, reach: float, mode: float
 ) -> tuple[float, float]:
-    """A middle value of a curve for orientations within ``reach`` of psi, and how far its values may be from
-    it."""
-    x, y, radius = tail_disc(a, b, curve, psi, reach)
+    """Return a middle value of a curve for orientations within
+    ``reach`` of psi, and how far its values may be from it.
+
+    ``mode`` is HEIGHT (values in mm) or POSITION (parameter of the tail on ``a``, mm or radians). See
+    ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
+    """
+    x, y, radius = enclose_tail(a, b, curve, psi, reach)
     if mode == HEIGHT:
         return (cos(psi) * y - sin(psi) * x, radius + (abs(x) + abs(y) + radius) * reach)
     if a[IS_ARC] == 0.0:
-        return (parameter_on(a, x, y), radius)
+        return (find_parameter(a, x, y), radius)
     # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
-    return (parameter_on(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)
+    return (find_parameter(a, x, y), 1.1 * radius / a[RADIUS] if radius <= 0.5 * a[RADIUS] else TURN)
 
 
 # Rounding of an orientation in radians.
@@ -210,8 +242,11 @@ HAIR = 1e-6
 
 @inner
 def clear_edges(kept: Array) -> None:
-    """Begin the (M, 15) last edges of curves, with psi behind them; as yet there are none. They serve
-    neighbouring cells, one after the other, in one mode."""
+    """Set ``kept`` (M, 15) to NaN: no curve has a last edge yet.
+
+    A row holds the last edge (14) that was written of a member curve, then its psi. The edges serve
+    neighbouring cells, in ascending order and in one mode.
+    """
     for k in range(kept.shape[0]):
         for n in range(kept.shape[1]):
             kept[k, n] = nan
@@ -221,10 +256,14 @@ def clear_edges(kept: Array) -> None:
 def write_edge(
     edge: Array, a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float, mode: float
 ) -> None:
-    """Writes what a piece needs of a chord at one of its ends, of an orientation with its cosine and sine,
-    to a (14,) row."""
-    state = chord_state(a, b, curve, psi, cosine, sine)
-    edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = valued(
+    """Write a chord at one end of a piece to ``edge`` (14,), with the
+    columns EDGE_... and normals of ``base.tables``.
+
+    ``psi`` is the orientation in radians, given with its cosine and sine; ``mode`` is HEIGHT or POSITION. See
+    ``base.feature`` for the layout of ``a`` and ``b``.
+    """
+    state = compute_chord_state(a, b, curve, psi, cosine, sine)
+    edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = evaluate_state(
         a, b, state, cosine, sine, mode
     )
     edge[EDGE_X] = cosine * state[0] + sine * state[1]
@@ -244,12 +283,15 @@ def write_edge(
 
 @inner
 def is_farther(edge: Array, at: float, right: float, speed: float, farthest: float) -> bool:
-    """Whether the tails of a curve from an edge at psi ``at`` up to psi ``right`` all stand farther right
-    than a place in mm. The instant centre has a ``speed`` in that stretch.
+    """Return whether all tails of a curve from psi ``at`` to psi
+    ``right`` are certainly right of x = ``farthest`` in mm.
 
-    The place along x has a slope of at most |P|, and |P| grows by no more than the speed. By what a piece's
-    bound of its place sags (see ``pieces.write_steady``) it is less, so that nothing is left out here that
-    its bound would keep.
+    ``edge`` is that at psi ``at``; ``speed`` bounds that of the instant centre in between, in mm per radian.
+
+    The place along x has a slope of at most |P|, and |P| grows by no more than the speed. The test allows at
+    least the slack of a piece's own bound of its place (see ``pieces.write_steady``), so it leaves out
+    nothing that the piece's bound would keep. See ``base.tables`` for the layout of ``edge``. Symbols are
+    those of ``chord.evaluation``.
     """
     width = right - at
     center = edge[EDGE_CENTER] + edge[EDGE_CENTER_ERROR] + 2.0 * speed * width
@@ -264,17 +306,19 @@ LITTLE_TURN = 0.3
 
 
 @inner
-def front(x: float, y: float) -> float:
-    """A direction with positive x as y / (x + abs(y))."""
+def project_direction(x: float, y: float) -> float:
+    """Return y / (x + abs(y)), which encodes a direction with positive x as a number from -1 to 1."""
     return y / (x + abs(y))
 
 
 @inner
-def force_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
-    """Directions with positive x between two directions, known to ``doubt`` in radians; (1, -1) when there
-    are none.
+def find_force_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
+    """Return (low, high), the encoded directions with positive x
+    between two directions; (1, -1) when there are none.
 
-    Where it is in doubt which way round "between" is, all directions are given.
+    The directions (ax, ay) and (bx, by) are unit vectors known to ``doubt`` radians; see :func:`front` for
+    the encoding. Where they are nearly opposite, so that it is in doubt which side is "between", return
+    (-1, 1), all directions.
     """
     turn = ax * by - ay * bx
     if ax * bx + ay * by < 0.0 and abs(turn) <= doubt + DIRECTION_HAIR:
@@ -283,37 +327,44 @@ def force_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tup
     if ax <= 0.0 and bx <= 0.0:
         return (1.0, -1.0)
     if ax > 0.0 and bx > 0.0:
-        one, two = front(ax, ay), front(bx, by)
+        one, two = project_direction(ax, ay), project_direction(bx, by)
         return (min(one, two), max(one, two))
     if ax > 0.0:
-        return (front(ax, ay), 1.0) if turn > 0.0 else (-1.0, front(ax, ay))
-    return (-1.0, front(bx, by)) if turn > 0.0 else (front(bx, by), 1.0)
+        return (project_direction(ax, ay), 1.0) if turn > 0.0 else (-1.0, project_direction(ax, ay))
+    return (-1.0, project_direction(bx, by)) if turn > 0.0 else (project_direction(bx, by), 1.0)
 
 
 @inner
-def shared_force(
+def find_shared_force_range(
     ax: float, ay: float, bx: float, by: float, share: float, doubt: float
 ) -> tuple[float, float]:
-    """``force_range`` of two unit vectors when neither force is less than ``share`` of the other."""
+    """Return :func:`find_force_range` of sums of two unit vectors in which
+    neither has less than ``share`` times the other's part.
+    """
     if share <= 0.0:
-        return force_range(ax, ay, bx, by, doubt)
+        return find_force_range(ax, ay, bx, by, doubt)
     px, py, qx, qy = ax + share * bx, ay + share * by, bx + share * ax, by + share * ay
     one, two = sqrt(px * px + py * py), sqrt(qx * qx + qy * qy)
-    return force_range(px / one, py / one, qx / two, qy / two, doubt)
+    return find_force_range(px / one, py / one, qx / two, qy / two, doubt)
 
 
 @inner
-def sum_is_long(edge: Array, share: float) -> bool:
-    """Whether the sum of one normal of an edge and ``share`` of the other is at least half as long as a
-    normal."""
+def is_sum_long(edge: Array, share: float) -> bool:
+    """Return whether one normal of an edge plus ``share`` times its other normal is at least 0.5 long.
+
+    See ``base.tables`` for the layout of ``edge``.
+    """
     cosine = edge[TAIL_NORMAL_X] * edge[HEAD_NORMAL_X] + edge[TAIL_NORMAL_Y] * edge[HEAD_NORMAL_Y]
     return 1.0 + 2.0 * share * cosine + share * share >= 0.25
 
 
 @inner
-def largest_turn(low: Array, high: Array) -> float:
-    """How far in radians the normals of a piece turn from end to end, at most, when they turn by less than
-    1."""
+def bound_normal_turn(low: Array, high: Array) -> float:
+    """Return an upper bound in radians of the angle between the normals at both ends of a piece.
+
+    ``low`` and ``high`` are the edges. The bound holds when the normals turn by less than 1 radian. See
+    ``base.tables`` for the layout of ``low`` and ``high``.
+    """
     tail_x, tail_y = high[TAIL_NORMAL_X] - low[TAIL_NORMAL_X], high[TAIL_NORMAL_Y] - low[TAIL_NORMAL_Y]
     head_x, head_y = high[HEAD_NORMAL_X] - low[HEAD_NORMAL_X], high[HEAD_NORMAL_Y] - low[HEAD_NORMAL_Y]
     # A chord of up to 1 radian is no shorter than 0.95 times its arc.
@@ -322,19 +373,23 @@ def largest_turn(low: Array, high: Array) -> float:
 
 @inner
 def write_force_directions(row: Array, low: Array, high: Array, share: float, turned: float) -> None:
-    """Writes the directions of the forces of a piece's pegs, from the normals at its ends.
+    """Write enclosures of the force directions of a piece's pegs, from the normals at its ends, to ``row``.
+
+    The columns are RIGHTWARD_LOW to LEFTWARD_HIGH; ``low`` and ``high`` are the edges. ``turned`` bounds in
+    radians how far a normal sags from its interpolation between the ends.
 
     Inside a curve X keeps its sign, so the normals do not pass through opposite directions. The lowest and
     the highest direction between the forces are where one of them is at an end of the piece, or square to x.
-    So the hull of both ends is given, widened by as much as directions may sag between them. A normal sags by
-    no more than ``turned``. With a ``share`` (see ``shared_force``) sums p of two normals are meant. Normals
-    turn at a rate that changes by at most 8 turned / w^2, so w times the rate is at most the turn from end to
-    end and 4 turned. Then abs(p'') w^2 / 8 is at most the square of that over 4 and 2 turned, by less than
-    0.17. So p, nowhere shorter than 0.4, is seen under 2.6 times that.
+    So the hull of both ends is given, widened by as much as directions may sag between them. With a ``share``
+    (see :func:`find_shared_force_range`) the directions are of sums p of two normals. Normals turn at a rate that
+    changes by at most 8 turned / w^2, so w times the rate is at most the turn from end to end and 4 turned.
+    Then abs(p'') w^2 / 8 is at most the square of that over 4 and 2 turned, by less than 0.17. So p, nowhere
+    shorter than 0.4, is seen under 2.6 times that. See ``base.tables`` for the layout of ``row``, ``low`` and
+    ``high``. Symbols are those of ``chord.evaluation``.
     """
     write_hull(row, low, high, 0.0, turned)
-    turn = largest_turn(low, high) + 4.0 * turned
-    if share <= 0.0 or turn > LITTLE_TURN or not (sum_is_long(low, share) and sum_is_long(high, share)):
+    turn = bound_normal_turn(low, high) + 4.0 * turned
+    if share <= 0.0 or turn > LITTLE_TURN or not (is_sum_long(low, share) and is_sum_long(high, share)):
         return
     wide = row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH], row[LEFTWARD_LOW], row[LEFTWARD_HIGH]
     write_hull(row, low, high, share, 2.6 * (2.0 * turned + turn * turn / 4.0))
@@ -351,14 +406,18 @@ def write_force_directions(row: Array, low: Array, high: Array, share: float, tu
 
 @inner
 def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) -> None:
-    """Writes the hull of the forces (see ``shared_force``) at both ends of a piece, widened for a ``doubt``
-    of directions."""
+    """Write the hull of the force directions at both ends of a piece,
+    widened for a ``doubt`` in radians, to ``row``.
+
+    The columns are RIGHTWARD_LOW to LEFTWARD_HIGH; (2, -2) stands for no directions, see
+    :func:`find_shared_force_range`. See ``base.tables`` for the layout of ``row``, ``low`` and ``high``.
+    """
     at_ends, between = 2.0 * doubt, 4.0 * doubt + DIRECTION_HAIR
     for k in range(2):
         # Pegs push against the outward normals: rightward as given, leftward as the opposite.
         sign = -1.0 if k == 0 else 1.0
-        bottom, top = edge_force(low, sign, share, at_ends)
-        first, last = edge_force(high, sign, share, at_ends)
+        bottom, top = find_edge_force_range(low, sign, share, at_ends)
+        first, last = find_edge_force_range(high, sign, share, at_ends)
         row[RIGHTWARD_LOW + 2 * k] = min(bottom, first) - between
         row[RIGHTWARD_HIGH + 2 * k] = max(top, last) + between
         if bottom > top and first > last:
@@ -368,13 +427,21 @@ def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) 
 
 
 @inner
-def edge_force(edge: Array, sign: float, share: float, doubt: float) -> tuple[float, float]:
-    """``shared_force`` of the normals of an edge, times a sign."""
+def find_edge_force_range(edge: Array, sign: float, share: float, doubt: float) -> tuple[float, float]:
+    """Return :func:`find_shared_force_range` of the normals of an edge, both multiplied by ``sign``.
+
+    See ``base.tables`` for the layout of ``edge``.
+    """
     ax, ay = sign * edge[TAIL_NORMAL_X], sign * edge[TAIL_NORMAL_Y]
-    return shared_force(ax, ay, sign * edge[HEAD_NORMAL_X], sign * edge[HEAD_NORMAL_Y], share, doubt)
+    return find_shared_force_range(
+        ax, ay, sign * edge[HEAD_NORMAL_X], sign * edge[HEAD_NORMAL_Y], share, doubt
+    )
 
 
 @inner
 def write_all_force_directions(row: Array) -> None:
-    """Writes that a piece's pegs may push in any direction."""
+    """Set the force directions in the row of a piece to all directions.
+
+    See ``base.tables`` for the layout of ``row``.
+    """
     row[RIGHTWARD_LOW], row[RIGHTWARD_HIGH], row[LEFTWARD_LOW], row[LEFTWARD_HIGH] = -1.0, 1.0, -1.0, 1.0

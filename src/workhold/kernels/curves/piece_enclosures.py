@@ -1,4 +1,4 @@
-"""What encloses a piece of a chord curve: its second derivative, and so its value and its pegs' places.
+"""Enclosures of a piece of a chord curve: of its second derivative, its value and its pegs' places.
 
 Second derivatives: with P the instant centre and K >= |P'| (see ``stretches``)
 
@@ -68,8 +68,8 @@ from workhold.kernels.chord.stretches import (
 from workhold.kernels.curves.piece_bounds import (
     DIRECTION_HAIR,
     SAME,
-    tail_disc,
-    value_disc,
+    enclose_tail,
+    enclose_value,
     write_all_force_directions,
     write_force_directions,
 )
@@ -79,13 +79,23 @@ MOST_TURN = 1.0
 
 
 @inner
-def second_derivative_beside(
+def enclose_second_derivative_beside(
     stretch: Array, a: Array, d: float, reach: float, low: float, high: float, mode: float
 ) -> tuple[float, float]:
-    """Enclosure of the second derivative beside a tangency, one of whose bounds is infinite.
+    """Return (low, high) bounds of a curve's second derivative beside
+    a tangency; one of them or both are infinite.
 
-    X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``;
-    X^3 s'' = -X^3 P' . r_a.
+    X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``; X^3 s'' = -X^3
+    P' . r_a. See ``base.feature`` for the layout of ``a``.
+
+    Parameters
+    ----------
+    stretch : (13,), see ``chord.stretches``.
+    a : feature of the tail.
+    d : length of the chord in mm.
+    reach : bound in mm of |u|, the distance of tails from the part's origin.
+    low, high : range of psi in radians.
+    mode : HEIGHT for h, POSITION for s.
     """
     cube = stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS] * stretch[LARGEST_CROSS]
     if mode == HEIGHT:
@@ -111,9 +121,11 @@ def second_derivative_beside(
 
 
 @inner
-def largest_part(one_x: float, one_y: float, two_x: float, two_y: float) -> float:
-    """Largest size of the part along x of a unit vector that turns evenly from one to another, less than
-    half way round."""
+def find_largest_part(one_x: float, one_y: float, two_x: float, two_y: float) -> float:
+    """Return the largest absolute x component of a unit vector that turns evenly from ``one`` to ``two``.
+
+    It turns by less than half a turn.
+    """
     if one_y * two_y <= 0.0:
         return 1.0
     return max(abs(one_x), abs(two_x))
@@ -131,7 +143,20 @@ def write_steady(
     share: float,
     mode: float,
 ) -> None:
-    """Writes the enclosures of a piece whose instant centre moves at a bounded speed."""
+    """Write the enclosures of a piece whose instant centre moves at a bounded speed to its row (24,).
+
+    They are the columns from SECOND_DERIVATIVE_LOW on that follow from the values and slopes at both ends,
+    which must be written already; force directions only in the mode HEIGHT. See ``base.tables`` for the
+    layout of ``row``, ``curve``, ``low`` and ``high``, ``base.feature`` for that of ``a``.
+
+    Parameters
+    ----------
+    a, curve : feature of the tail, and reals of the curve.
+    low, high : edges of the piece.
+    stretch : (13,) of the curve, see ``chord.stretches``.
+    width : range of psi in radians.
+    share : see ``piece_bounds.find_shared_force_range``.
+    """
     speed, sag = stretch[SPEED], width * width / 8.0
     error = max(low[EDGE_ERROR], high[EDGE_ERROR])
     with_backward_error = max(low[EDGE_CENTER_ERROR], high[EDGE_CENTER_ERROR])
@@ -144,10 +169,10 @@ def write_steady(
         # x . P' by its parts along the contact directions, which have little along x on a chord along a line.
         tail = head = 1.0
         if turns_little:
-            tail = largest_part(
+            tail = find_largest_part(
                 low[TAIL_NORMAL_X], low[TAIL_NORMAL_Y], high[TAIL_NORMAL_X], high[TAIL_NORMAL_Y]
             )
-            head = largest_part(
+            head = find_largest_part(
                 low[HEAD_NORMAL_X], low[HEAD_NORMAL_Y], high[HEAD_NORMAL_X], high[HEAD_NORMAL_Y]
             )
         swing = (stretch[PART_A] * (tail + turned) + stretch[PART_B] * (head + turned)) / stretch[LEAST_CUBE]
@@ -184,30 +209,38 @@ def write_beside(
     tangent_high: float,
     mode: float,
 ) -> None:
-    """Writes the enclosures of a piece beside a tangency; the tangency is at an end whose error is not 0."""
+    """Write the enclosures of a piece beside a tangency, and values
+    and slopes at a tangent end, to its row (24,).
+
+    ``tangent_low`` and ``tangent_high`` are the errors in radians of the ends; the tangency is at an end
+    whose error is not 0. See ``base.tables`` for the layout of ``row`` and ``curve``, ``base.feature`` for
+    that of ``a`` and ``b``, ``chord.stretches`` for that of ``stretch``.
+    """
     middle = (row[LOW] + row[HIGH]) / 2.0
     # The end at a tangency may lie a hair beyond.
     reach = (row[HIGH] - row[LOW]) / 2.0 + max(tangent_low, tangent_high)
-    x, y, radius = tail_disc(a, b, curve, middle, reach)
+    x, y, radius = enclose_tail(a, b, curve, middle, reach)
     size = hypot(x, y) + radius
-    row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH] = second_derivative_beside(
+    row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH] = enclose_second_derivative_beside(
         stretch, a, curve[LENGTH], size, row[LOW], row[HIGH], mode
     )
     # Where the branches meet the slope is infinite, with the sign the second derivative gives it.
     if tangent_low > 0.0:
-        row[SLOPE_LOW], row[SLOPE_ERROR_LOW] = end_slope(
+        row[SLOPE_LOW], row[SLOPE_ERROR_LOW] = compute_end_slope(
             row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH], -1.0
         )
     if tangent_high > 0.0:
-        row[SLOPE_HIGH], row[SLOPE_ERROR_HIGH] = end_slope(
+        row[SLOPE_HIGH], row[SLOPE_ERROR_HIGH] = compute_end_slope(
             row[SECOND_DERIVATIVE_LOW], row[SECOND_DERIVATIVE_HIGH], 1.0
         )
     # There, or nearly there, the value is bounded by a disc, a hair beyond the end included.
     if tangent_low > 0.0 or not isfinite(row[VALUE_ERROR_LOW]):
-        row[VALUE_LOW], row[VALUE_ERROR_LOW] = value_disc(a, b, curve, row[LOW], tangent_low + SAME, mode)
+        row[VALUE_LOW], row[VALUE_ERROR_LOW] = enclose_value(a, b, curve, row[LOW], tangent_low + SAME, mode)
     if tangent_high > 0.0 or not isfinite(row[VALUE_ERROR_HIGH]):
-        row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = value_disc(a, b, curve, row[HIGH], tangent_high + SAME, mode)
-    value, doubt = value_disc(a, b, curve, middle, reach, mode)
+        row[VALUE_HIGH], row[VALUE_ERROR_HIGH] = enclose_value(
+            a, b, curve, row[HIGH], tangent_high + SAME, mode
+        )
+    value, doubt = enclose_value(a, b, curve, middle, reach, mode)
     row[VALUE_LEAST], row[VALUE_MOST] = value - doubt, value + doubt
     place, doubt = cos(middle) * x + sin(middle) * y, radius + size * reach + DIRECTION_HAIR
     row[X_STANDING], row[X_MOVING] = place - doubt, place + doubt
@@ -217,11 +250,14 @@ def write_beside(
 
 
 @inner
-def end_slope(
+def compute_end_slope(
     second_derivative_low: float, second_derivative_high: float, side: float
 ) -> tuple[float, float]:
-    """Slope at a tangency and its error: infinite, with the sign the second derivative gives it (side -1 at
-    the low end, +1 at the high end), or unknown."""
+    """Return the slope at a tangency and its error.
+
+    The slope is inf or -inf (error 0), with the sign that the second derivative determines, or (0, inf) where
+    that sign is unknown. ``side`` is -1 at the low end of the piece and 1 at the high end.
+    """
     if second_derivative_low >= 0.0:
         return (side * inf, 0.0)
     if second_derivative_high <= 0.0:

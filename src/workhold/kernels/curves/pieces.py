@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from workhold.kernels.base.compiling import Array, IntArray, inner
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, compute_local_size
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     COLUMN_STEP,
@@ -52,14 +52,18 @@ from workhold.kernels.base.tables import (
     X_STANDING,
     Curves,
 )
-from workhold.kernels.chord.evaluation import POSITION, curve_value
+from workhold.kernels.chord.evaluation import POSITION, evaluate_curve
 from workhold.kernels.chord.stretches import (
     PARTS,
     SPEED,
     STRETCH_HIGH,
 )
 from workhold.kernels.curves.piece_bounds import is_farther, write_edge
-from workhold.kernels.curves.piece_enclosures import second_derivative_beside, write_beside, write_steady
+from workhold.kernels.curves.piece_enclosures import (
+    enclose_second_derivative_beside,
+    write_beside,
+    write_steady,
+)
 
 
 class PieceCell(NamedTuple):
@@ -69,8 +73,8 @@ class PieceCell(NamedTuple):
     ----------
     low, high : psi in radians.
     pitch_x : column pitch in mm.
-    share : see ``shared_force``.
-    mode : ``HEIGHT`` or ``POSITION``.
+    share : see ``piece_bounds.find_shared_force_range``.
+    mode : ``HEIGHT`` or ``POSITION``, the value of the curves.
     farthest : pieces whose rightmost peg stands farther right than this, in mm, may be left out.
     edges : (2, 14) work space.
     """
@@ -87,8 +91,8 @@ class PieceCell(NamedTuple):
 
 
 @inner
-def unwrapped(value: float, near: float) -> float:
-    """An angle moved by whole turns to be nearest to another."""
+def unwrap_angle(value: float, near: float) -> float:
+    """Return an angle in radians shifted by whole turns to be nearest to another, ``near``."""
     return value + TURN * floor((near - value) / TURN + 0.5)
 
 
@@ -105,15 +109,19 @@ def add_pieces(
     cell: PieceCell,
     kept: Array,
 ) -> int:
-    """Appends the pieces of one curve over [low, high] to ``out``, which has room for one for each stretch,
-    and returns their new number.
+    """Append the pieces of one curve over [low, high] to ``out`` (P, 24); return the new number of pieces.
+
+    ``out`` must have room for one piece for each stretch of the curve. See ``base.feature`` for the layout of
+    ``features``, ``piece_bounds.clear_edges`` for that of ``kept``.
 
     Parameters
     ----------
+    count : number of pieces in ``out`` so far.
+    index : of the curve.
     low, high : psi in radians, inside the curve's range and inside the cell.
     base : psi at the low end of the curve's range.
-    kept : (15,) the last edge that was written of the curve, and psi there: where a cell ends its neighbour
-        begins.
+    kept : (15,) the last edge that was written of the curve, then its psi: a cell begins where the one before
+        it ends. Updated in place.
     """
     integers, stretches, curve = curves.integers, curves.stretches, curves.reals[index]
     a, b = features[integers[index, TAIL]], features[integers[index, HEAD]]
@@ -122,7 +130,7 @@ def add_pieces(
     step = integers[index, COLUMN_STEP] * cell.pitch_x
     span = curve[TO] - curve[FROM]
     # No tail is farther from the centre of the part than this.
-    size = local_size(a) + a[HALF_EXTENT]
+    size = compute_local_size(a) + a[HALF_EXTENT]
     at_low, at_high = cell.edges[0], cell.edges[1]
     for n in range(EDGE_LENGTH):
         at_low[n] = kept[n]
@@ -140,7 +148,9 @@ def add_pieces(
             continue
         if stretch[PARTS] > 0.0:
             # Where the whole stretch shows no sign of the second derivative, its parts, which follow, do.
-            second_derivatives = second_derivative_beside(stretch, a, curve[LENGTH], size, left, right, mode)
+            second_derivatives = enclose_second_derivative_beside(
+                stretch, a, curve[LENGTH], size, left, right, mode
+            )
             if second_derivatives[0] < 0.0 < second_derivatives[1]:
                 continue
         tangent_low = curve[TANGENT_FROM] if left <= base else 0.0
@@ -192,13 +202,17 @@ def add_pieces(
 
 @inner
 def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
-    """Brings the positions at both ends of a piece on a whole circle to the turn of its inside."""
+    """Shift the positions at both ends of a piece on a whole circle
+    in place, to the turn of the positions in between.
+
+    See ``base.tables`` for the layout of ``row`` and ``curve``, ``base.feature`` for that of ``a`` and ``b``.
+    """
     width = row[HIGH] - row[LOW]
     for k in range(2):
         psi = row[LOW] + width / 64.0 if k == 0 else row[HIGH] - width / 64.0
-        middle = curve_value(a, b, curve, psi, POSITION)[0]
+        middle = evaluate_curve(a, b, curve, psi, POSITION)[0]
         column = VALUE_LOW if k == 0 else VALUE_HIGH
-        row[column] = unwrapped(row[column], middle)
+        row[column] = unwrap_angle(row[column], middle)
 
 
 @inner
@@ -211,7 +225,11 @@ def add_members(
     cell: PieceCell,
     kept: Array,
 ) -> int:
-    """Append the pieces of curves, and return their number, -1 when there may be no room for all of one."""
+    """Append the pieces of the curves ``members`` inside a cell to ``out`` (P, 24).
+
+    Return the new number of pieces, or -1 when there may not be room for all pieces of one curve. ``kept``
+    (M, 15) is described at ``piece_bounds.clear_edges``. See ``base.feature`` for the layout of ``features``.
+    """
     integers, reals = curves.integers, curves.reals
     for n in range(members.shape[0]):
         index = members[n]
@@ -244,7 +262,10 @@ def write_pieces(
     edges: Array,
     out: Array,
 ) -> int:
-    """Write the pieces of curves inside one cell, and return how many there are, -1 when there is no room.
+    """Write the pieces of curves inside one cell to ``out``; return
+    their number, or -1 when there is no room.
+
+    See ``base.feature`` for the layout of ``features``.
 
     Parameters
     ----------
@@ -254,11 +275,11 @@ def write_pieces(
     pitch_x : column pitch in mm.
     least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m,
         each is at least m / (1 - 3 m) of any other.
-    mode : ``HEIGHT`` or ``POSITION``.
+    mode : ``HEIGHT`` or ``POSITION``, the value of the curves.
     farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.
-    kept : of the members, see ``piece_bounds.clear_edges``.
+    kept : (M, 15) of the members, see ``piece_bounds.clear_edges``.
     edges : (2, 14) work space.
-    out : (P, 24) receives the pieces in the order of the curves.
+    out : (P, 24) receives the pieces in the order of the curves; columns in ``base.tables``.
     """
     share = least_margin / (1.0 - 3.0 * least_margin)
     cell = PieceCell(

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from workhold.kernels.base.compiling import Array, inner
-from workhold.kernels.base.interval import slope_range, value_bounds
+from workhold.kernels.base.interval import bound_values, enclose_slope
 from workhold.kernels.base.tables import (
     CURVE,
     HEAD,
@@ -38,8 +38,8 @@ from workhold.kernels.base.tables import (
     VALUE_LOW,
     Curves,
 )
-from workhold.kernels.chord.evaluation import chord_state, valued
-from workhold.kernels.curves.piece_bounds import SAME, value_disc
+from workhold.kernels.chord.evaluation import compute_chord_state, evaluate_state
+from workhold.kernels.curves.piece_bounds import SAME, enclose_value
 
 # Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is
 # then below ``conventions.LEAST_CLAMPING`` throughout.
@@ -66,25 +66,25 @@ ROUNDINGS = 4.0 * 1.2e-16
 
 
 @inner
-def value_turned(
+def evaluate_at_angle(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float, float, float]:
     """Return value and slope of a curve of the table at an orientation, whose cosine and sine two curves
     share, and bounds of their errors (that of the slope may be infinite)."""
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     row = curves.reals[curve]
-    state = chord_state(a, b, row, psi, cosine, sine)
-    value, slope, error, spread = valued(a, b, state, cosine, sine, mode)
+    state = compute_chord_state(a, b, row, psi, cosine, sine)
+    value, slope, error, spread = evaluate_state(a, b, state, cosine, sine, mode)
     if not isfinite(error):
-        value, error = value_disc(a, b, row, psi, SAME, mode)
+        value, error = enclose_value(a, b, row, psi, SAME, mode)
     return value, slope, error, spread
 
 
 @inner
-def first_guess(
+def guess_root(
     low: float, high: float, f_low: float, f_high: float, slope_low: float, slope_high: float
 ) -> float:
-    """Where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the
+    """Return where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the
     straight line where its slopes vary too much for that."""
     width, rise = high - low, f_high - f_low
     along = -f_low / rise
@@ -129,8 +129,8 @@ def solve(
         if not low < psi < high:
             psi = (low + high) / 2.0
         cosine, sine = cos(psi), sin(psi)
-        value_one, slope_one, error_one, _ = value_turned(psi, cosine, sine, one, features, curves, mode)
-        value_two, slope_two, error_two, _ = value_turned(psi, cosine, sine, two, features, curves, mode)
+        value_one, slope_one, error_one, _ = evaluate_at_angle(psi, cosine, sine, one, features, curves, mode)
+        value_two, slope_two, error_two, _ = evaluate_at_angle(psi, cosine, sine, two, features, curves, mode)
         rest = value_two - value_one - target
         error = error_one + error_two + ROUNDINGS * (abs(value_one) + abs(value_two) + abs(target))
         # Nothing is gained where rounding is the larger part of what is left.
@@ -153,34 +153,34 @@ def solve(
 
 
 @inner
-def targets(low: float, high: float, offset: float, period: float) -> tuple[int, int]:
-    """First and last k with offset + k period in a closed range; a period of 0 stands for k = 0 alone."""
+def find_targets(low: float, high: float, offset: float, period: float) -> tuple[int, int]:
+    """Return the first and last k with offset + k period in a closed range; a period of 0 stands for k = 0 alone."""
     if period == 0.0:
         return (0, 0) if low <= offset <= high else (1, 0)
     return (int(ceil((low - offset) / period)), int(floor((high - offset) / period)))
 
 
 @inner
-def disc_bounds(
+def bound_by_disc(
     low: float, high: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float]:
-    """Bounds of a curve's values over a range from a disc that holds its chords, whatever its slopes."""
+    """Return bounds of a curve's values over a range from a disc that holds its chords, whatever its slopes."""
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     middle, reach = low + (high - low) / 2.0, (high - low) / 2.0 + SAME
-    value, radius = value_disc(a, b, curves.reals[curve], middle, reach, mode)
+    value, radius = enclose_value(a, b, curves.reals[curve], middle, reach, mode)
     return (value - radius, value + radius)
 
 
 @inner
-def value_between(piece: Array, psi: float) -> float:
-    """Linear interpolation of a piece's value."""
+def interpolate_value(piece: Array, psi: float) -> float:
+    """Return a piece's value, interpolated linearly."""
     along = (psi - piece[LOW]) / (piece[HIGH] - piece[LOW])
     return piece[VALUE_LOW] + along * (piece[VALUE_HIGH] - piece[VALUE_LOW])
 
 
 @inner
-def sag(piece: Array) -> float:
-    """How far a steady piece may be from its linear interpolation, by its second derivative and by the errors
+def bound_sag(piece: Array) -> float:
+    """Return how far a steady piece may be from its linear interpolation, by its second derivative and by the errors
     at its ends."""
     width = piece[HIGH] - piece[LOW]
     return piece[SECOND_DERIVATIVE_HIGH] * width * width / 8.0 + max(
@@ -192,10 +192,10 @@ def sag(piece: Array) -> float:
 def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
     """Whether f may take a target, as seen from the ends of two steady pieces alone."""
     low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
-    doubt = sag(first) + sag(second) + HAIR
-    f_low = value_between(second, low) - value_between(first, low)
-    f_high = value_between(second, high) - value_between(first, high)
-    k, last = targets(min(f_low, f_high) - doubt, max(f_low, f_high) + doubt, offset, period)
+    doubt = bound_sag(first) + bound_sag(second) + HAIR
+    f_low = interpolate_value(second, low) - interpolate_value(first, low)
+    f_high = interpolate_value(second, high) - interpolate_value(first, high)
+    k, last = find_targets(min(f_low, f_high) - doubt, max(f_low, f_high) + doubt, offset, period)
     return k <= last
 
 
@@ -220,7 +220,7 @@ class Span(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """What is asked of two pieces, see :func:`crossings`."""
+    """What is asked of two pieces, see :func:`write_crossings`."""
 
     first: Array
     second: Array
@@ -274,11 +274,11 @@ def read_span(row: Array) -> Span:
 
 
 @inner
-def point_at(
+def evaluate_point(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> CurvePoint:
     """Return a curve at an orientation of known cosine and sine."""
-    value, slope, error, slope_error = value_turned(psi, cosine, sine, curve, features, curves, mode)
+    value, slope, error, slope_error = evaluate_at_angle(psi, cosine, sine, curve, features, curves, mode)
     return CurvePoint(value, slope, error, slope_error)
 
 
@@ -292,7 +292,7 @@ def is_inside(psi: float, end: float, slope: float) -> bool:
 
 
 @inner
-def point_of_piece(psi: float, piece: Array, at_low: bool, asked: Crossing) -> CurvePoint:
+def make_point_of_piece(psi: float, piece: Array, at_low: bool, asked: Crossing) -> CurvePoint:
     """Return a piece's curve at an orientation, which may be the low or the high end of the piece."""
     end = piece[LOW] if at_low else piece[HIGH]
     point = (
@@ -303,22 +303,24 @@ def point_of_piece(psi: float, piece: Array, at_low: bool, asked: Crossing) -> C
         )
     )
     if is_inside(psi, end, point.slope):
-        point = point_at(psi, cos(psi), sin(psi), int(piece[CURVE]), asked.features, asked.curves, asked.mode)
+        point = evaluate_point(
+            psi, cos(psi), sin(psi), int(piece[CURVE]), asked.features, asked.curves, asked.mode
+        )
     return point
 
 
 @inner
-def slopes_over(span: Span, first: Array, second: Array) -> Slopes:
+def bound_slopes(span: Span, first: Array, second: Array) -> Slopes:
     """Return bounds of the slopes of two pieces over a span, errors included."""
     width = span.high - span.low
-    one_low, one_high = slope_range(
+    one_low, one_high = enclose_slope(
         span.one_low.slope,
         span.one_high.slope,
         first[SECOND_DERIVATIVE_LOW],
         first[SECOND_DERIVATIVE_HIGH],
         width,
     )
-    two_low, two_high = slope_range(
+    two_low, two_high = enclose_slope(
         span.two_low.slope,
         span.two_high.slope,
         second[SECOND_DERIVATIVE_LOW],
@@ -341,7 +343,7 @@ def write_monotone_roots(
     lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
     bottom, top = min(f_low, f_high) - error, max(f_low, f_high) + error
     steepness = max(lowest, -highest)
-    k, last = targets(bottom, top, asked.offset, asked.period)
+    k, last = find_targets(bottom, top, asked.offset, asked.period)
     if last - k >= roots.shape[0] - found:
         return -1
     low, high = span.low, span.high
@@ -349,7 +351,7 @@ def write_monotone_roots(
     slope_high = span.two_high.slope - span.one_high.slope
     while k <= last:
         target = asked.offset + k * asked.period
-        start = first_guess(low, high, f_low - target, f_high - target, slope_low, slope_high)
+        start = guess_root(low, high, f_low - target, f_high - target, slope_low, slope_high)
         psi, rest = solve(
             low,
             high,
@@ -375,15 +377,15 @@ def write_monotone_roots(
 
 
 @inner
-def bounds_over(
+def bound_span(
     span: Span, slopes: Slopes, error: float, splits: int, asked: Crossing
 ) -> tuple[float, float, float]:
     """Return bounds of f over a span, and the width in radians below which it is split no further."""
     low, high, width = span.low, span.high, span.high - span.low
-    bottom1, top1 = value_bounds(
+    bottom1, top1 = bound_values(
         span.one_low.value, span.one_high.value, slopes.one_low, slopes.one_high, width
     )
-    bottom2, top2 = value_bounds(
+    bottom2, top2 = bound_values(
         span.two_low.value, span.two_high.value, slopes.two_low, slopes.two_high, width
     )
     # Where a curve is steep, as beside a tangency, chords move far over the narrowest range.
@@ -394,10 +396,10 @@ def bounds_over(
     blind1 = not (isfinite(bottom1) and isfinite(top1))
     blind2 = not (isfinite(bottom2) and isfinite(top2))
     if width <= WIDEST_DISC and (blind1 or splits >= MANY_SPLITS):
-        least, most = disc_bounds(low, high, asked.one, asked.features, asked.curves, asked.mode)
+        least, most = bound_by_disc(low, high, asked.one, asked.features, asked.curves, asked.mode)
         bottom1, top1 = (least, most) if blind1 else (max(bottom1, least), min(top1, most))
     if width <= WIDEST_DISC and (blind2 or splits >= MANY_SPLITS):
-        least, most = disc_bounds(low, high, asked.two, asked.features, asked.curves, asked.mode)
+        least, most = bound_by_disc(low, high, asked.two, asked.features, asked.curves, asked.mode)
         bottom2, top2 = (least, most) if blind2 else (max(bottom2, least), min(top2, most))
     if width <= WIDEST_DISC and (blind1 or blind2):
         smallest = NARROWEST_DISC
@@ -406,7 +408,7 @@ def bounds_over(
     if isfinite(lowest) or isfinite(highest):
         f_low = span.two_low.value - span.one_low.value
         f_high = span.two_high.value - span.one_high.value
-        below, above = value_bounds(f_low, f_high, lowest, highest, width)
+        below, above = bound_values(f_low, f_high, lowest, highest, width)
         bottom, top = max(bottom, below - error), min(top, above + error)
     return bottom, top, smallest
 
@@ -437,7 +439,7 @@ def write_wide_roots(span: Span, first: int, last: int, roots: Array, found: int
 
 
 @inner
-def middle_of(span: Span) -> float:
+def find_split_point(span: Span) -> float:
     """Return where a span is split: nearer to an end at which a slope is infinite."""
     low, high = span.low, span.high
     width = high - low
@@ -449,7 +451,7 @@ def middle_of(span: Span) -> float:
 
 
 @inner
-def crossings(
+def write_crossings(
     first: Array,
     second: Array,
     features: Array,
@@ -466,7 +468,7 @@ def crossings(
     Parameters
     ----------
     first, second : (24,) pieces.
-    mode : which value of the curves is compared, see ``curve_value``.
+    mode : which value of the curves is compared, see ``evaluate_curve``.
     offset, period : targets are offset + k period for whole k; a period of 0 allows k = 0 only.
     flat : crossings at which the slope of f is no steeper than this are of no interest, and may be left out.
     stack, roots : (STACK_DEPTH, STACK_LENGTH) and (MOST_ROOTS, 3) work space.
@@ -485,10 +487,10 @@ def crossings(
     span = Span(
         low,
         high,
-        point_of_piece(low, first, True, asked),
-        point_of_piece(low, second, True, asked),
-        point_of_piece(high, first, False, asked),
-        point_of_piece(high, second, False, asked),
+        make_point_of_piece(low, first, True, asked),
+        make_point_of_piece(low, second, True, asked),
+        make_point_of_piece(high, first, False, asked),
+        make_point_of_piece(high, second, False, asked),
     )
     rounding = ROUNDINGS * (
         abs(span.one_low.value)
@@ -499,7 +501,7 @@ def crossings(
     )
     found = depth = splits = int(np.int64(0))
     while True:
-        slopes = slopes_over(span, first, second)
+        slopes = bound_slopes(span, first, second)
         lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
         error = (
             max(span.one_low.error + span.two_low.error, span.one_high.error + span.two_high.error) + rounding
@@ -509,11 +511,11 @@ def crossings(
             if lowest > 0.0 or highest < 0.0:
                 found = write_monotone_roots(span, slopes, error, asked, roots, found)
             else:
-                bottom, top, smallest = bounds_over(span, slopes, error, splits, asked)
+                bottom, top, smallest = bound_span(span, slopes, error, splits, asked)
                 is_full = depth >= stack.shape[0]
                 done = False
                 if isfinite(bottom) and isfinite(top):
-                    k, last = targets(bottom, top, offset, period)
+                    k, last = find_targets(bottom, top, offset, period)
                     done = last < k
                     if not done and (
                         span.high - span.low <= smallest
@@ -534,10 +536,10 @@ def crossings(
             span = read_span(stack[depth])
             continue
         splits += 1
-        middle = middle_of(span)
+        middle = find_split_point(span)
         cosine, sine = cos(middle), sin(middle)
-        one = point_at(middle, cosine, sine, asked.one, features, curves, mode)
-        two = point_at(middle, cosine, sine, asked.two, features, curves, mode)
+        one = evaluate_point(middle, cosine, sine, asked.one, features, curves, mode)
+        two = evaluate_point(middle, cosine, sine, asked.two, features, curves, mode)
         write_span(stack[depth], Span(middle, span.high, one, two, span.one_high, span.two_high))
         depth += 1
         span = Span(span.low, middle, span.one_low, span.two_low, one, two)

@@ -18,7 +18,7 @@ import numpy as np
 
 from workhold.conventions import PARALLEL, SQUARE
 from workhold.kernels.base.compiling import Array, IntArray, IntVector, compiled, inner
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
+from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, compute_point
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     COLUMN_STEP,
@@ -42,7 +42,7 @@ from workhold.kernels.base.tables import (
     SlidingPairs,
 )
 from workhold.kernels.chord.coincidences import are_one_chord_apart, shares_a_line
-from workhold.kernels.chord.evaluation import backward_error, parameter_on
+from workhold.kernels.chord.evaluation import bound_backward_error, find_parameter
 from workhold.kernels.chord.intervals import SLIVER
 from workhold.kernels.contact.record import (
     PEG_LENGTH,
@@ -51,7 +51,7 @@ from workhold.kernels.contact.record import (
     PEG_X,
     PEG_Y,
     Angle,
-    angle_of,
+    make_angle,
     place_peg,
 )
 from workhold.kernels.contact.rules import share_a_carrier
@@ -61,15 +61,20 @@ from workhold.kernels.curves.block_work import (
     BlockSpace,
     BlockWork,
     add_listed,
-    block_work,
     is_among,
+    make_block_work,
     place_chord,
     place_head,
     place_tail,
 )
-from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range, lines_between, row_meets
-from workhold.kernels.curves.near_spots import may_be_three, spots_of
-from workhold.kernels.curves.piece_bounds import tail_disc
+from workhold.kernels.curves.moving_pegs import (
+    add_moving_pegs,
+    find_height_range,
+    find_lines_between,
+    intersect_at_height,
+)
+from workhold.kernels.curves.near_spots import find_spots, may_be_three
+from workhold.kernels.curves.piece_bounds import enclose_tail
 from workhold.kernels.curves.three_and_one import heads_share_a_line
 
 # Rounding of a sliding pair's orientation in radians.
@@ -79,9 +84,12 @@ MOST_SLIDES = 4
 
 
 @inner
-def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Writes the sliding pairs between two parallel lines as (from, to, alpha) rows, and returns their
-    number."""
+def write_line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the sliding pairs of a chord of length d between two
+    parallel lines to ``out``; return their number, 0 to 2.
+
+    See :func:`write_sliding_pairs` for the columns. See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     nx, ny = a[AXIS_Y], -a[AXIS_X]
     cosine = (nx * (b[X] - a[X]) + ny * (b[Y] - a[Y])) / d
     if abs(cosine) >= 1.0 - SQUARE:
@@ -103,9 +111,13 @@ def line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
 
 
 @inner
-def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Writes the sliding pairs between equal arcs one chord apart as (from, to, alpha) rows, and returns
-    their number."""
+def write_arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
+    """Write the sliding pairs of a chord between equal arcs whose
+    centres are one chord apart; return their number.
+
+    See :func:`write_sliding_pairs` for the columns of ``out``. Other arcs have none. See ``base.feature`` for
+    the layout of ``a`` and ``b``.
+    """
     if not are_one_chord_apart(a, b, d):
         return 0
     alpha = atan2(b[Y] - a[Y], b[X] - a[X])
@@ -128,26 +140,28 @@ def arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
 
 @inner
 def write_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Write the sliding pairs of a chord of length d from feature a to feature b, and return how many there
-    are.
+    """Write the sliding pairs of a chord of length d mm from feature
+    a to feature b to ``out``; return their number.
 
-    ``out`` is (MOST_SLIDES, 3). Columns: lowest and highest parameter of the tail on a, alpha in radians.
+    ``out`` is (MOST_SLIDES, 3). Columns SLIDE_FROM, SLIDE_TO, DIRECTION: lowest and highest parameter of the
+    tail on a, alpha in radians. See ``base.feature`` for the layout of ``a`` and ``b``.
     """
     count = 0
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
         if abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL:
-            count = line_sliding_pairs(a, b, d, out)
+            count = write_line_sliding_pairs(a, b, d, out)
     elif a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
-        count = arc_sliding_pairs(a, b, d, out)
+        count = write_arc_sliding_pairs(a, b, d, out)
     return count
 
 
 @inner
-def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
-    """Whether a curve may exist at an orientation known to ``reach``, and psi moved by whole turns into its
-    range.
+def wrap_into_range(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
+    """Return whether a curve may exist at an orientation, and psi
+    shifted by whole turns and clamped into its range.
 
-    Slivers around a coincidence, left out of the ranges, count as inside.
+    ``curve`` is an index into ``reals``; psi is known to ``reach`` radians. The slivers around a coincidence
+    that ranges leave out count as inside. See ``base.tables`` for the layout of ``reals``.
     """
     low, high = reals[curve, FROM] - reals[curve, SHIFT], reals[curve, TO] - reals[curve, SHIFT]
     inside = psi + TURN * ceil((low - SLIVER - reach - psi) / TURN)
@@ -155,19 +169,22 @@ def orientation_inside(curve: int, psi: float, reach: float, reals: Array) -> tu
 
 
 @inner
-def sliding_pair_reach(a: Array, b: Array, sliding_pair: Array) -> float:
-    """How far in radians the orientation of a sliding pair may be off.
+def bound_orientation_error(a: Array, b: Array, sliding_pair: Array) -> float:
+    """Return how far in radians the orientation of a sliding pair may be off.
+
+    ``a`` and ``b`` are the features of tail and head, ``sliding_pair`` the reals (5,).
 
     Between lines the distance h across gives the angle off square by cos = h / d, so an error of h counts by
     1 / (d sin). The sine is at least 8.9e-8 (``conventions.SQUARE``).
 
     Let two arcs have centres a misfit m from one chord apart, and radii that differ by r. The chord whose
-    contacts lie in the direction phi from the centres' line is then (r + m cos phi) / (d sin phi) off.
-    That is no more than stated where its lines of action are 15 degrees from the chord or more. Nearer to
-    the chord this holds with the share of the closure that such contacts leave the others.
+    contacts lie in the direction phi from the centres' line is then (r + m cos phi) / (d sin phi) off. That
+    is no more than stated where its lines of action are 15 degrees from the chord or more. Nearer to the
+    chord this holds with the share of the closure that such contacts leave the others. See ``base.feature``
+    for the layout of ``a`` and ``b``, ``base.tables`` for that of ``sliding_pair``.
     """
     d = sliding_pair[STEP_LENGTH]
-    error = backward_error(a, b, d)
+    error = bound_backward_error(a, b, d)
     if a[IS_ARC] == 0.0:
         nx, ny = a[AXIS_Y], -a[AXIS_X]
         along = abs(cos(sliding_pair[DIRECTION]) * ny - sin(sliding_pair[DIRECTION]) * nx)
@@ -179,13 +196,14 @@ def sliding_pair_reach(a: Array, b: Array, sliding_pair: Array) -> float:
 
 
 class PlacedPair(NamedTuple):
-    """A sliding pair, and what all fixtures that rest on it share.
+    """A sliding pair at its orientation, as shared by all fixtures that rest on it.
 
     Parameters
     ----------
     number : its row in the tables of sliding pairs.
     angle, reach : its orientation, and how far in radians that may be off.
-    x, y, swing : of the head, from the tail, in mm, and how much farther it may be off than the tail.
+    x, y : head minus tail in the part's frame, in mm.
+    swing : by how much in mm the head's error may exceed the tail's.
     """
 
     number: int
@@ -197,12 +215,15 @@ class PlacedPair(NamedTuple):
 
 
 @inner
-def placed_pair(number: int, sliding_pairs: SlidingPairs, loose: Array) -> PlacedPair:
-    """A sliding pair by its number; ``loose`` are the features' rows."""
+def place_pair(number: int, sliding_pairs: SlidingPairs, loose: Array) -> PlacedPair:
+    """Return a sliding pair by its row number; ``loose`` are the features' rows.
+
+    See ``base.feature`` for the layout of ``loose``.
+    """
     whole, real = sliding_pairs.integers[number], sliding_pairs.reals[number]
-    reach = sliding_pair_reach(loose[whole[TAIL]], loose[whole[HEAD]], real)
+    reach = bound_orientation_error(loose[whole[TAIL]], loose[whole[HEAD]], real)
     d, alpha = real[STEP_LENGTH], real[DIRECTION]
-    angle = angle_of(real[ORIENTATION])
+    angle = make_angle(real[ORIENTATION])
     return PlacedPair(number, angle, reach, d * cos(alpha), d * sin(alpha), d * reach)
 
 
@@ -210,20 +231,28 @@ def placed_pair(number: int, sliding_pairs: SlidingPairs, loose: Array) -> Place
 def place_sliding_pair(
     pegs: Array, x: float, y: float, line: float, radius: float, whole: IntArray, pair: PlacedPair
 ) -> None:
-    """Writes the pegs of a sliding pair to (2, 6) places, with its tail at (x, y) in row ``line`` of column
-    0."""
+    """Write the pegs of a sliding pair to ``pegs`` (2, 6), with its
+    tail at (x, y) in lattice row ``line`` and column 0.
+
+    ``whole`` are the pair's whole numbers (7,), ``radius`` the tail's error radius in mm. See
+    ``contact.record`` for the layout of ``pegs``, ``base.tables`` for that of ``whole``.
+    """
     place_peg(pegs[0], x, y, whole[TAIL], 0.0, line, radius)
     column, row = float(whole[COLUMN_STEP]), line + whole[ROW_STEP]
     place_peg(pegs[1], x + pair.x, y + pair.y, whole[HEAD], column, row, radius + pair.swing)
 
 
 @inner
-def tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: float) -> bool:
-    """Whether a tail known to a radius in mm may lie in a sliding pair's range on its feature."""
+def is_tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: float) -> bool:
+    """Return whether a tail at (x, y), known to ``radius`` in mm, may
+    lie in a sliding pair's range on its feature ``row``.
+
+    See ``base.feature`` for the layout of ``row``, ``base.tables`` for that of ``sliding_pair``.
+    """
     spare = radius + 1e-10
     if row[IS_ARC] != 0.0:
         spare = 1.2 * spare / row[RADIUS]
-    s = parameter_on(row, x, y)
+    s = find_parameter(row, x, y)
     return sliding_pair[SLIDE_FROM] - spare <= s <= sliding_pair[SLIDE_TO] + spare
 
 
@@ -237,23 +266,25 @@ def add_lines(
     sliding_pairs: SlidingPairs,
     work: BlockWork,
 ) -> int:
-    """Appends the fixtures of a sliding pair on one carrier and a curve's chord on the other: one for each
-    line of holes in which they meet.
+    """Append the fixtures of a sliding pair on one carrier and a curve's chord on the other to ``out``.
+
+    There may be one for each row of holes in which the two chords meet.
 
     Parameters
     ----------
-    inside : the orientation in the curve's range.
+    curve : index of the curve.
+    inside : the pair's orientation, in the curve's range.
 
     Returns
     -------
-    how many records there are, -1 when there is no room for another
+    New number of records, or NO_ROOM_FOR_RECORDS (-1)
     """
     whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
     features, curves, lattice = work.features, work.curves, work.lattice
     reach, pegs = pair.reach, work.pegs
     ax, ay, pitch_y = -pair.angle[2], pair.angle[1], lattice.pitch_y
     row = features.loose[whole[TAIL]]
-    lowest, highest = height_range(row, ax, ay)
+    lowest, highest = find_height_range(row, ax, ay)
     tail = curves.integers[curve, TAIL]
     place_chord(pegs[2:], curve, inside, 2.0 * reach + SLIVER, 0.0, features.rows, curves)
     height, rise = ax * pegs[2, PEG_X] + ay * pegs[2, PEG_Y], pegs[3, PEG_ROW]
@@ -269,11 +300,13 @@ def add_lines(
             for n in range(PEG_LENGTH):
                 pegs[0, n], pegs[1, n] = pegs[2, n], pegs[3, n]
         base = height - sign * lattice.row_offset
-        first, last = lines_between(lowest, highest, base, pitch_y, error)
+        first, last = find_lines_between(lowest, highest, base, pitch_y, error)
         for line in range(first, last + 1):
             for k in range(2):
-                meets, x, y, radius = row_meets(row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k)
-                if not meets or not tail_inside(row, real, x, y, radius):
+                meets, x, y, radius = intersect_at_height(
+                    row, ax, ay, base + line * pitch_y, error, 1.0 - 2.0 * k
+                )
+                if not meets or not is_tail_inside(row, real, x, y, radius):
                     continue
                 # The first peg of the standing chord is in row 0.
                 slid, turned = (0.0, float(-line)) if order == 0 else (float(line), 0.0)
@@ -295,15 +328,18 @@ def add_third_peg(
     sliding_pairs: SlidingPairs,
     work: BlockWork,
 ) -> int:
-    """Appends the fixtures of three and one peg of a sliding pair and a curve from its tail; parameters and
-    result as for :func:`add_lines`."""
+    """Append the fixtures of three standing pegs, a sliding pair and
+    a curve's head, and one moving peg to ``out``.
+
+    The curve must have the pair's tail feature. Parameters and result are those of :func:`add_lines`.
+    """
     whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
     features, curves, pegs, wide = work.features, work.curves, work.pegs, 2.0 * pair.reach + SLIVER
     if not work.counting and heads_share_a_line(whole, curves.integers[curve], features.loose, work.lattice):
         return count
     place_tail(pegs, curve, inside, wide, 0.0, features.rows, curves)
     x, y, radius = pegs[0, PEG_X], pegs[0, PEG_Y], pegs[0, PEG_RADIUS]
-    if not tail_inside(features.loose[whole[TAIL]], real, x, y, radius):
+    if not is_tail_inside(features.loose[whole[TAIL]], real, x, y, radius):
         return count
     place_head(pegs, 2, curve, inside, wide, curves)
     place_sliding_pair(pegs[:2], x, y, 0.0, radius, whole, pair)
@@ -311,8 +347,13 @@ def add_third_peg(
 
 
 @inner
-def first_of_tail(members: IntArray, integers: IntArray, tail: int) -> int:
-    """The number of the first member whose tail is on a feature of no lower number."""
+def find_first_of_tail(members: IntArray, integers: IntArray, tail: int) -> int:
+    """Return the position of the first of ``members`` whose curve has
+    a tail feature numbered ``tail`` or higher.
+
+    ``members`` are indices of curves in ascending order of their tails; return their number where none is
+    such. See ``base.tables`` for the layout of ``integers``.
+    """
     low, high = int(np.int64(0)), members.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -327,42 +368,53 @@ def first_of_tail(members: IntArray, integers: IntArray, tail: int) -> int:
 def write_member_spots(
     members: IntArray, psi: float, half: float, features: Features, curves: Curves, out: IntArray
 ) -> None:
-    """Writes the ranges (M, 4) of spots that tails and heads of curves may touch within ``half`` of psi; none
-    where a curve does not exist."""
+    """Write, for each member curve, the spots that its tail and its
+    head may touch within ``half`` radians of psi.
+
+    ``out`` (M, 4) receives the first and past-the-last spot of the tail, then of the head; an empty range of
+    the tail (0, 0) where the curve does not exist there.
+    """
     near, loose = features.near, features.loose
     for m in range(members.shape[0]):
         curve = members[m]
         whole, real = curves.integers[curve], curves.reals[curve]
-        exists, there = orientation_inside(curve, psi, half, curves.reals)
+        exists, there = wrap_into_range(curve, psi, half, curves.reals)
         out[m, 1] = out[m, 0] = 0
         if not exists:
             continue
         a, b = loose[whole[TAIL]], loose[whole[HEAD]]
-        x, y, radius = tail_disc(a, b, real, there, half + SLIVER)
+        x, y, radius = enclose_tail(a, b, real, there, half + SLIVER)
         alpha, d = there + real[SHIFT], real[LENGTH]
-        out[m, 0], out[m, 1] = spots_of(a, whole[TAIL], near, x, y, radius)
+        out[m, 0], out[m, 1] = find_spots(a, whole[TAIL], near, x, y, radius)
         x, y, radius = x + d * cos(alpha), y + d * sin(alpha), radius + d * (half + SLIVER)
-        out[m, 2], out[m, 3] = spots_of(b, whole[HEAD], near, x, y, radius)
+        out[m, 2], out[m, 3] = find_spots(b, whole[HEAD], near, x, y, radius)
 
 
 @inner
 def write_slide_spots(
     pair: PlacedPair, sliding_pairs: SlidingPairs, features: Features, out: IntArray
 ) -> None:
-    """Writes the ranges (N, 4) of spots that both pegs of a sliding pair touch in parts of its range."""
+    """Write the spots that both pegs of a sliding pair touch in each of N equal parts of its range.
+
+    ``out`` (N, 4) receives the first and past-the-last spot of the tail, then of the head.
+    """
     whole, real, near = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number], features.near
     a, b = features.loose[whole[TAIL]], features.loose[whole[HEAD]]
     size = (real[SLIDE_TO] - real[SLIDE_FROM]) / out.shape[0]
     half = 0.5 * size * (1.0 if a[IS_ARC] == 0.0 else a[RADIUS])
     for k in range(out.shape[0]):
-        x, y = point_at(a, real[SLIDE_FROM] + (k + 0.5) * size)
-        out[k, 0], out[k, 1] = spots_of(a, whole[TAIL], near, x, y, half)
-        out[k, 2], out[k, 3] = spots_of(b, whole[HEAD], near, x + pair.x, y + pair.y, half + pair.swing)
+        x, y = compute_point(a, real[SLIDE_FROM] + (k + 0.5) * size)
+        out[k, 0], out[k, 1] = find_spots(a, whole[TAIL], near, x, y, half)
+        out[k, 2], out[k, 3] = find_spots(b, whole[HEAD], near, x + pair.x, y + pair.y, half + pair.swing)
 
 
 @inner
 def may_be_third(slides: IntArray, member: IntArray, near: NearSpots) -> bool:
-    """Whether a curve's head may be a third locator of interest beside a sliding pair, from their spots."""
+    """Return whether a curve's head may be a third locator of interest beside a sliding pair.
+
+    ``slides`` (N, 4) are the pair's spots, see :func:`write_slide_spots`; ``member`` (4,) is the curve's row
+    of :func:`write_member_spots`.
+    """
     for k in range(slides.shape[0]):
         for i in range(max(slides[k, 0], member[0]), min(slides[k, 1], member[1])):
             for j in range(slides[k, 2], slides[k, 3]):
@@ -384,10 +436,17 @@ def add_of_pair(
     slides: IntArray,
     work: BlockWork,
 ) -> int:
-    """Append the fixtures of a sliding pair and the curves, and return the new number of records, -1 when
-    there is no room. Of three standing pegs the third is on a curve from the pair's tail.
+    """Append the fixtures of a sliding pair and the member curves to ``out``.
 
-    ``spots`` and ``slides`` are those of the members and of the pair, none where nothing is ruled out.
+    Return the new number of records, or NO_ROOM_FOR_RECORDS (-1).
+
+    Parameters
+    ----------
+    standing : how many pegs stand still: 2, or 3, where the third is the head of a curve with the pair's tail
+        feature.
+    members : (M,) indices of curves in the order of their tails.
+    spots, slides : see :func:`write_member_spots` and :func:`write_slide_spots`; (0, 4) ``spots`` where none
+        are ruled out.
     """
     stats, curves = work.stats, work.curves
     psi, whole = pair.angle[0], sliding_pairs.integers[pair.number]
@@ -395,8 +454,8 @@ def add_of_pair(
     first, end = int(np.int64(0)), members.shape[0]
     if standing == 3:
         # Curves are in the order of their tails.
-        first = first_of_tail(members, curves.integers, whole[TAIL])
-        end = first_of_tail(members, curves.integers, whole[TAIL] + 1)
+        first = find_first_of_tail(members, curves.integers, whole[TAIL])
+        end = find_first_of_tail(members, curves.integers, whole[TAIL] + 1)
     for m in range(first, end):
         if stats[STOPPED] != 0:
             break
@@ -406,10 +465,10 @@ def add_of_pair(
             continue
         if standing == 3 and not share_a_carrier(whole, one, work.limits):
             continue
-        exists, there = orientation_inside(curve, psi, pair.reach, curves.reals)
+        exists, there = wrap_into_range(curve, psi, pair.reach, curves.reals)
         if not exists or shares_a_line(curves.reals[curve], there):
             continue
-        inside = pair.angle if there == psi else angle_of(there)
+        inside = pair.angle if there == psi else make_angle(there)
         if standing == 2:
             count = add_lines(out, count, pair, curve, inside, sliding_pairs, work)
         else:
@@ -420,7 +479,7 @@ def add_of_pair(
 
 
 @compiled
-def sliding_fixtures(
+def write_sliding_fixtures(
     standing: int,
     chosen: IntVector,
     sliding_pairs: SlidingPairs,
@@ -433,25 +492,27 @@ def sliding_fixtures(
     stats: IntVector,
     space: BlockSpace,
 ) -> int:
-    """Write all fixtures that rest on one of the ``chosen`` sliding pairs and on curves of ``members``.
+    """Write all fixtures that rest on one of the ``chosen`` sliding
+    pairs and on curves of ``members`` to ``space.out``.
 
-    Parameters and result as for ``two_and_two_cells``. So many pegs, 2 or 3, are ``standing``; of three, two
-    form the sliding pair from the shared tail.
+    ``chosen`` are row numbers of ``sliding_pairs``. ``standing`` is the number of standing pegs, 2 or 3; of
+    three, two form the sliding pair from the shared tail. Other parameters and the result are those of
+    ``write_two_and_two``.
     """
-    work = block_work(features, curves, lattice, limits, counting, stats, space)
+    work = make_block_work(features, curves, lattice, limits, counting, stats, space)
     count, least, most = int(np.int64(0)), np.inf, -np.inf
     asks_spots = standing == 3 and features.near.joined.shape[0] > 0
     spots = space.spots[: members.shape[0] if asks_spots else 0]
     if asks_spots:
         for k in range(chosen.shape[0]):
-            pair = placed_pair(chosen[k], sliding_pairs, features.loose)
+            pair = place_pair(chosen[k], sliding_pairs, features.loose)
             least, most = min(least, pair.angle[0] - pair.reach), max(most, pair.angle[0] + pair.reach)
         write_member_spots(members, (least + most) / 2.0, (most - least) / 2.0, features, curves, spots)
     for k in range(chosen.shape[0]):
         number = chosen[k]
         if standing == 3 and not is_among(sliding_pairs.integers[number, TAIL], features.standing):
             continue
-        pair = placed_pair(number, sliding_pairs, features.loose)
+        pair = place_pair(number, sliding_pairs, features.loose)
         if asks_spots:
             write_slide_spots(pair, sliding_pairs, features, space.slides)
         count = add_of_pair(

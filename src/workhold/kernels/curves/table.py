@@ -17,7 +17,7 @@ from workhold.kernels.base.compiling import (
     compiled,
     inner,
 )
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y, point_at
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS, X, Y, compute_point
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     CENTER,
@@ -44,7 +44,7 @@ from workhold.kernels.base.tables import (
     TO,
     NearSpots,
 )
-from workhold.kernels.chord.evaluation import parameter_on, write_curve, write_shift
+from workhold.kernels.chord.evaluation import find_parameter, write_curve, write_shift
 from workhold.kernels.chord.intervals import (
     ALIVE,
     MOST_EVENTS,
@@ -55,7 +55,7 @@ from workhold.kernels.chord.intervals import (
 )
 from workhold.kernels.chord.stretches import DEPTH, STRETCH_LENGTH, add_stretches
 from workhold.kernels.curves.near_spots import may_join
-from workhold.kernels.curves.piece_bounds import tail_disc
+from workhold.kernels.curves.piece_bounds import enclose_tail
 from workhold.kernels.curves.sliding_pairs import MOST_SLIDES, write_sliding_pairs
 
 # Rounding of distances in mm, generously counted.
@@ -65,15 +65,22 @@ RANGE_PARTS = 16
 
 
 @inner
-def reach(row: Array) -> float:
-    """Largest distance of a feature's points from its middle (line) or centre (arc)."""
+def measure_reach(row: Array) -> float:
+    """Return the largest distance in mm of a feature's points from its middle (line) or centre (arc).
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     return row[HALF_EXTENT] if row[IS_ARC] == 0.0 else row[RADIUS]
 
 
 @inner
 def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
-    """Whether a point of a feature's carrier, known to a radius in mm, may be on the feature."""
-    s, off = abs(parameter_on(row, x, y)), radius + ROUNDING
+    """Return whether a point of a feature's line or circle, known to
+    ``radius`` in mm, may be on the feature itself.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
+    s, off = abs(find_parameter(row, x, y)), radius + ROUNDING
     if row[IS_ARC] == 0.0:
         return not s > row[HALF_EXTENT] + off
     # From an arc's centre a disc of up to half its radius R is seen under 1.1 radius / R to either side.
@@ -82,17 +89,19 @@ def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
 
 @inner
 def may_exist(a: Array, b: Array, curve: Array) -> bool:
-    """Whether a chord may lie on both features somewhere in its range.
+    """Return whether a chord may lie on both features somewhere in
+    its range; True where the range is not narrow.
 
-    Ranges too narrow to be tested in the middle, but wider than a sliver, are given wherever the carriers of
-    the features meet. Beside a tangency to a circle of many arcs that is so of each arc, however far from
-    there.
+    ``curve`` (16,) has the range in alpha. Ranges too narrow to be tested in the middle, but wider than a
+    sliver, are given wherever the lines or circles of the features meet. Beside a tangency to a circle of
+    many arcs such a range is given for each arc, however far from it. See ``base.feature`` for the layout of
+    ``a`` and ``b``, ``base.tables`` for that of ``curve``.
     """
     middle = (curve[FROM] + curve[TO]) / 2.0
     half = (curve[TO] - curve[FROM]) / 2.0 + max(curve[TANGENT_FROM], curve[TANGENT_TO])
     if half > NARROW or curve[TO] - curve[FROM] <= 3.0 * SLIVER:
         return True
-    x, y, radius = tail_disc(a, b, curve, middle, half)
+    x, y, radius = enclose_tail(a, b, curve, middle, half)
     d = curve[LENGTH]
     at_head = may_reach(b, x + d * cos(middle), y + d * sin(middle), radius + d * half)
     return at_head and may_reach(a, x, y, radius)
@@ -100,7 +109,13 @@ def may_exist(a: Array, b: Array, curve: Array) -> bool:
 
 @inner
 def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, curve: Array) -> bool:
-    """Writes the part of a chord's range in which its contacts may be of interest; whether there is any."""
+    """Set NEAR_FROM and NEAR_TO of a curve (16,): the part of its
+    range in which both contacts may be of interest.
+
+    Return whether there is any such part. ``ends`` are the numbers of the features ``a`` and ``b``. Where
+    ``near`` rules nothing out, the part is the whole range. See ``base.feature`` for the layout of ``a`` and
+    ``b``, ``base.tables`` for that of ``curve``.
+    """
     curve[NEAR_FROM], curve[NEAR_TO] = curve[FROM], curve[TO]
     if near.joined.shape[0] == 0:
         return True
@@ -109,7 +124,7 @@ def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots,
     first, last = RANGE_PARTS, -1
     for k in range(RANGE_PARTS):
         middle, half = low + (k + 0.5) * size, 0.5 * size + slack + SLIVER
-        x, y, radius = tail_disc(a, b, curve, middle, half)
+        x, y, radius = enclose_tail(a, b, curve, middle, half)
         head = (x + d * cos(middle), y + d * sin(middle), radius + d * half)
         if may_join(a, b, ends, near, (x, y, radius), head):
             first, last = min(first, k), k
@@ -124,14 +139,19 @@ def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots,
 
 @inner
 def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair: Array, d: float) -> bool:
-    """Whether contacts of a sliding pair may be of interest; its range is cut to where they may."""
+    """Cut the range of a sliding pair in place to the part where both contacts may be of interest.
+
+    Return whether there is any such part. ``pair`` begins with SLIDE_FROM, SLIDE_TO, DIRECTION; ``ends`` are
+    the numbers of the features ``a`` and ``b``, d is the chord's length in mm. See ``base.feature`` for the
+    layout of ``a`` and ``b``, ``base.tables`` for that of ``pair``.
+    """
     if near.joined.shape[0] == 0:
         return True
     first, last = RANGE_PARTS, -1
     low, size = pair[SLIDE_FROM], (pair[SLIDE_TO] - pair[SLIDE_FROM]) / RANGE_PARTS
     half = 0.5 * size * (1.0 if a[IS_ARC] == 0.0 else a[RADIUS]) + ROUNDING
     for k in range(RANGE_PARTS):
-        x, y = point_at(a, low + (k + 0.5) * size)
+        x, y = compute_point(a, low + (k + 0.5) * size)
         head = (x + d * cos(pair[DIRECTION]), y + d * sin(pair[DIRECTION]), half)
         if may_join(a, b, ends, near, (x, y, half), head):
             first, last = min(first, k), k
@@ -146,8 +166,11 @@ def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair
 
 @inner
 def comes_within(low: float, high: float, angle: float, within: Array) -> bool:
-    """Whether a chord of a step turned by an angle is at some orientation within (K, 2) ranges, for alpha from
-    ``low`` to ``high``; all in radians. It always is where there are none."""
+    """Return whether a chord has an orientation psi = alpha - angle
+    within one of (K, 2) ranges, for alpha in [low, high].
+
+    All is in radians, modulo turns. Return True where K is 0.
+    """
     for k in range(within.shape[0]):
         # Where the range ends, a turn or more before the chord begins there or not.
         end = within[k, 1] + ROUNDING
@@ -158,8 +181,13 @@ def comes_within(low: float, high: float, angle: float, within: Array) -> bool:
 
 
 @inner
-def any_comes_within(curve: Array, angles: Array, first: int, end: int, within: Array) -> bool:
-    """Whether a chord of one of some steps, which are equally long, comes within ranges of orientations."""
+def has_step_within(curve: Array, angles: Array, first: int, end: int, within: Array) -> bool:
+    """Return whether a chord with any of the steps in [first, end)
+    has an orientation within (K, 2) ranges of psi.
+
+    ``curve`` has the range of alpha, ``angles`` the directions of the steps; see :func:`comes_within`. See
+    ``base.tables`` for the layout of ``curve``.
+    """
     found = False
     for step in range(first, end):
         found = found or comes_within(curve[FROM], curve[TO], angles[step], within)
@@ -171,11 +199,12 @@ class CurveSpace(NamedTuple):
 
     Parameters
     ----------
-    integers, reals : (C, 7) and (C, 16) receive the curves.
-    pair_integers, pair_reals : (C, 7) and (C, 5) receive the sliding pairs.
-    stretches : (C, 13) receive the curves' stretches.
+    integers, reals : (C, 7) and (C, 16) receive the curves, see ``base.tables``.
+    pair_integers, pair_reals : (C, 7) and (C, 5) receive the sliding pairs, see ``base.tables``.
+    stretches : (C, 13) receive the curves' stretches, see ``chord.stretches``.
     curve : (16,) work space.
-    events, ranges, slides, stack : see ``intervals``, ``sliding_pairs`` and ``stretches``.
+    events, ranges, slides, stack : work space, see ``chord.intervals``, ``sliding_pairs`` and
+        ``chord.stretches``.
     """
 
     integers: IntMatrix
@@ -191,7 +220,9 @@ class CurveSpace(NamedTuple):
 
 
 def make_curve_space(rows: int) -> CurveSpace:
-    """Return memory for so many curves, sliding pairs and stretches of one tail."""
+    """Return memory, not initialized, for ``rows`` curves, as many
+    sliding pairs and as many stretches of one tail.
+    """
     return CurveSpace(
         integers=np.empty((rows, CURVE_INTEGERS), np.int64),
         reals=np.empty((rows, CURVE_REALS)),
@@ -219,8 +250,10 @@ def write_tail_curves(
     within: Matrix,
     space: CurveSpace,
 ) -> tuple[int, int, int]:
-    """Write all chords of interest whose tail is on one feature and whose head is on the same feature or one
-    of a higher number.
+    """Write all chord curves and sliding pairs of interest with the tail on one feature to ``space``.
+
+    The head is on the same feature or one of a higher number. See ``base.feature`` for the layout of
+    ``features``.
 
     Parameters
     ----------
@@ -228,18 +261,18 @@ def write_tail_curves(
     features : (F, 10) rows.
     centers : (F,) number of each arc's centre, -1 for lines; concentric arcs share it.
     lengths : (D,) lengths of the lattice steps in mm.
-    starts : (D + 1,) where the steps of each length begin.
+    starts : (D + 1,) index of the first step of each length, then S.
     steps : (S, 2) column and row differences. Both directions of every step are listed.
     angles : (S,) their directions in radians.
     near : which two stretches of features locators of interest may touch.
-    within : (K, 2) ranges of psi in radians in which curves are of interest; none for everywhere.
+    within : (K, 2) ranges of psi in radians in which curves are of interest; (0, 2) for everywhere.
 
     Returns
     -------
     (int, int, int)
-        How many curves, sliding pairs and stretches there are; the first is -1 where there is no room. The
-        orientations of sliding pairs, alpha - shift, are still to be brought into range by the caller, and
-        the curves' stretches are counted from 0 for this tail.
+        Numbers of curves, sliding pairs and stretches; (-1, 0, 0) where there is no room. The orientations of
+        sliding pairs, alpha - shift, are still to be brought into range by the caller, and the curves'
+        stretches are counted from 0 for this tail.
     """
     integers, reals, ranges, sliding = space.integers, space.reals, space.ranges, space.slides
     curve = space.curve
@@ -247,7 +280,7 @@ def write_tail_curves(
     a = features[tail]
     for head in range(tail, features.shape[0]):
         b = features[head]
-        apart, play = hypot(b[X] - a[X], b[Y] - a[Y]), reach(a) + reach(b)
+        apart, play = hypot(b[X] - a[X], b[Y] - a[Y]), measure_reach(a) + measure_reach(b)
         center = centers[tail] if centers[tail] == centers[head] else -1
         for length in range(lengths.shape[0]):
             d = lengths[length]
@@ -263,7 +296,7 @@ def write_tail_curves(
                 write_curve(curve, a, b, d, ranges[k, 2], 0.0)
                 curve[FROM], curve[TO] = ranges[k, 0], ranges[k, 1]
                 curve[TANGENT_FROM], curve[TANGENT_TO] = ranges[k, 3], ranges[k, 4]
-                if not any_comes_within(curve, angles, starts[length], starts[length + 1], within):
+                if not has_step_within(curve, angles, starts[length], starts[length + 1], within):
                     continue
                 if not may_exist(a, b, curve) or not write_near_range(a, b, (tail, head), near, curve):
                     continue
@@ -317,8 +350,12 @@ def write_steps_of_slides(
     space: CurveSpace,
     count: int,
 ) -> int:
-    """Write the sliding pairs of two features for each step of one length, after the first so many; return
-    their new number, -1 when there is no room."""
+    """Write the sliding pairs of two features for each step in
+    [first, end), which have one length, to ``space``.
+
+    They are written after the first ``count`` pairs; return the new number, -1 when there is no room.
+    ``space.slides[:slides]`` are the pairs of the features, see ``sliding_pairs.write_sliding_pairs``.
+    """
     for step in range(first, end):
         column, row = steps[step, 0], steps[step, 1]
         if head == tail and (column < 0 or (column == 0 and row < 0)):
@@ -337,6 +374,9 @@ def write_steps_of_slides(
 
 @inner
 def write_step(row: IntArray, tail: int, head: int, column_step: int, row_step: int, center: int) -> None:
-    """Writes the whole numbers of a curve or sliding pair."""
+    """Write TAIL, HEAD, COLUMN_STEP, ROW_STEP and CENTER of a curve or sliding pair to ``row`` (7,).
+
+    See ``base.tables`` for the layout of ``row``.
+    """
     row[TAIL], row[HEAD], row[COLUMN_STEP], row[ROW_STEP] = tail, head, column_step, row_step
     row[CENTER] = center

@@ -13,7 +13,7 @@ import numpy as np
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.arrays import sort_rows
 from workhold.kernels.base.compiling import Array, IntArray, IntVector, Vector, compiled, inner
-from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, local_size
+from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, compute_local_size
 from workhold.kernels.base.interval import TURN
 from workhold.kernels.base.tables import (
     CENTER,
@@ -40,10 +40,10 @@ from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact.location_bounds import (
     BEYOND,
     CONTACT_LENGTH,
-    least_error_in,
-    most_allowed,
+    bound_least_error,
+    find_most_allowed,
 )
-from workhold.kernels.contact.record import angle_of, write_given_up
+from workhold.kernels.contact.record import make_angle, write_given_up
 from workhold.kernels.contact.rules import share_a_carrier
 from workhold.kernels.curves.block_work import (
     CROSSED,
@@ -53,18 +53,20 @@ from workhold.kernels.curves.block_work import (
     STOPPED,
     BlockSpace,
     BlockWork,
-    block_work,
     is_among,
+    make_block_work,
     moves_nothing,
     place_triple,
 )
-from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
-from workhold.kernels.curves.near_spots import is_any_joined, may_be_three, spots_of, write_piece_spots
+from workhold.kernels.curves.moving_pegs import add_moving_pegs, find_height_range
+from workhold.kernels.curves.near_spots import find_spots, is_any_joined, may_be_three, write_piece_spots
 from workhold.kernels.curves.piece_bounds import HAIR, clear_edges
 from workhold.kernels.curves.pieces import write_pieces
-from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, crossings, may_meet
+from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, may_meet, write_crossings
 
-# Columns of a limb, one of the two chords of a triple: what the pairing of pieces looks at.
+# Columns of a limb, one of the two chords of a triple, as the pairing of pieces needs it: psi from LIMB_LOW
+# to LIMB_HIGH, bounds of the tail's parameter, index of its piece, feature of the tail, ranges of the spots
+# of tail and head (first and past-the-last).
 LIMB_LOW, LIMB_HIGH, LIMB_VALUE_LEAST, LIMB_VALUE_MOST, LIMB_PIECE, LIMB_TAIL = range(6)
 LIMB_TAIL_FIRST, LIMB_TAIL_END, LIMB_HEAD_FIRST, LIMB_HEAD_END = range(6, 10)
 # Both contacts as spots (``contact.location_bounds``).
@@ -74,15 +76,18 @@ BESIDE_SEAM = 1e-3
 
 
 @inner
-def farthest_right(features: Features, low: float, high: float) -> float:
-    """How far right in mm along x a moving peg that touches the part may stand, for psi in [low, high] (arcs
-    as whole circles)."""
+def find_farthest_right(features: Features, low: float, high: float) -> float:
+    """Return an upper bound of x in mm of the moving pegs that touch the part, for psi in [low, high].
+
+    x is measured in the toolkit's frame from the part's origin; -inf where no feature is touched by moving
+    pegs.
+    """
     psi, half = (low + high) / 2.0, (high - low) / 2.0
     most = -np.inf
     for k in range(features.moving[0], features.moving[1]):
         row = features.loose[k]
-        _, highest = height_range(row, cos(psi), sin(psi))
-        size = local_size(row) + row[HALF_EXTENT]
+        _, highest = find_height_range(row, cos(psi), sin(psi))
+        size = compute_local_size(row) + row[HALF_EXTENT]
         most = max(most, highest + size * half)
     return most
 
@@ -91,9 +96,12 @@ def farthest_right(features: Features, low: float, high: float) -> float:
 def write_limbs(
     pieces: Array, features: Features, curves: Curves, farthest: float, length: float, out: Array
 ) -> int:
-    """Writes the (N, 20) limbs, what their pairing looks at, and returns their number.
+    """Write the limbs (N, 20) of those pieces that standing pegs can
+    have to ``out``, and return their number.
 
-    They are of the pieces of standing pegs that leave room for a moving peg and may be of interest.
+    A limb is one of the two chords, with a common tail, that three standing pegs form. A piece has one if a
+    moving peg still fits to the right of its pegs (``farthest`` in mm) and its contacts may be of interest.
+    ``length`` is L in mm, by which moments are divided. See ``base.tables`` for the layout of ``pieces``.
     """
     count, integers, touched = int(np.int64(0)), curves.integers, features.standing
     asks_spots = features.near.joined.shape[0] > 0
@@ -114,14 +122,18 @@ def write_limbs(
 
 @inner
 def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, length: float) -> bool:
-    """Writes the spots that tail and head of a piece may touch; whether any two are of interest."""
+    """Write the spots that tail and head of a piece may touch to its limb (20,).
+
+    Return whether any two of them are those of locators of interest. See ``curves.three_and_one`` for the
+    layout of ``limb``, ``base.tables`` for that of ``piece``.
+    """
     number, near = int(piece[CURVE]), features.near
     tail, head = curves.integers[number, TAIL], curves.integers[number, HEAD]
     there, ahead = write_piece_spots(
         piece, limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT], limb[LIMB_HEAD_SPOT:], features, curves, length
     )
-    first, end = spots_of(features.loose[tail], tail, near, there[0], there[1], there[2])
-    begin, last = spots_of(features.loose[head], head, near, ahead[0], ahead[1], ahead[2])
+    first, end = find_spots(features.loose[tail], tail, near, there[0], there[1], there[2])
+    begin, last = find_spots(features.loose[head], head, near, ahead[0], ahead[1], ahead[2])
     limb[LIMB_TAIL_FIRST], limb[LIMB_TAIL_END] = first, end
     limb[LIMB_HEAD_FIRST], limb[LIMB_HEAD_END] = begin, last
     return is_any_joined(near, first, end, begin, last)
@@ -129,7 +141,10 @@ def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, l
 
 @inner
 def are_near(limb: Array, other: Array, near: NearSpots) -> bool:
-    """Whether the pegs of two limbs with one tail may be locators of interest."""
+    """Return whether the pegs of two limbs with a common tail may be locators of interest, by their spots.
+
+    See ``curves.three_and_one`` for the layout of ``limb`` and ``other``.
+    """
     first = int(max(limb[LIMB_TAIL_FIRST], other[LIMB_TAIL_FIRST]))
     end = int(min(limb[LIMB_TAIL_END], other[LIMB_TAIL_END]))
     for i in range(first, end):
@@ -141,18 +156,25 @@ def are_near(limb: Array, other: Array, near: NearSpots) -> bool:
 
 
 @inner
-def limbs_beyond(limb: Array, other: Array, precision: Precision, room: Array) -> bool:
-    """Whether the pegs of two limbs with one tail surely have a larger error than is of interest."""
+def are_limbs_beyond(limb: Array, other: Array, precision: Precision, room: Array) -> bool:
+    """Return whether the pegs of two limbs with a common tail
+    certainly have a larger error than is of interest.
+
+    ``room`` is (4, 3) work space. See ``curves.three_and_one`` for the layout of ``limb`` and ``other``.
+    """
     tail, head, third = limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT], limb[LIMB_HEAD_SPOT:], other[LIMB_HEAD_SPOT:]
     low, high = max(limb[LIMB_LOW], other[LIMB_LOW]), min(limb[LIMB_HIGH], other[LIMB_HIGH])
-    most = BEYOND * most_allowed(low, high, precision)
-    return least_error_in(tail, head, third, precision, room, most) > most
+    most = BEYOND * find_most_allowed(low, high, precision)
+    return bound_least_error(tail, head, third, precision, room, most) > most
 
 
 @inner
 def sort_limbs(limbs: Array, keys: Array, order: IntArray, out: Array) -> None:
-    """Write (N, 20) limbs to ``out`` with those of each tail in the order of their least values; ``keys`` and
-    ``order`` are (N,) work space."""
+    """Write limbs (N, 20) to ``out``, the limbs of each tail sorted by their LIMB_VALUE_LEAST.
+
+    ``limbs`` must be group_by_face by tail already; the groups keep their order. ``keys`` and ``order`` are (N,)
+    work space. See ``curves.three_and_one`` for the layout of ``limbs``.
+    """
     first = int(np.int64(0))
     for k in range(1, limbs.shape[0] + 1):
         if k == limbs.shape[0] or limbs[k, LIMB_TAIL] != limbs[first, LIMB_TAIL]:
@@ -162,11 +184,15 @@ def sort_limbs(limbs: Array, keys: Array, order: IntArray, out: Array) -> None:
 
 @inner
 def add_triples(out: Array, count: int, number: int, one: int, two: int, work: BlockWork) -> int:
-    """Tries every moving peg at each of a ``number`` of crossings of two curves with a common tail, and
-    appends the fixtures to ``out``; result as for :func:`add_moving_pegs`."""
+    """Try every moving peg at each of the first ``number`` crossings
+    in ``work.roots``; append the fixtures to ``out``.
+
+    The crossings are of curves ``one`` and ``two``, which share their tail. Return the new number of records,
+    or NO_ROOM_FOR_RECORDS (-1).
+    """
     for root in range(number):
         psi, reach = work.roots[root, ROOT_PSI], work.roots[root, ROOT_RADIUS]
-        angle = angle_of(psi)
+        angle = make_angle(psi)
         place_triple(work.pegs, one, two, angle, reach, work.features.rows, work.curves)
         count = add_moving_pegs(out, count, angle, reach, work)
         if count < 0:
@@ -176,10 +202,12 @@ def add_triples(out: Array, count: int, number: int, one: int, two: int, work: B
 
 @inner
 def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: Lattice) -> bool:
-    """Whether the heads of two chords with a common tail, given by their whole numbers, push along one line.
+    """Return whether the heads of two chords with a common tail push along one line.
 
-    Chords of which tail and head do are no curves. Left in, such heads make thousands of crossings that no
-    rounding keeps apart, for all their curves nearly agree where the pegs stand square to the features.
+    ``one`` and ``two`` are the whole numbers (7,) of the curves. Chords whose tail and head push along one
+    line are not in the table of curves. Left in, such heads make thousands of crossings that no rounding
+    keeps apart, since all their curves nearly agree where the pegs stand square to the features. See
+    ``base.tables`` for the layout of ``one`` and ``two``, ``base.feature`` for that of ``features``.
     """
     x = (two[COLUMN_STEP] - one[COLUMN_STEP]) * lattice.pitch_x
     y = (two[ROW_STEP] - one[ROW_STEP]) * lattice.pitch_y
@@ -188,8 +216,11 @@ def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: L
 
 @inner
 def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: BlockWork) -> int:
-    """Append what comes of the pairs of (N, 20) limbs with a common tail, sorted, and return the new number of
-    records, -1 when there is no room."""
+    """Append the fixtures, and pairs given up, of all pairs of (N, 20) limbs with a common tail to ``out``.
+
+    Limbs are sorted as by :func:`sort_limbs`. Return the new number of records, or NO_ROOM_FOR_RECORDS (-1).
+    See ``curves.three_and_one`` for the layout of ``limbs``, ``base.tables`` for that of ``pieces``.
+    """
     stats, lattice, limits = work.stats, work.lattice, work.limits
     loose, curves, integers = work.features.loose, work.curves, work.curves.integers
     near, asks_spots = work.features.near, work.features.near.joined.shape[0] > 0
@@ -207,7 +238,7 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
         for ahead in range(end - 1 - i):
             other = limbs[i + 1 + ahead]
             if other[LIMB_VALUE_LEAST] > limb[LIMB_VALUE_MOST]:
-                # All that follow have larger values, too. Beside the seam of a circle these may be the same ones.
+                # All that follow have larger values, too. Beside a circle's seam these may be the same ones.
                 if not circle or limb[LIMB_VALUE_LEAST] > BESIDE_SEAM - pi:
                     break
                 if other[LIMB_VALUE_MOST] < limb[LIMB_VALUE_LEAST] + TURN:
@@ -226,14 +257,14 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
                 continue
             if asks_spots and (
                 not are_near(limb, other, near)
-                or limbs_beyond(limb, other, work.features.precision, work.triple[:4])
+                or are_limbs_beyond(limb, other, work.features.precision, work.triple[:4])
             ):
                 continue
             if not work.counting and heads_share_a_line(integers[one], integers[two], loose, lattice):
                 continue
             if stats[STOPPED] != 0:
                 break
-            number = crossings(
+            number = write_crossings(
                 first, second, loose, curves, POSITION, 0.0, period, 0.0, work.stack, work.roots
             )
             if number >= 0:
@@ -250,7 +281,7 @@ def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: Bl
 
 
 @compiled
-def three_and_one_cells(
+def write_three_and_one(
     edges: Vector,
     members: IntVector,
     features: Features,
@@ -261,15 +292,15 @@ def three_and_one_cells(
     stats: IntVector,
     space: BlockSpace,
 ) -> int:
-    """Write all fixtures of three and one peg with psi in some neighbouring cells whose chords from the
-    shared tail are no sliding pairs.
+    """Write all fixtures of three standing pegs and one moving peg
+    with psi in some neighbouring cells to ``space.out``.
 
-    Parameters and result as for ``two_and_two_cells``. The shared tail is on the feature of the lowest
-    number, so that each triple of pegs shows up once. The curves, and so the pieces, are in the order of
-    their tails.
+    Those whose chords from the shared tail are sliding pairs are left out. Parameters and result are those of
+    ``write_two_and_two``. The shared tail is on the feature of the lowest number, so that each triple of pegs
+    occurs once. The curves, and so the pieces, are in the order of their tails.
     """
     count = int(np.int64(0))
-    work = block_work(features, curves, lattice, limits, counting, stats, space)
+    work = make_block_work(features, curves, lattice, limits, counting, stats, space)
     kept = space.kept[: members.shape[0]]
     clear_edges(kept)
     for cell in range(edges.shape[0] - 1):
@@ -277,7 +308,7 @@ def three_and_one_cells(
             break
         low, high, farthest = edges[cell], edges[cell + 1], np.inf
         if not counting and not moves_nothing(features):
-            farthest = farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
+            farthest = find_farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
         number = write_pieces(
             low,
             high,

@@ -45,11 +45,11 @@ from workhold.kernels.contact.location_bounds import (
     CONTACT_LENGTH,
     SPOT_NX,
     SPOT_NY,
-    least_error_of_four,
-    most_allowed,
-    swing_within,
+    bound_least_error_of_four,
+    bound_normal_swing,
+    find_most_allowed,
 )
-from workhold.kernels.contact.record import angle_of, write_given_up
+from workhold.kernels.contact.record import make_angle, write_given_up
 from workhold.kernels.curves.block_work import (
     CROSSED,
     NO_ROOM_FOR_PIECES,
@@ -59,15 +59,15 @@ from workhold.kernels.curves.block_work import (
     BlockSpace,
     BlockWork,
     add_listed,
-    block_work,
     is_among,
     limits_errors,
+    make_block_work,
     place_chord,
 )
 from workhold.kernels.curves.near_spots import write_piece_spots
 from workhold.kernels.curves.piece_bounds import HAIR, clear_edges
 from workhold.kernels.curves.pieces import write_pieces
-from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
+from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, may_meet, write_crossings
 
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 ROLE_X, ROLE_FORCE_LOW, ROLE_FORCE_HIGH, ROLE_VALUE_LEAST = range(4)
@@ -115,8 +115,8 @@ def write_role_spots(roles: Array, pieces: Array, work: BlockWork) -> None:
         number = int(piece[CURVE])
         tail_spot, head_spot = role[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT], role[ROLE_HEAD_SPOT:]
         tail, head = write_piece_spots(piece, tail_spot, head_spot, work.features, curves, length)
-        role[ROLE_TAIL_SWING] = swing_within(loose[curves.integers[number, TAIL]], tail[2])
-        role[ROLE_HEAD_SWING] = swing_within(loose[curves.integers[number, HEAD]], head[2])
+        role[ROLE_TAIL_SWING] = bound_normal_swing(loose[curves.integers[number, TAIL]], tail[2])
+        role[ROLE_HEAD_SWING] = bound_normal_swing(loose[curves.integers[number, HEAD]], head[2])
 
 
 @inner
@@ -133,10 +133,10 @@ def is_still_beyond(still: Array, moving: Array, work: BlockWork) -> bool:
     if larger <= 0.0:
         return False
     given = work.features.precision
-    most = BEYOND * most_allowed(low, high, given)
+    most = BEYOND * find_most_allowed(low, high, given)
     first, second = still[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT], still[ROLE_HEAD_SPOT:]
     extra = (2.0 * off / larger, 2.0 * other_off / larger)
-    least = least_error_of_four(
+    least = bound_least_error_of_four(
         first, second, tail, head, (one, two), extra, given, work.triple, work.null, most
     )
     return least > most
@@ -149,8 +149,8 @@ def are_beyond(standing: Array, moving: Array, work: BlockWork) -> bool:
 
 
 @inner
-def flat_slope(first: Array, second: Array) -> float:
-    """A slope of the difference of heights below which two pieces do not clamp hard enough anywhere.
+def find_flat_slope(first: Array, second: Array) -> float:
+    """Return the slope of the difference of heights below which two pieces clamp too weakly everywhere.
 
     The forces of each carrier's pegs act together along the line through the instant centres, so of a force
     of size 1 the part x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the slope.
@@ -194,7 +194,7 @@ def add_crossings(out: Array, count: int, number: int, one: int, two: int, work:
     for root in range(number):
         psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
         # The height of the moving chord over the standing one is the row offset and so many pitches.
-        angle = angle_of(psi)
+        angle = make_angle(psi)
         place_chord(pegs[:2], one, angle, reach, 0.0, rows, curves)
         place_chord(pegs[2:], two, angle, reach, roots[root, MULTIPLE], rows, curves)
         count = add_listed(out, count, 2.0, angle, reach, True, work)
@@ -241,8 +241,8 @@ def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Ar
                 continue
             if stats[STOPPED] != 0:
                 break
-            flat = 0.0 if counting else flat_slope(first, second)
-            number = crossings(
+            flat = 0.0 if counting else find_flat_slope(first, second)
+            number = write_crossings(
                 first, second, features.loose, curves, HEIGHT, offset, pitch_y, flat, work.stack, work.roots
             )
             if count + max(number, 1) > out.shape[0]:
@@ -256,7 +256,7 @@ def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Ar
 
 
 @compiled
-def two_and_two_cells(
+def write_two_and_two(
     edges: Vector,
     members: IntVector,
     features: Features,
@@ -280,10 +280,10 @@ def two_and_two_cells(
 
     Returns
     -------
-    how many records there are, or what there is no room for, see ``block_work``
+    how many records there are, or what there is no room for, see ``make_block_work``
     """
     count = int(np.int64(0))
-    work = block_work(features, curves, lattice, limits, counting, stats, space)
+    work = make_block_work(features, curves, lattice, limits, counting, stats, space)
     kept = space.kept[: members.shape[0]]
     clear_edges(kept)
     pitch_x, least_margin = lattice.pitch_x, limits.least_margin

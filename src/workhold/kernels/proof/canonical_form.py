@@ -17,12 +17,12 @@ from workhold.kernels.base.compiling import (
     inner,
 )
 from workhold.kernels.base.tables import Setting
-from workhold.kernels.contact.record import NULL, take_pegs, touch
-from workhold.kernels.proof.newton_kantorovich import held, wrenches
+from workhold.kernels.contact.record import NULL, take_pegs, write_contact_equations
+from workhold.kernels.proof.newton_kantorovich import compute_clamping, write_wrenches
 
 
 @compiled
-def contacts_of(
+def write_contacts(
     records: Matrix,
     rows: Matrix,
     setting: Setting,
@@ -33,30 +33,32 @@ def contacts_of(
     w: Matrix,
     pairs: Stack,
 ) -> None:
-    """Where the contacts of records are, and with what forces they hold.
+    """Write the peg centres, gap, null vector and peg forces of each record.
+
+    See ``base.feature`` for the layout of ``rows``.
 
     Parameters
     ----------
     records : (N, 19), see ``kernels.contact.record``.
     rows : (F, 12) of the features.
-    points : (N, 4, 2) receives the pegs' centres in mm.
-    gaps : (N,) receives the x distance from the rightmost standing to the leftmost moving peg.
-    nulls : (N, 4) receives the null vectors scaled to sizes of sum 1, their sum not negative; all -1 where
-        the wrenches do not span the space.
-    forces : (N, 4) receives the forces per unit of clamping force.
+    points : (N, 4, 2) receives the pegs' centres in the workpiece's frame, in mm.
+    gaps : (N,) receives the x distance in mm from the rightmost standing to the leftmost moving peg.
+    nulls : (N, 4) receives the null vectors divided by the sum of their absolute values, with a sum that is
+        not negative; all -1 where the wrenches do not span the space.
+    forces : (N, 4) receives the peg forces per unit of clamping force.
     w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.record``.
     """
     length, null = setting.limits.wrench_length, w[NULL]
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
-        touch(records[n], rows, length, w, pairs[0])
-        wrenches(records[n], rows, length, w, pairs)
+        write_contact_equations(records[n], rows, length, w, pairs[0])
+        write_wrenches(records[n], rows, length, w, pairs)
         total = null[0] + null[1] + null[2] + null[3]
         size = abs(null[0]) + abs(null[1]) + abs(null[2]) + abs(null[3])
         sign = 1.0 if total >= 0.0 else -1.0
         for k in range(4):
             null[k] = sign * null[k] / size if size > LEAST_SPAN else -1.0
-        gaps[n], push = held(w, pairs)
+        gaps[n], push = compute_clamping(w, pairs)
         push *= setting.limits.clamping
         for k in range(4):
             points[n, k, 0], points[n, k, 1] = pairs[0, k, 0], pairs[0, k, 1]
@@ -73,21 +75,22 @@ def to_canonical_form(
     swapped: int,
     hair: float,
 ) -> None:
-    """Brings fixtures to the form they are listed in, in place.
+    """Bring fixtures to the form in which they are listed; change
+    ``theta``, ``columns`` and ``rows`` in place.
 
-    Orientations are in [0, 2 pi), or in [0, pi) where the half turn that swaps the carriers leaves the
-    arrangement as it is, up to a hair. Columns count from the leftmost peg of each carrier, rows from the
-    lowest of all. Pegs of a carrier are in the order of columns and rows.
+    Orientations are brought to [0, 2 pi), or to [0, pi) where a half turn that swaps the carriers leaves the
+    arrangement as it is, each up to ``hair``. Columns are counted from the leftmost peg of each carrier, rows
+    from the lowest peg of all. Pegs of a carrier are sorted by column, then row.
 
     Parameters
     ----------
-    standing : (N,) how many of the pegs, the first ones, stand on the carrier that stands still.
+    standing : (N,) how many of the four pegs, the first ones, are on the carrier that stands still.
     theta : (N,) orientation of the workpiece in radians.
-    columns, rows : (N, 4) lattice places.
-    orders : (N, 4) receives the order of the pegs.
-    swapped : how many pegs stand on each carrier of the arrangement that such a half turn leaves as it is; 0
+    columns, rows : (N, 4) lattice places of the pegs.
+    orders : (N, 4) receives the former index of the peg that is now at each place.
+    swapped : how many pegs are on each carrier of the arrangement that such a half turn leaves as it is; 0
         for none.
-    hair : orientations nearer than this, in radians, are one.
+    hair : orientations nearer than this, in radians, count as one.
     """
     for n in range(len(standing)):
         angle = (theta[n] + hair) % (2.0 * pi) - hair
@@ -120,5 +123,5 @@ def to_canonical_form(
 
 @inner
 def comes_before(column: IntArray, row: IntArray, one: int, other: int) -> bool:
-    """Whether a peg stands before another in the order of columns and rows."""
+    """Return whether peg ``one`` comes before peg ``other`` in the order of column, then row."""
     return column[one] < column[other] or (column[one] == column[other] and row[one] < row[other])

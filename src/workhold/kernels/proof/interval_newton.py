@@ -49,10 +49,17 @@ from workhold.kernels.contact.record import (
     UNKNOWNS,
     WORK_LENGTH,
     take_pegs,
-    touch,
+    write_contact_equations,
 )
 from workhold.kernels.contact.rules import ROUNDING
-from workhold.kernels.proof.newton_kantorovich import DISCARDED, LEAST_REACH, OPEN, PROVEN, ROUNDINGS, sizes
+from workhold.kernels.proof.newton_kantorovich import (
+    DISCARDED,
+    LEAST_REACH,
+    OPEN,
+    PROVEN,
+    ROUNDINGS,
+    measure_sizes,
+)
 from workhold.kernels.proof.variation import (
     ERROR,
     FORCE_BAND,
@@ -61,7 +68,7 @@ from workhold.kernels.proof.variation import (
     TILT,
     is_broken,
     move_to,
-    spread,
+    write_variation,
 )
 
 # A box is given up after so many parts; sides of what remains are made larger by this part, for rounding.
@@ -80,16 +87,17 @@ SHARPENINGS = 4
 
 
 class NewtonWorkSpace(NamedTuple):
-    """What parts of a box are worked with; made once, so that no part makes an array.
+    """Work space for contracting a box, made once, so that no part of the box makes an array.
 
     Parameters
     ----------
     w, pairs : (19, 4) and (3, 4, 2), see ``contact.record`` and ``variation``.
-    stack : (DEPTH, 2, 4) parts that wait, as middles and half widths.
+    stack : (DEPTH, 2, 4) parts that wait, as middles and half widths in the box's frame, in mm.
     numbers : (10, 4), see ``variation``.
-    slopes : (4, 4, 4), see :func:`combine`.
-    place, bounds : (2, 4) the part that is looked at, and what remains of it.
-    start : (4,) the middle of the box.
+    slopes : (4, 4, 4), see :func:`write_combined_slopes`.
+    place, bounds : (2, 4) the part at hand as middle and half widths, and what remains of it, see
+        :func:`contract_box`.
+    start : (4,) the middle of the box, as unknowns z.
     """
 
     w: Matrix
@@ -103,7 +111,7 @@ class NewtonWorkSpace(NamedTuple):
 
 
 def make_newton_space() -> NewtonWorkSpace:
-    """Return memory to contract boxes in."""
+    """Return new work space, not initialized, to contract boxes in."""
     return NewtonWorkSpace(
         np.empty((WORK_LENGTH, 4)),
         np.empty((3, 4, 2)),
@@ -117,11 +125,21 @@ def make_newton_space() -> NewtonWorkSpace:
 
 
 @inner
-def combine(frame: Array, size: float, length: float, w: Array, b: Array, slopes: Array) -> None:
-    """Fills in ``slopes`` (4, 4, 4).
+def write_combined_slopes(
+    frame: Array, size: float, length: float, w: Array, b: Array, slopes: Array
+) -> None:
+    """Write the system that :func:`contract_box` solves to ``slopes`` (4, 4, 4).
 
-    They are the Jacobian in the frame, how much each entry varies over a part, and of the combined values
-    (row 0) and their errors (row 1). The last is work space.
+    ``slopes[0]`` is U'JV, the Jacobian J in the box's frame, ``slopes[1]`` how much each of its entries
+    varies over the part. ``slopes[2, 0]`` are the values U'F at the middle in mm, ``slopes[2, 1]`` their
+    error bounds. ``slopes[3]`` is work space.
+
+    Parameters
+    ----------
+    frame : (2, 4, 4) U and V, the left and right singular vectors of the Jacobian in columns.
+    size : in mm, of the numbers in the contact equations F.
+    length : L in mm, by which moments are divided.
+    w, b : of the contacts at the part's middle, see ``contact.record`` and ``proof.variation``.
     """
     for k in range(4):
         tilt, moment, push = b[TILT, k], b[MOMENT_BAND, k], w[MOVING, k] * b[FORCE_BAND, k]
@@ -152,18 +170,18 @@ def combine(frame: Array, size: float, length: float, w: Array, b: Array, slopes
 
 
 @inner
-def step(place: Array, slopes: Array, bounds: Array) -> int:
-    """A step of Hansen and Sengupta.
+def contract_box(place: Array, slopes: Array, bounds: Array) -> int:
+    """Take one step of Hansen and Sengupta on a part of a box.
 
     Parameters
     ----------
-    place : (2, 4) middle and half widths of a part.
-    slopes : see :func:`combine`.
-    bounds : (2, 4) receives the lower and upper ends of what remains, from the middle.
+    place : (2, 4) middle and half widths of the part.
+    slopes : see :func:`write_combined_slopes`.
+    bounds : (2, 4) receives the lower and upper ends of what remains, relative to the middle.
 
     Returns
     -------
-    DISCARDED without solutions, PROVEN with exactly one, else OPEN
+    DISCARDED when the part has no solution, PROVEN when it has exactly one, else OPEN
     """
     verdict = PROVEN
     for k in range(4):
@@ -196,8 +214,13 @@ def step(place: Array, slopes: Array, bounds: Array) -> int:
 
 
 @inner
-def begin(record: Array, frame: Array, length: float, place: Array) -> None:
-    """The whole box of a record in its frame, a little larger."""
+def write_whole_box(record: Array, frame: Array, length: float, place: Array) -> None:
+    """Write the box of a record in its frame, enlarged by ``RIM``, to
+    ``place`` (2, 4): middle 0 and half widths in mm.
+
+    ``frame`` is (2, 4, 4), left and right singular vectors of the Jacobian in columns. See ``contact.record``
+    for the layout of ``record``.
+    """
     turn = length * record[REACH] + LEAST_REACH
     radius = record[LARGEST_RADIUS] + LEAST_REACH
     for j in range(4):
@@ -210,8 +233,13 @@ def begin(record: Array, frame: Array, length: float, place: Array) -> None:
 
 @inner
 def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Array, root: Array) -> None:
-    """Writes a part with exactly one solution as a record: its middle, and how far the solution may be from
-    there."""
+    """Write a part with exactly one solution to ``root`` (19,) as a
+    record: its middle, and bounds of the distance from there.
+
+    ``bounds`` is what remains of the part, bound_relative_errors to the unknowns in ``w``, in the directions of
+    ``frame[1]``. REACH (radians) and LARGEST_RADIUS (mm) bound how far the solution may be from the middle.
+    See ``contact.record`` for the layout of ``record``, ``w`` and ``root``.
+    """
     for k in range(PSI):
         root[k] = record[k]
     root[PSI], root[TAIL_X] = w[UNKNOWNS, 0], w[UNKNOWNS, 1]
@@ -227,8 +255,12 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
 
 @inner
 def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: float, whole: bool) -> int:
-    """Puts what remains of a part on the stack: ``whole`` or when it became much smaller in a direction where
-    it was more than ``least`` mm wide, else in halves. Returns the new height."""
+    """Push what remains of a part on the stack, undivided or as two
+    halves of its longest side; return the new height.
+
+    It stays undivided when ``whole``, or when it became much smaller along an axis where its half width was
+    more than ``least`` mm. ``waiting`` is the height before, which must be at most DEPTH - 2.
+    """
     longest, smaller = 0, False
     for j in range(4):
         side = bounds[1, j] - bounds[0, j]
@@ -250,7 +282,7 @@ def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: f
 
 
 @inner
-def solutions_in(
+def find_solutions(
     record: Array,
     features: Array,
     setting: Setting,
@@ -258,17 +290,21 @@ def solutions_in(
     space: NewtonWorkSpace,
     roots: Array,
 ) -> int:
-    """Finds every solution of a box that may be a fixture.
+    """Find every solution in a box that may be a fixture.
+
+    See ``contact.record`` for the layout of ``record`` and ``roots``, ``base.feature`` for that of
+    ``features``.
 
     Parameters
     ----------
     record : (19,) the box.
-    frame : (2, 4, 4) U and V.
-    roots : (ROOTS, 19) receives boxes with exactly one solution each.
+    features : (F, 12) rows with the slack of their ends.
+    frame : (2, 4, 4) left and right singular vectors of the Jacobian in columns.
+    roots : (ROOTS, 19) receives records of boxes with exactly one solution each.
 
     Returns
     -------
-    How many there are; -1 when the box is given up
+    Number of solutions; -1 when the box is given up
     """
     length = setting.limits.wrench_length
     w, pairs, b, slopes, stack = space.w, space.pairs, space.numbers, space.slopes, space.stack
@@ -276,7 +312,7 @@ def solutions_in(
     take_pegs(record, setting.lattice, w)
     for j in range(4):
         space.start[j] = w[UNKNOWNS, j]
-    begin(record, frame, length, stack[0])
+    write_whole_box(record, frame, length, stack[0])
     waiting, found, steps = 1, 0, 0
     for _ in range(MOST_PARTS):
         if waiting == 0:
@@ -285,15 +321,15 @@ def solutions_in(
         for j in range(4):
             place[0, j], place[1, j] = stack[waiting, 0, j], stack[waiting, 1, j]
         move_to(space.start, place, frame, length, w)
-        touch(record, features, length, w, pairs[0])
-        size, _ = sizes(record, features, pairs[0])
+        write_contact_equations(record, features, length, w, pairs[0])
+        size, _ = measure_sizes(record, features, pairs[0])
         least = ROUNDINGS * (size + length)
-        spread(record, features, size, setting, place, frame, w, pairs, b)
+        write_variation(record, features, size, setting, place, frame, w, pairs, b)
         if is_broken(record, features, setting, w, pairs, b):
             steps = 0
             continue
-        combine(frame, size, length, w, b, slopes)
-        verdict = step(place, slopes, bounds)
+        write_combined_slopes(frame, size, length, w, b, slopes)
+        verdict = contract_box(place, slopes, bounds)
         if verdict == DISCARDED:
             steps = 0
             continue
@@ -323,31 +359,38 @@ def write_solutions(
     verdicts: ByteVector,
     roots: Matrix,
 ) -> int:
-    """Write the verdict on each box and the roots of all, see :func:`interval_newton`, and return how many
-    there are."""
+    """Write the verdict on each box to ``verdicts`` and the boxes of
+    all solutions to ``roots``; return their number.
+
+    ``verdicts`` (N,) are OPEN for a box that is given up, else DISCARDED: its roots take its place. ``roots``
+    must have ROOTS rows for each record. Other parameters are those of :func:`contract_boxes`. See
+    ``contact.record`` for the layout of ``records`` and ``roots``, ``base.feature`` for that of ``features``.
+    """
     count = int(np.int64(0))
     for n in range(records.shape[0]):
-        found = solutions_in(records[n], features, setting, frames[n], space, roots[count : count + ROOTS])
+        found = find_solutions(records[n], features, setting, frames[n], space, roots[count : count + ROOTS])
         verdicts[n] = OPEN if found < 0 else DISCARDED
         count += max(found, 0)
     return count
 
 
-def interval_newton(
+def contract_boxes(
     records: Array, features: Array, setting: Setting, frames: Array
 ) -> tuple[ByteArray, Array]:
-    """Contract boxes one by one.
+    """Find the solutions in boxes, one box after the other.
+
+    See ``base.feature`` for the layout of ``features``.
 
     Parameters
     ----------
-    records : (N, 19), see ``kernels.contact.record``; where their contacts may be is finite.
+    records : (N, 19), see ``kernels.contact.record``, with finite REACH and LARGEST_RADIUS.
     features : (F, 12) rows with the slack of their ends.
-    frames : (N, 2, 4, 4) U and V of each.
+    frames : (N, 2, 4, 4) left and right singular vectors of each record's Jacobian in columns.
 
     Returns
     -------
-    ((N,) verdicts, open for boxes that are given up; (M, 19) boxes in place of the others, with exactly one
-    solution each)
+    ((N,) verdicts, OPEN for boxes that are given up and DISCARDED for all others; (M, 19) records of boxes
+        with exactly one solution each, which take the place of the discarded boxes)
     """
     verdicts = np.empty(records.shape[0], np.int8)
     roots = np.empty((ROOTS * records.shape[0], records.shape[1]))
@@ -359,17 +402,26 @@ def interval_newton(
 def write_jacobians(
     records: Matrix, features: Matrix, setting: Setting, w: Matrix, points: Matrix, out: Stack
 ) -> None:
-    """Write the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
+    """Write the Jacobians of the contact equations at the middles of records to ``out`` (N, 4, 4).
+
+    Rows are pegs, columns (L psi, tail x, tail y, separation); no unit. ``w`` (19, 4) and ``points`` (4, 2)
+    are work space. See ``contact.record`` for the layout of ``records`` and ``w``, ``base.feature`` for that
+    of ``features``.
+    """
     for n in range(records.shape[0]):
         take_pegs(records[n], setting.lattice, w)
-        touch(records[n], features, setting.limits.wrench_length, w, points)
+        write_contact_equations(records[n], features, setting.limits.wrench_length, w, points)
         for i in range(4):
             for j in range(4):
                 out[n, i, j] = w[SLOPES + i, j]
 
 
-def jacobians(records: Array, features: Array, setting: Setting) -> Array:
-    """Return the Jacobians (N, 4, 4) of the contact equations at the middles of records."""
+def compute_jacobians(records: Array, features: Array, setting: Setting) -> Array:
+    """Return the Jacobians (N, 4, 4) of the contact equations at the middles of records (N, 19).
+
+    Rows are pegs, columns (L psi, tail x, tail y, separation); no unit. See ``contact.record`` for the layout
+    of ``records``, ``base.feature`` for that of ``features``.
+    """
     out = np.empty((records.shape[0], 4, 4))
     write_jacobians(records, features, setting, np.empty((WORK_LENGTH, 4)), np.empty((4, 2)), out)
     return out

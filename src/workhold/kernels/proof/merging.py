@@ -14,17 +14,21 @@ from workhold.kernels.base.compiling import (
 
 @compiled
 def merge_boxes(low: Matrix, high: Matrix, may: IntVector, heads: IntVector) -> int:
-    """Lets each box join the one before it, where it may and both overlap, which grows to hold both.
+    """Merge each box into the group of the boxes just before it where both are of one candidate and overlap.
+
+    A group is represented by its first box, the head, whose corners in ``low`` and ``high`` grow in place to
+    hold the whole group. Each box is compared with the current head only.
 
     Parameters
     ----------
-    low, high : (N, 4) corners of the boxes; that of a box which others have joined holds all of them.
+    low, high : (N, 4) lower and upper corners of the boxes.
     may : (N,) 1 where a box is of the same candidate as the box before it.
-    heads : (N,) receives the numbers of the boxes that joined no other, negative less one where none joined.
+    heads : (N,) its first entries receive, for each group, the index h of its head, or -1 - h where the group
+        is a single box.
 
     Returns
     -------
-    How many boxes joined no other.
+    Number of groups.
     """
     count = 0
     head = 0

@@ -46,10 +46,19 @@ from workhold.kernels.base.compiling import (
     compiled,
     inner,
 )
-from workhold.kernels.base.distance import segment_distance
-from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y, largest_number
+from workhold.kernels.base.distance import measure_segment_distance
+from workhold.kernels.base.feature import (
+    AXIS_X,
+    AXIS_Y,
+    HALF_EXTENT,
+    IS_ARC,
+    RADIUS,
+    X,
+    Y,
+    find_largest_number,
+)
 from workhold.kernels.base.tables import Setting
-from workhold.kernels.chord.evaluation import end_slack
+from workhold.kernels.chord.evaluation import measure_end_slack
 from workhold.kernels.contact.record import (
     FEATURES,
     INVERSE,
@@ -63,9 +72,9 @@ from workhold.kernels.contact.record import (
     UNKNOWNS,
     invert,
     take_pegs,
-    touch,
+    write_contact_equations,
 )
-from workhold.kernels.contact.rules import minor_band, minors, outward_normal
+from workhold.kernels.contact.rules import bound_minor_error, compute_outward_normal, write_minors
 
 DISCARDED, OPEN, PROVEN = -1, 0, 1
 ROUNDS = 3
@@ -79,11 +88,15 @@ LEAST_REACH = 1e-9
 
 
 @inner
-def polish(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
-    """Newton's method from the unknowns in place, to the last digits; leaves the contacts there (see
-    ``contacts``)."""
+def polish_unknowns(record: Array, features: Array, length: float, w: Array, points: Array) -> None:
+    """Improve the unknowns in ``w`` in place by Newton's method to
+    the last digits, and compute the contacts there.
+
+    The contacts are written to ``w`` and ``points`` as by ``contact.record.touch``. A step that is singular
+    or longer than ``FARTHEST`` mm is not taken. See ``base.feature`` for the layout of ``features``.
+    """
     for _ in range(ROUNDS):
-        touch(record, features, length, w, points)
+        write_contact_equations(record, features, length, w, points)
         if invert(w) > SINGULAR:
             largest = 0.0
             for k in range(4):
@@ -92,34 +105,37 @@ def polish(record: Array, features: Array, length: float, w: Array, points: Arra
                 w[UNKNOWNS, 0] -= w[NEWTON, 0] / length
                 for k in range(1, 4):
                     w[UNKNOWNS, k] -= w[NEWTON, k]
-    touch(record, features, length, w, points)
+    write_contact_equations(record, features, length, w, points)
 
 
 @inner
-def sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
-    """What rounding and second derivatives are relative to.
+def measure_sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
+    """Return the lengths to which rounding errors and second
+    derivatives of the contact equations are relative.
+
+    See ``contact.record`` for the layout of ``record``, ``base.feature`` for that of ``features``.
 
     Returns
     -------
-    (size in mm of the numbers in the contact equations, radius of the smallest arc touched, infinite for
-    lines)
+    (size in mm of the numbers in the contact equations; radius in mm of the smallest arc touched, inf where
+        only lines are)
     """
     place = carrier = 0.0
     smallest = inf
     for k in range(4):
         row = features[int(record[FEATURES + k])]
         place = max(place, max(abs(points[k, 0]), abs(points[k, 1])))
-        carrier = max(carrier, largest_number(row))
+        carrier = max(carrier, find_largest_number(row))
         if row[IS_ARC] != 0.0:
             smallest = min(smallest, row[RADIUS])
     return (place + carrier, smallest)
 
 
 @inner
-def certificate(
+def certify_contacts(
     w: Array, size: float, smallest: float, length: float, backward_error: float
 ) -> tuple[float, float]:
-    """Certifies the contacts in place.
+    """Return the Newton-Kantorovich bounds for the contacts in ``w``.
 
     The second derivatives of the contact equations are bounded as follows. A peg's centre moves by at most
     (sqrt 2 + 2 + 1) per unit of the unknowns, and its second derivative is at most 4 / L. A distance from a
@@ -127,13 +143,15 @@ def certificate(
 
     Parameters
     ----------
-    size, smallest : see :func:`sizes`.
-    length : L in mm.
-    backward error : error in mm of the equations' values besides rounding.
+    w : as ``contact.record.touch`` fills it in; its inverse and Newton step are overwritten.
+    size, smallest : see :func:`measure_sizes`.
+    length : L in mm, by which moments are divided.
+    backward_error : error in mm of the equations' values besides rounding.
 
     Returns
     -------
-    (radius, unique), infinite and 0 without a certificate
+    (radius: within this distance in mm a solution exists; unique: within this distance there is no other),
+        inf and 0 without a certificate
     """
     if not invert(w) > SINGULAR:
         return (inf, 0.0)
@@ -164,22 +182,31 @@ def certificate(
 
 
 @inner
-def nearest_end(record: Array, features: Array, points: Array) -> float:
-    """How far in mm the contact nearest to an end of its feature is from breaking the rule of ends."""
+def measure_nearest_end(record: Array, features: Array, points: Array) -> float:
+    """Return the least distance in mm along its feature from a
+    contact to an end of that feature, slack included.
+
+    Negative where a contact lies beyond an end. See ``chord.evaluation.measure_end_slack``. See ``contact.record``
+    for the layout of ``record``, ``base.feature`` for that of ``features``.
+    """
     least = inf
     for k in range(4):
-        least = min(least, end_slack(features[int(record[FEATURES + k])], points[k, 0], points[k, 1]))
+        least = min(least, measure_end_slack(features[int(record[FEATURES + k])], points[k, 0], points[k, 1]))
     return least
 
 
 @inner
-def held(w: Array, pairs: Array) -> tuple[float, float]:
-    """How four contacts in place stand between the carriers, with the null vector for forces.
+def compute_clamping(w: Array, pairs: Array) -> tuple[float, float]:
+    """Return the gap between the carriers and the standing pegs'
+    push, for four contacts and their null vector.
+
+    ``pairs`` (2, 4, 2) holds centres and outward normals; the null vector in ``w`` stands for the forces. See
+    ``contact.record`` for the layout of ``w``.
 
     Returns
     -------
-    (gap, the x distance in mm from the rightmost standing to the leftmost moving peg; push of the standing
-    pegs along x)
+    (x distance in mm from the rightmost standing to the leftmost moving peg; force of the standing pegs on
+        the part along +x, in the null vector's unit)
     """
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     points, normals, null = pairs[0], pairs[1], w[NULL]
@@ -195,25 +222,30 @@ def held(w: Array, pairs: Array) -> tuple[float, float]:
 
 
 @inner
-def sign_of(middle: float, doubt: float) -> int:
-    """PROVEN when a number known up to a doubt is positive, DISCARDED when it is negative, else OPEN."""
+def judge_sign(middle: float, doubt: float) -> int:
+    """Return PROVEN when every number within ``doubt`` of ``middle`` is
+    positive, DISCARDED when all are negative, else OPEN.
+    """
     if middle - doubt > 0.0:
         return PROVEN
     return DISCARDED if middle + doubt < 0.0 else OPEN
 
 
 @inner
-def wrenches(record: Array, features: Array, length: float, w: Array, pairs: Array) -> float:
-    """Fills in the normals, at ``pairs[1]``, and the null vector, not scaled, of the contacts in place, and
-    returns its sum of sizes."""
+def write_wrenches(record: Array, features: Array, length: float, w: Array, pairs: Array) -> float:
+    """Write the normals of the contacts to ``pairs[1]`` and their null vector, not scaled, to ``w``.
+
+    Return the sum of the absolute values of the null vector. ``pairs[0]`` holds the peg centres. See
+    ``contact.record`` for the layout of ``record`` and ``w``, ``base.feature`` for that of ``features``.
+    """
     for k in range(4):
         row = features[int(record[FEATURES + k])]
-        pairs[1, k, 0], pairs[1, k, 1] = outward_normal(row, pairs[0, k, 0], pairs[0, k, 1])
-    return minors(pairs[0], pairs[1], length, w[NULL])
+        pairs[1, k, 0], pairs[1, k, 1] = compute_outward_normal(row, pairs[0, k, 0], pairs[0, k, 1])
+    return write_minors(pairs[0], pairs[1], length, w[NULL])
 
 
 @inner
-def judged(
+def judge_contacts(
     record: Array,
     features: Array,
     setting: Setting,
@@ -222,44 +254,54 @@ def judged(
     w: Array,
     pairs: Array,
 ) -> int:
-    """Decides contacts in place by the signs of enclosures of five numbers that must all be positive: ends,
-    gap, span, closure, clamping. Those of one of two clamps are ends, the determinant of the standing pegs'
-    wrenches, and its push.
+    """Return PROVEN, DISCARDED or OPEN for contacts in place, by
+    enclosures of five numbers that must all be positive.
+
+    The numbers belong to ends, gap, span, closure and clamping. For one of two clamps (``limits.pairing``),
+    they are three: ends, the determinant of the standing pegs' wrenches, and the clamp's push. ``w`` and
+    ``pairs[0]`` hold the contacts, see ``contact.record.touch``; ``pairs[1]`` receives the outward normals.
+    See ``base.feature`` for the layout of ``features``.
 
     Parameters
     ----------
     radius : how far in mm the exact unknowns may be from those in place.
-    smallest : radius of the smallest arc touched, infinite for lines.
+    smallest : radius in mm of the smallest arc touched, inf where only lines are.
     """
     length, null = setting.limits.wrench_length, w[NULL]
-    size = wrenches(record, features, length, w, pairs)
-    gap, push = held(w, pairs)
+    size = write_wrenches(record, features, length, w, pairs)
+    gap, push = compute_clamping(w, pairs)
     reach = 4.5 * radius
     swing = reach / smallest
-    band = minor_band(swing, reach, length)
-    verdict = sign_of(
-        nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12
+    band = bound_minor_error(swing, reach, length)
+    verdict = judge_sign(
+        measure_nearest_end(record, features, pairs[0]) - setting.limits.contact_margin, 1.2 * reach + 1e-12
     )
     if setting.limits.pairing != 0.0:
-        verdict = min(verdict, sign_of(abs(null[3]) - LEAST_SEAT, band))
+        verdict = min(verdict, judge_sign(abs(null[3]) - LEAST_SEAT, band))
         facing = pairs[1, 3, 0] * cos(w[UNKNOWNS, 0]) + pairs[1, 3, 1] * sin(w[UNKNOWNS, 0])
-        return min(verdict, sign_of(setting.limits.clamping * facing - LEAST_PUSH, swing + radius / length))
+        return min(
+            verdict, judge_sign(setting.limits.clamping * facing - LEAST_PUSH, swing + radius / length)
+        )
     low = min(min(null[0], null[1]), min(null[2], null[3]))
     high = max(max(null[0], null[1]), max(null[2], null[3]))
     sign = 1.0 if high >= -low else -1.0
     closure = low if sign > 0.0 else -high
     # The pegs stand in their holes: the gap is as far off as the fourth unknown, whatever the part does.
-    verdict = min(verdict, sign_of(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
-    verdict = min(verdict, sign_of(size - LEAST_SPAN, 4.0 * band))
+    verdict = min(verdict, judge_sign(gap - (setting.limits.gap - GAP_SLACK), 1.5 * radius + 1e-12))
+    verdict = min(verdict, judge_sign(size - LEAST_SPAN, 4.0 * band))
     # Besides its own band that of the size, of four minors, counts by 1e-9 and 1e-6; up to three forces push.
-    verdict = min(verdict, sign_of(closure - LEAST_CLOSURE * size, 1.1 * band))
+    verdict = min(verdict, judge_sign(closure - LEAST_CLOSURE * size, 1.1 * band))
     doubt = 3.1 * band + size * (swing + radius / length)
-    return min(verdict, sign_of(sign * setting.limits.clamping * push - LEAST_CLAMPING * size, doubt))
+    return min(verdict, judge_sign(sign * setting.limits.clamping * push - LEAST_CLAMPING * size, doubt))
 
 
-def discs_around(outline: Array, margin: float) -> Array:
-    """Centres and squared radii (S, 3) in mm of discs that hold (S, 10) segments and what is ``margin``
-    around them."""
+def make_discs(outline: Array, margin: float) -> Array:
+    """Return discs, one for each of (S, 10) segments, that hold the
+    segment and all points within ``margin`` mm of it.
+
+    Columns (S, 3): centre x and y in mm, squared radius in mm^2. See ``base.feature`` for the layout of
+    ``outline``.
+    """
     half, radius = outline[:, HALF_EXTENT], outline[:, RADIUS]
     # The disc on the chord, for an arc up to a half circle.
     short = np.where(outline[:, IS_ARC] == 0.0, 0.0, np.minimum(half, pi / 2.0))
@@ -277,20 +319,24 @@ def discs_around(outline: Array, margin: float) -> Array:
 
 @inner
 def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting: Setting) -> bool:
-    """Whether four pegs, of which some move (4,), are clear of all of (S, 10) segments, to within
-    ``TOUCHING``."""
+    """Return whether four pegs at ``points`` (4, 2) are clear of all
+    of (S, 10) segments, to within ``TOUCHING``.
+
+    ``moves`` (4,) is 0 for a peg with the standing radius, else the moving radius counts; ``discs`` (S, 3)
+    are those of :func:`make_discs`. See ``base.feature`` for the layout of ``outline``.
+    """
     for k in range(4):
         x, y = points[k, 0], points[k, 1]
         least = (setting.standing_radius if moves[k] == 0.0 else setting.moving_radius) - TOUCHING
         for n in range(discs.shape[0]):
             dx, dy = x - discs[n, 0], y - discs[n, 1]
-            if dx * dx + dy * dy < discs[n, 2] and segment_distance(x, y, outline[n]) < least:
+            if dx * dx + dy * dy < discs[n, 2] and measure_segment_distance(x, y, outline[n]) < least:
                 return False
     return True
 
 
 @compiled
-def certified(
+def certify_records(
     records: Matrix,
     features: Matrix,
     outline: Matrix,
@@ -301,24 +347,29 @@ def certified(
     w: Matrix,
     pairs: Stack,
 ) -> None:
-    """Decides records one by one.
+    """Write a solution and a verdict for each record.
+
+    See ``base.feature`` for the layout of ``features`` and ``outline``.
 
     Parameters
     ----------
     records : (N, 19), see ``kernels.contact.record``; none of them given up.
     features : (F, 12) rows with the slack of their ends.
-    outline, discs : (S, 10) the part's faces, and :func:`discs_around` these and the pegs that touch them.
-    solutions : (N, 4) receives the unknowns.
-    verdicts : (N,) receives the verdicts; open where another solution may be in the record's box.
+    outline : (S, 10) the part's faces.
+    discs : (S, 3) result of :func:`make_discs` for the outline, with the pegs' largest radius or more as
+        margin.
+    solutions : (N, 4) receives the polished unknowns (psi, tail x, tail y, separation).
+    verdicts : (N,) receives PROVEN, DISCARDED or OPEN; OPEN also where another solution may be in the
+        record's box.
     w, pairs : (19, 4) and (2, 4, 2) work space, see ``contact.record``.
     """
     length, points = setting.limits.wrench_length, pairs[0]
     for n in range(records.shape[0]):
         record = records[n]
         take_pegs(record, setting.lattice, w)
-        polish(record, features, length, w, points)
-        size, smallest = sizes(record, features, points)
-        radius, unique = certificate(w, size, smallest, length, setting.backward_error)
+        polish_unknowns(record, features, length, w, points)
+        size, smallest = measure_sizes(record, features, points)
+        radius, unique = certify_contacts(w, size, smallest, length, setting.backward_error)
         away, verdicts[n] = 0.0, OPEN
         for k in range(4):
             solutions[n, k] = w[UNKNOWNS, k]
@@ -326,7 +377,7 @@ def certified(
         # The exact contact may be this far, where the separation is the worst known.
         box = 2.0 * (record[LARGEST_RADIUS] + LEAST_REACH + length * record[REACH] + LEAST_REACH)
         if radius < inf and away + box <= unique:
-            verdicts[n] = judged(record, features, setting, radius, smallest, w, pairs)
+            verdicts[n] = judge_contacts(record, features, setting, radius, smallest, w, pairs)
             # The trimmed features keep a peg clear of the rest of the part; this is looked at once more.
             if verdicts[n] == PROVEN and not is_clear(points, w[MOVING], outline, discs, setting):
                 verdicts[n] = DISCARDED

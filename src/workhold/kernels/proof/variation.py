@@ -12,7 +12,7 @@ from math import cos, hypot, inf, sin, sqrt
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE, LEAST_PUSH, LEAST_SEAT, LEAST_SPAN
 from workhold.kernels.base.compiling import Array, inner
-from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y, is_shallow, local_size
+from workhold.kernels.base.feature import IS_ARC, RADIUS, SIGN, X, Y, compute_local_size, is_shallow
 from workhold.kernels.base.tables import Setting
 from workhold.kernels.contact.record import (
     FEATURES,
@@ -24,8 +24,8 @@ from workhold.kernels.contact.record import (
     STEP_X,
     UNKNOWNS,
 )
-from workhold.kernels.contact.rules import ROUNDING, minors
-from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, nearest_end
+from workhold.kernels.contact.rules import ROUNDING, write_minors
+from workhold.kernels.proof.newton_kantorovich import ROUNDINGS, measure_nearest_end
 
 # Half a unit in the last place, and rounding in mm of ends and gaps.
 HALF_UNIT = 1.2e-16
@@ -41,8 +41,13 @@ NUMBERS = 10
 
 @inner
 def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
-    """Brings the unknowns to the middle of a part, z0 + V s, with what rounding leaves of the sum, in mm, at
-    NEWTON."""
+    """Set the unknowns in ``w`` to the middle of a part of a box, with
+    the rounding error of the sum in mm at its row NEWTON.
+
+    The middle is ``z`` (4,), that of the box, plus ``frame[1]`` (4, 4) times ``place[0]`` (4,), in the units
+    of the unknowns. ``length`` is L in mm, by which moments are divided. See ``contact.record`` for the
+    layout of ``w``.
+    """
     for i in range(4):
         step = 0.0
         for j in range(4):
@@ -56,7 +61,7 @@ def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> No
 
 
 @inner
-def spread(
+def write_variation(
     record: Array,
     features: Array,
     size: float,
@@ -67,8 +72,13 @@ def spread(
     pairs: Array,
     b: Array,
 ) -> None:
-    """Fills in how much the contacts in place vary over a part: variations, tilts and arms, with the arms and
-    normals themselves in ``pairs`` (3, 4, 2) behind the centres."""
+    """Write how much the contacts in place vary over a part to ``b`` (10, 4), all rows except MINOR_BAND.
+
+    ``pairs[1]`` receives the arms from the first peg in mm, ``pairs[2]`` the outward unit normals;
+    ``pairs[0]`` holds the centres. ``size`` is in mm, of the numbers in the contact equations. See
+    ``contact.record`` for the layout of ``record`` and ``w``, ``base.feature`` for that of ``features``,
+    ``proof.variation`` for that of ``b``.
+    """
     length, backward_error = setting.limits.wrench_length, setting.backward_error
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
     turn = separation = 0.0
@@ -90,7 +100,7 @@ def spread(
             variation += place[1, j] * sqrt(away_x * away_x + away_y * away_y)
         tilt, sign = 0.0, 1.0
         ray = abs(pairs[0, k, 0]) + abs(pairs[0, k, 1])
-        ray += local_size(row) if is_shallow(row) else abs(row[X]) + abs(row[Y])
+        ray += compute_local_size(row) if is_shallow(row) else abs(row[X]) + abs(row[Y])
         # Seven roundings of each coordinate of the arm, one of the sum with the tail's, one of the difference
         # from the feature's middle, and four of products and root.
         b[ERROR, k] = HALF_UNIT * (10.0 * arm + 6.0 * ray) + backward_error
@@ -109,10 +119,14 @@ def spread(
 
 
 @inner
-def turned_by(
+def bound_cross_product(
     record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array
 ) -> tuple[float, float]:
-    """Size of the cross product of two normals, and how much it varies over a part."""
+    """Return the absolute cross product of the normals of pegs i and j, and how much it varies over a part.
+
+    ``pairs`` and ``b`` are those of :func:`write_variation`. See ``contact.record`` for the layout of
+    ``record`` and ``w``, ``base.feature`` for that of ``features``, ``proof.variation`` for that of ``b``.
+    """
     one, other = pairs[2, i, 0] * pairs[2, j, 1], pairs[2, i, 1] * pairs[2, j, 0]
     cross = one - other
     band = b[TILT, i] + b[TILT, j] + b[TILT, i] * b[TILT, j]
@@ -123,15 +137,20 @@ def turned_by(
     ):
         # Normals of exactly the same or opposite direction, as lines have, are parallel without error.
         band += ROUNDINGS * (abs(one) + abs(other))
-    return (abs(cross), min(band, arcs_turned_by(record, features, i, j, pairs, w, b)))
+    return (abs(cross), min(band, bound_arcs_cross_product(record, features, i, j, pairs, w, b)))
 
 
 @inner
-def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array) -> float:
-    """How much the cross product of the normals of two arcs varies over a part; infinite for others.
+def bound_arcs_cross_product(
+    record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array
+) -> float:
+    """Return how much the cross product of the normals of pegs i and
+    j, both on arcs, varies over a part; inf for others.
 
     Only the difference of the rays from their centres counts, which depends on the orientation alone where
-    both pegs are on one carrier. Parallel normals stay so wherever the part slides.
+    both pegs are on one carrier. Parallel normals stay parallel wherever the part slides. ``pairs`` and ``b``
+    are those of :func:`write_variation`. See ``contact.record`` for the layout of ``record`` and ``w``,
+    ``base.feature`` for that of ``features``, ``proof.variation`` for that of ``b``.
     """
     one, two = features[int(record[FEATURES + i])], features[int(record[FEATURES + j])]
     if one[IS_ARC] == 0.0 or two[IS_ARC] == 0.0:
@@ -143,12 +162,13 @@ def arcs_turned_by(record: Array, features: Array, i: int, j: int, pairs: Array,
 
 
 @inner
-def face_one_way(pairs: Array, b: Array) -> bool:
-    """Whether all normals have a part along the first one everywhere in a part: no forces of such contacts
-    add up to none.
+def are_normals_one_sided(pairs: Array, b: Array) -> bool:
+    """Return whether all normals have a positive component along the first one everywhere in a part.
 
-    So it is where pegs in one row of holes touch a line and the arcs beside it at tangent joints, along which
-    the workpiece seems to slide. These contacts hardly determine where it is, but only which way they face.
+    No non-negative forces at such contacts add up to zero. This occurs where pegs in one row of holes touch a
+    line and the arcs beside it at tangent joints, along which the workpiece seems to slide. These contacts
+    hardly determine the part's place, but they do determine the directions of the normals. ``pairs`` and
+    ``b`` are those of :func:`write_variation`. See ``proof.variation`` for the layout of ``b``.
     """
     for k in range(4):
         along = pairs[2, 0, 0] * pairs[2, k, 0] + pairs[2, 0, 1] * pairs[2, k, 1]
@@ -159,7 +179,12 @@ def face_one_way(pairs: Array, b: Array) -> bool:
 
 @inner
 def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs: Array, b: Array) -> bool:
-    """Whether some rule is broken everywhere in a part."""
+    """Return whether some rule of a fixture is broken everywhere in a part, see ``contact.rules``.
+
+    ``pairs`` and ``b`` are those of :func:`write_variation`; the null vector in ``w`` and MINOR_BAND in ``b``
+    are overwritten. See ``contact.record`` for the layout of ``record`` and ``w``, ``base.feature`` for that
+    of ``features``, ``proof.variation`` for that of ``b``.
+    """
     reach, null = 0.0, w[NULL]
     moving, standing = inf, -inf
     for k in range(4):
@@ -171,14 +196,14 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
             moving = min(moving, w[STEP_X, k] + w[UNKNOWNS, 3])
     if moving - standing + b[OTHERS, 1] + HAIR < setting.limits.gap - GAP_SLACK:
         return True
-    if nearest_end(record, features, pairs[0]) - setting.limits.contact_margin + reach + HAIR < 0.0:
+    if measure_nearest_end(record, features, pairs[0]) - setting.limits.contact_margin + reach + HAIR < 0.0:
         return True
-    size = minors(pairs[1], pairs[2], setting.limits.wrench_length, null)
+    size = write_minors(pairs[1], pairs[2], setting.limits.wrench_length, null)
     for k in range(4):
         b[MINOR_BAND, k] = 0.0
     for i in range(4):
         for j in range(i + 1, 4):
-            cross, band = turned_by(record, features, i, j, pairs, w, b)
+            cross, band = bound_cross_product(record, features, i, j, pairs, w, b)
             for a in range(4):
                 if a != i and a != j:
                     moment = b[MOMENT_BAND, a] + ROUNDINGS * b[MOMENT, a]
@@ -186,7 +211,7 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
     if setting.limits.pairing != 0.0:
         pushes = setting.limits.clamping * b[ALONG_X, 3] + b[FORCE_BAND, 3] >= LEAST_PUSH
         return not (pushes and abs(null[3]) + b[MINOR_BAND, 3] >= LEAST_SEAT)
-    if face_one_way(pairs, b):
+    if are_normals_one_sided(pairs, b):
         return True
     doubt = b[MINOR_BAND, 0] + b[MINOR_BAND, 1] + b[MINOR_BAND, 2] + b[MINOR_BAND, 3]
     if size + doubt < LEAST_SPAN:
@@ -198,8 +223,13 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
 
 @inner
 def may_clamp(sign: float, clamping: float, size: float, w: Array, b: Array) -> bool:
-    """Whether forces of one sign may close and clamp; the force is the push of the standing pegs, and as well
-    what the moving pegs take up. ``size`` is the least that the sizes of the minors add up to."""
+    """Return whether forces with the sign ``sign`` (1 or -1) may close and clamp somewhere in a part.
+
+    Both the push of the standing pegs and what the moving pegs take up must reach the least clamping force.
+    ``clamping`` is 1 or -1 as in ``Limits``, ``size`` a lower bound of the sum of the minors' absolute
+    values. ``b`` is that of :func:`write_variation`, with MINOR_BAND written; the minors are at NULL in
+    ``w``. See ``contact.record`` for the layout of ``w``, ``proof.variation`` for that of ``b``.
+    """
     null = w[NULL]
     standing = moving = 0.0
     for k in range(4):

@@ -15,11 +15,11 @@ from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.columns import DescentWorkSpace, Obstacles
 from workhold.kernels.seating.obstacles import (
-    angle_from_middle,
-    cosine_and_sine,
-    nearest_piece,
-    off_wall,
-    turned_place,
+    compute_angle_from_middle,
+    compute_cosine_and_sine,
+    compute_turned_place,
+    find_nearest_piece,
+    measure_wall_clearance,
 )
 
 # mm. Pegs this near to a piece touch it; shorter steps and smaller gains are none; how deep pegs may enter.
@@ -32,24 +32,37 @@ HALVINGS, PARTS, FARTHER = 3, 3, 3.0
 
 
 @inner
-def tangent_at(row: Array, x: float, y: float) -> tuple[float, float]:
-    """Unit tangent of a piece, counter-clockwise on an arc."""
+def compute_tangent(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Return the unit tangent (x, y) of a piece at the point (x, y):
+    along a line's axis, counter-clockwise on an arc.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (row[AXIS_X], row[AXIS_Y])
     return (-(y - row[Y]) / row[RADIUS], (x - row[X]) / row[RADIUS])
 
 
 @inner
-def bend_at(row: Array, x: float, y: float, ux: float, uy: float) -> float:
-    """Second derivative of the place along a piece, times u, in 1 / mm."""
+def compute_bend(row: Array, x: float, y: float, ux: float, uy: float) -> float:
+    """Return the scalar product of the curvature vector of a piece at
+    (x, y) with the vector (ux, uy), in 1 / mm.
+
+    The curvature vector is the second derivative of the point over arc length, 0 on a line. See
+    ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return 0.0
     return -(ux * (x - row[X]) + uy * (y - row[Y])) / (row[RADIUS] * row[RADIUS])
 
 
 @inner
-def moved_along(row: Array, x: float, y: float, s: float) -> tuple[float, float]:
-    """The place s mm further along a piece's carrier."""
+def move_along(row: Array, x: float, y: float, s: float) -> tuple[float, float]:
+    """Return the point s mm further along a piece's line or circle
+    from (x, y), counter-clockwise on a circle.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (x + s * row[AXIS_X], y + s * row[AXIS_Y])
     dx, dy = x - row[X], y - row[Y]
@@ -58,31 +71,44 @@ def moved_along(row: Array, x: float, y: float, s: float) -> tuple[float, float]
 
 
 @inner
-def parameter(row: Array, x: float, y: float) -> float:
-    """The parameter of a place of a piece's carrier."""
+def find_parameter(row: Array, x: float, y: float) -> float:
+    """Return the parameter of a point on a piece's line (mm) or circle (radians), 0 at the piece's middle.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     dx, dy = x - row[X], y - row[Y]
-    return dx * row[AXIS_X] + dy * row[AXIS_Y] if row[IS_ARC] == 0.0 else angle_from_middle(row, dx, dy)
+    return (
+        dx * row[AXIS_X] + dy * row[AXIS_Y] if row[IS_ARC] == 0.0 else compute_angle_from_middle(row, dx, dy)
+    )
 
 
 @inner
 def is_peg_free(x: float, y: float, peg: int, obstacles: Obstacles, known: Array) -> bool:
-    """Whether a peg at a place of the part is not in it.
+    """Return whether a peg with its centre at (x, y) of the part's
+    frame is outside the part, to within ``ENTERED`` mm.
 
-    A place within a disc that is known to be free is free, too. The disc (x, y, radius) stands in ``known``,
-    with the piece that was the nearest.
+    ``known`` (4, 4) caches for each peg a place (x, y), its clearance and the nearest piece. A place within
+    that clearance of the cached one is free without a search; otherwise the row of the peg is overwritten.
     """
     dx, dy = x - known[peg, 0], y - known[peg, 1]
     if known[peg, 2] > 0.0 and dx * dx + dy * dy < known[peg, 2] * known[peg, 2]:
         return True
     first, end = obstacles.parts[obstacles.right[peg], 0], obstacles.parts[obstacles.right[peg], 1]
-    free, piece = nearest_piece(x, y, obstacles.rows, first, end, int(known[peg, 3]))
+    free, piece = find_nearest_piece(x, y, obstacles.rows, first, end, int(known[peg, 3]))
     known[peg, 0], known[peg, 1], known[peg, 2], known[peg, 3] = x, y, free, piece
     return free >= -ENTERED
 
 
 @inner
-def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: float) -> tuple[float, float]:
-    """The step down of slopes g and curvatures h, each counted as above 0, no longer than ``most``."""
+def compute_newton_step(
+    haa: float, hab: float, hbb: float, ga: float, gb: float, most: float
+) -> tuple[float, float]:
+    """Return the Newton step that lowers a function of two variables
+    with slopes (ga, gb), no longer than ``most``.
+
+    ``haa``, ``hab``, ``hbb`` are its second derivatives. The absolute values of their eigenvalues are used,
+    at least ``FLATTEST``, so that the step leads down.
+    """
     mean, half = (haa + hbb) / 2.0, hypot((haa - hbb) / 2.0, hab)
     ca, cb = 1.0, 0.0
     if half > 0.0:
@@ -97,7 +123,7 @@ def newton_step(haa: float, hab: float, hbb: float, ga: float, gb: float, most: 
 
 
 @inner
-def antipodal_pose(
+def write_antipodal_pose(
     config: Array,
     p: int,
     q: int,
@@ -109,10 +135,12 @@ def antipodal_pose(
     with_angle: bool,
     trial: Array,
 ) -> tuple[bool, float, float]:
-    """Writes the configuration in which pegs p and q stand at two places of the part.
+    """Write the configuration in which pegs p and q are at two points
+    of the part to ``trial`` (4,): theta, x, y, S.
 
-    Returns whether there is one above the stop, and the cosine and the sine of its orientation, which itself
-    is written only where it is asked for.
+    Peg p is at (x, y), peg q at (v, w), in the part's frame in mm. Return (whether such a configuration
+    exists with S above the stop, cosine of theta, sine of theta). Theta itself, within half a turn of that in
+    ``config``, is written only ``with_angle``. S is the jaw separation in mm.
     """
     run, rise = obstacles.pegs[q, 0] - obstacles.pegs[p, 0], obstacles.pegs[q, 1] - obstacles.pegs[p, 1]
     dx, dy = v - x, w - y
@@ -135,21 +163,28 @@ def antipodal_pose(
 def is_free(
     config: Array, cosine: float, sine: float, p: int, q: int, obstacles: Obstacles, known: Array
 ) -> bool:
-    """Whether no peg but two is in the part, and no wall, at an orientation of known cosine and sine."""
+    """Return whether all pegs except p and q, and the wall, are clear of the part, to within ``ENTERED`` mm.
+
+    ``cosine`` and ``sine`` are those of the orientation of ``config``; ``known`` is described at
+    :func:`is_peg_free`. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     for peg in range(obstacles.pegs.shape[0]):
         if peg in (p, q):
             continue
-        x, y = turned_place(config, cosine, sine, obstacles, peg)
+        x, y = compute_turned_place(config, cosine, sine, obstacles, peg)
         if not is_peg_free(x, y, peg, obstacles, known):
             return False
-    return off_wall(config, obstacles, 0.0) >= -ENTERED
+    return measure_wall_clearance(config, obstacles, 0.0) >= -ENTERED
 
 
 @inner
-def keeps_to(piece: int, at: float, peg: int, x: float, y: float, obstacles: Obstacles, known: Array) -> bool:
-    """Whether a peg at a parameter of a piece's carrier touches the piece and is not in the part.
+def is_peg_on_piece(
+    piece: int, at: float, peg: int, x: float, y: float, obstacles: Obstacles, known: Array
+) -> bool:
+    """Return whether a peg at the parameter ``at`` of a piece's line or circle, at (x, y), touches the piece.
 
-    Past a pocket it is in it.
+    Beyond the piece's ends, up to its span, the peg must also be free, as past a pocket it is inside the
+    part.
     """
     half = obstacles.rows[piece, HALF_EXTENT]
     if obstacles.rows[piece, IS_ARC] != 0.0 and half >= pi:
@@ -160,18 +195,22 @@ def keeps_to(piece: int, at: float, peg: int, x: float, y: float, obstacles: Obs
 
 
 @inner
-def antipodal_step(
+def write_antipodal_step(
     config: Array, count: int, longest: float, most: float, obstacles: Obstacles, work: DescentWorkSpace
 ) -> float:
-    """Writes a configuration further down to ``trial`` where one peg of each jaw touches one piece.
+    """Write a configuration with a lower separation to
+    ``work.trial``, where one peg of each jaw touches one piece.
 
-    Returns how far both contacts go: negative where something is in the way of a longer step, 0 where there
-    is none.
+    Return how far in mm both contacts moved together; negated where obstacles made the step shorter than the
+    Newton step; 0 where there is no step (then ``work.trial`` is undefined). A configuration is theta in
+    radians, x, y and the jaw separation S in mm. A configuration is theta in radians, x, y and the jaw
+    separation S in mm.
 
     Parameters
     ----------
-    count : how many clearances ``near`` has.
-    longest, most : how far both contacts may go together, and the part by some more, in mm.
+    count : number of clearances in ``work.near``.
+    longest : greatest length of the step of both contacts together, in mm.
+    most : the part may move by up to ``FARTHER`` times this, in mm.
     """
     near, trial, known = work.near, work.trial, work.known
     one, two = -1, -1
@@ -194,21 +233,21 @@ def antipodal_step(
         # The peg that moves pushes outward.
         return 0.0
     a, b = obstacles.rows[a_number], obstacles.rows[b_number]
-    cosine, sine = cosine_and_sine(config[0], work.turn)
-    ax, ay = turned_place(config, cosine, sine, obstacles, p)
-    bx, by = turned_place(config, cosine, sine, obstacles, q)
+    cosine, sine = compute_cosine_and_sine(config[0], work.turn)
+    ax, ay = compute_turned_place(config, cosine, sine, obstacles, p)
+    bx, by = compute_turned_place(config, cosine, sine, obstacles, q)
     d = hypot(bx - ax, by - ay)
     ux, uy = (bx - ax) / d, (by - ay) / d
-    sx, sy = tangent_at(a, ax, ay)
-    tx, ty = tangent_at(b, bx, by)
+    sx, sy = compute_tangent(a, ax, ay)
+    tx, ty = compute_tangent(b, bx, by)
     us, ut = ux * sx + uy * sy, ux * tx + uy * ty
-    haa = (1.0 - us * us) / d - bend_at(a, ax, ay, ux, uy)
-    hbb = (1.0 - ut * ut) / d + bend_at(b, bx, by, ux, uy)
-    along_a, along_b = newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
+    haa = (1.0 - us * us) / d - compute_bend(a, ax, ay, ux, uy)
+    hbb = (1.0 - ut * ut) / d + compute_bend(b, bx, by, ux, uy)
+    along_a, along_b = compute_newton_step(haa, -(sx * tx + sy * ty - us * ut) / d, hbb, -us, ut, longest)
     asked = hypot(along_a, along_b)
     a_unit = a[RADIUS] if a[IS_ARC] != 0.0 else 1.0
     b_unit = b[RADIUS] if b[IS_ARC] != 0.0 else 1.0
-    a_at, b_at = parameter(a, ax, ay), parameter(b, bx, by)
+    a_at, b_at = find_parameter(a, ax, ay), find_parameter(b, bx, by)
     for _ in range(HALVINGS):
         length = hypot(along_a, along_b)
         if length <= SHORTEST:
@@ -217,16 +256,16 @@ def antipodal_step(
         # No ridge lies between: the way falls, and is free, also before its end.
         for part in range(1, PARTS + 1):
             s, t = along_a * part / PARTS, along_b * part / PARTS
-            x, y = moved_along(a, ax, ay, s)
-            v, w = moved_along(b, bx, by, t)
+            x, y = move_along(a, ax, ay, s)
+            v, w = move_along(b, bx, by, t)
             # A wall sees the part as it is turned.
             turned = part == PARTS or obstacles.hull.shape[0] > 0
-            good, cosine, sine = antipodal_pose(config, p, q, x, y, v, w, obstacles, turned, trial)
+            good, cosine, sine = write_antipodal_pose(config, p, q, x, y, v, w, obstacles, turned, trial)
             good = (
                 good
                 and trial[3] < level - GAIN
-                and keeps_to(a_number, a_at + s / a_unit, p, x, y, obstacles, known)
-                and keeps_to(b_number, b_at + t / b_unit, q, v, w, obstacles, known)
+                and is_peg_on_piece(a_number, a_at + s / a_unit, p, x, y, obstacles, known)
+                and is_peg_on_piece(b_number, b_at + t / b_unit, q, v, w, obstacles, known)
                 and is_free(trial, cosine, sine, p, q, obstacles, known)
             )
             if not good:

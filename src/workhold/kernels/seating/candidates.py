@@ -35,9 +35,16 @@ from workhold.kernels.seating.columns import (
     SEPARATION,
     SOURCE,
     THETA,
-    Given,
+    HeldPart,
 )
-from workhold.kernels.seating.obstacles import Foot, clearance, distance_to, foot, normal_at, on_piece
+from workhold.kernels.seating.obstacles import (
+    Foot,
+    compute_normal,
+    find_foot,
+    is_on_piece,
+    measure_clearance,
+    measure_distance_to_piece,
+)
 from workhold.kernels.seating.three_contacts import (
     ROOT_DOUBT,
     ROOT_PAIR,
@@ -45,10 +52,10 @@ from workhold.kernels.seating.three_contacts import (
     ROOT_PIECE,
     ROOT_PSI,
     ROOT_SIDE,
-    center_velocity,
-    slope_over,
+    compute_slope_range,
+    enclose_center_velocity,
 )
-from workhold.kernels.seating.two_contact_curves import END, PairState, is_on_its_pieces, pair_at
+from workhold.kernels.seating.two_contact_curves import END, PairState, compute_pair_state, is_on_its_pieces
 
 # Pivots of the balance below this are none.
 SINGULAR = 1e-14
@@ -62,8 +69,12 @@ NO_BALANCE, IN_BALANCE, DOUBTFUL = 0, 1, 2
 
 
 @inner
-def write_pair(row: Array, at: int, pair: Array, given: Given, pocket_pieces: IntArray) -> None:
-    """Writes the two contacts of a pair to a candidate as its contacts ``at`` and the next."""
+def write_pair(row: Array, at: int, pair: Array, given: HeldPart, pocket_pieces: IntArray) -> None:
+    """Write the pegs and pieces of a pair to a candidate, as its contacts number ``at`` and ``at`` + 1.
+
+    ``pair`` is a row (7,) of pairs, ``pocket_pieces`` (P, 2) the pieces of each pocket; a pocket's peg is
+    written twice. See ``seating.columns`` for the layout of ``row`` and ``pair``.
+    """
     k = int(pair[SOURCE])
     row[PEG + at], row[PEG + at + 1] = pair[FIRST_PEG], pair[SECOND_PEG]
     if pair[KIND] == 1.0:
@@ -75,7 +86,11 @@ def write_pair(row: Array, at: int, pair: Array, given: Given, pocket_pieces: In
 
 @inner
 def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> None:
-    """Begins a candidate anew with a place of the part and no contacts."""
+    """Reset a candidate (24,) to a pose of the part in radians and
+    mm, with ``contacts`` contacts not yet written (-1).
+
+    See ``seating.columns`` for the layout of ``row``.
+    """
     for k in range(CANDIDATE_LENGTH):
         row[k] = 0.0
     for k in range(4):
@@ -84,7 +99,7 @@ def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> N
 
 
 @inner
-def slope_of_miss(
+def compute_slope_of_miss(
     pair: Array,
     piece: Array,
     side: float,
@@ -93,38 +108,44 @@ def slope_of_miss(
     cosine: float,
     sine: float,
     psi: float,
-    given: Given,
+    given: HeldPart,
 ) -> float:
-    """The derivative of MISS in mm per radian; infinite, or no number, where that of P is not known.
+    """Return the derivative of MISS over psi in mm per radian; inf or
+    NaN where the velocity of P is not known.
 
-    Not by differences: beside a tangency a curve may end within any step.
+    It is not computed by differences, because beside a tangency a curve may end within any step. See
+    ``seating.columns`` for the layout of ``pair``, ``base.feature`` for that of ``piece``. Symbols are those
+    of ``seating.two_contact_curves``.
     """
     motion = ((0.0, 0.0), (0.0, 0.0))
     if pair[KIND] == 0.0:
         k, alpha = int(pair[SOURCE]), psi + pair[ANGLE]
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
         sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-        motion = center_velocity(a, b, given.reals[k], alpha, alpha, sign)
-    slope, doubt = slope_over(piece, side, cosine, sine, s, f, motion, 0.0, 0.0)
+        motion = enclose_center_velocity(a, b, given.reals[k], alpha, alpha, sign)
+    slope, doubt = compute_slope_range(piece, side, cosine, sine, s, f, motion, 0.0, 0.0)
     return slope if doubt < inf else inf
 
 
 @compiled
-def complete_three(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Matrix) -> int:
-    """Writes the candidates of three contacts at roots of MISS (R, 6) to ``out``; returns their number.
+def complete_three(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix) -> int:
+    """Write the candidates of three contacts at roots of MISS (R, 6)
+    to ``out`` (at least R rows); return their number.
 
-    With beta how far the third contact is from the foot of P, along the face, S' = beta / (n . x). So at the
-    foot S'' = beta' / (n . x). Here beta is the height missed over -(n . x), times 1 + kappa (P - foot) . n
-    on an arc of curvature kappa. For a third peg that stands still the sign is the other.
+    Roots off the pieces are left out. With beta the distance of the third contact from the foot of P, along
+    the face, S' = beta / (n . x). So at the foot S'' = beta' / (n . x). Here beta is the height missed over
+    -(n . x), times 1 + kappa (P - foot) . n on an arc of curvature kappa. For a third peg that stands still
+    the sign is the other. See ``seating.three_contacts`` for the layout of ``roots``. Symbols are those of
+    ``seating.two_contact_curves``. S is the jaw separation in mm.
     """
     count = 0
     for r in range(roots.shape[0]):
         root = roots[r]
         pair, piece = given.pairs[int(root[ROOT_PAIR])], given.rows[int(root[ROOT_PIECE])]
         third, psi, tail = int(root[ROOT_PEG]), root[ROOT_PSI], int(pair[FIRST_PEG])
-        s = pair_at(pair, given, psi)
-        f = foot(piece, s[6], s[7], root[ROOT_SIDE])
-        if not (on_piece(piece, f[0], f[1], END) and is_on_its_pieces(pair, given, psi, s[0], s[1])):
+        s = compute_pair_state(pair, given, psi)
+        f = find_foot(piece, s[6], s[7], root[ROOT_SIDE])
+        if not (is_on_piece(piece, f[0], f[1], END) and is_on_its_pieces(pair, given, psi, s[0], s[1])):
             continue
         cosine, sine = cos(psi), sin(psi)
         x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
@@ -134,7 +155,7 @@ def complete_three(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: M
         write_pair(row, 0, pair, given, pocket_pieces)
         row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
         place_third(row, cosine * f[0] + sine * f[1], third, given)
-        slope = slope_of_miss(pair, piece, root[ROOT_SIDE], s, f, cosine, sine, psi, given)
+        slope = compute_slope_of_miss(pair, piece, root[ROOT_SIDE], s, f, cosine, sine, psi, given)
         if not abs(slope) < inf:
             slope, row[DOUBT] = 0.0, 1.0
         bend = 0.0 if piece[IS_ARC] == 0.0 else piece[SIGN] / piece[RADIUS]
@@ -150,10 +171,12 @@ def complete_three(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: M
 
 
 @inner
-def place_third(row: Array, along: float, peg: int, given: Given) -> None:
-    """Writes the separation at which a peg of the other jaw is at x ``along`` from the part's place.
+def place_third(row: Array, along: float, peg: int, given: HeldPart) -> None:
+    """Set the separation of a candidate so that ``peg`` meets the
+    part at ``along`` mm in x from the part's place.
 
-    The place of a pair of the moving jaw, written for separation 0, moves with it.
+    The place of a part held by the moving jaw, written for separation 0, moves with that jaw. See
+    ``seating.columns`` for the layout of ``row``.
     """
     if given.right[peg] == 1:
         row[SEPARATION] = row[PLACE_X] + along - given.pegs[peg, 0]
@@ -163,16 +186,18 @@ def place_third(row: Array, along: float, peg: int, given: Given) -> None:
 
 
 @compiled
-def complete_two(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Matrix) -> int:
-    """Writes the candidates of four contacts, two of each jaw, at roots of APART (R, 6).
+def complete_two(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix) -> int:
+    """Write the candidates of four contacts, two of each jaw, at
+    roots of APART (R, 6) to ``out``; return their number.
 
-    Returns their number.
+    Roots off the pieces are left out. See ``seating.three_contacts`` for the layout of ``roots``. Symbols are
+    those of ``seating.two_contact_curves``.
     """
     count = 0
     for r in range(roots.shape[0]):
         psi = roots[r, ROOT_PSI]
         one, two = given.pairs[int(roots[r, ROOT_PAIR])], given.pairs[int(roots[r, ROOT_PIECE])]
-        s, t = pair_at(one, given, psi), pair_at(two, given, psi)
+        s, t = compute_pair_state(one, given, psi), compute_pair_state(two, given, psi)
         if not (
             is_on_its_pieces(one, given, psi, s[0], s[1]) and is_on_its_pieces(two, given, psi, t[0], t[1])
         ):
@@ -192,12 +217,22 @@ def complete_two(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Mat
 
 
 @inner
-def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) -> int:
-    """Writes candidates of a part that three contacts fix to a jaw, with each piece that another peg meets.
+def add_fourths(fixed: Array, jaw: int, given: HeldPart, out: Array, count: int) -> int:
+    """Append candidates with four contacts: those of ``fixed``, and
+    one of a peg of the other jaw with a piece.
 
-    The other pegs are those of the other jaw, at their heights.
+    Every peg of the other jaw, at its height, is tried with every piece that it can touch. See
+    ``seating.columns`` for the layout of ``fixed``.
 
-    fixed : candidate with three contacts, its place that at separation 0. Returns the new count, or -1.
+    Parameters
+    ----------
+    fixed : (24,) candidate with three contacts that fix the part to a jaw; its place is that at separation 0.
+    jaw : 0 for the left jaw, 1 for the right one.
+    count : number of candidates in ``out`` so far.
+
+    Returns
+    -------
+    New number of candidates, -1 when there is no room
     """
     theta = fixed[THETA]
     cosine, sine = cos(theta), sin(theta)
@@ -220,7 +255,9 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
                     if abs(up) > piece[RADIUS]:
                         continue
                     along = cx + (1.0 - 2.0 * side) * sqrt((piece[RADIUS] - up) * (piece[RADIUS] + up))
-                    if not on_piece(piece, cosine * along + sine * level, cosine * level - sine * along, END):
+                    if not is_on_piece(
+                        piece, cosine * along + sine * level, cosine * level - sine * along, END
+                    ):
                         continue
                 if count >= out.shape[0]:
                     return -1
@@ -234,22 +271,24 @@ def add_fourths(fixed: Array, jaw: int, given: Given, out: Array, count: int) ->
 
 
 @compiled
-def complete_third(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: Matrix) -> int:
-    """Writes the candidates of three contacts of a jaw, at roots of GAP (R, 6); returns their number.
+def complete_third(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix) -> int:
+    """Write the candidates of three contacts of one jaw at roots of
+    GAP (R, 6) to ``out``; return their number.
 
-    Their place is that at separation 0.
+    Their place is that at separation 0. Roots off the pieces are left out. See ``seating.three_contacts`` for
+    the layout of ``roots``. Symbols are those of ``seating.two_contact_curves``.
     """
     count = 0
     for r in range(roots.shape[0]):
         root = roots[r]
         pair, psi = given.pairs[int(root[ROOT_PAIR])], root[ROOT_PSI]
         third, piece, tail = int(root[ROOT_PEG]), given.rows[int(root[ROOT_PIECE])], int(pair[FIRST_PEG])
-        s = pair_at(pair, given, psi)
+        s = compute_pair_state(pair, given, psi)
         cosine, sine = cos(psi), sin(psi)
         ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
         if not (
             is_on_its_pieces(pair, given, psi, s[0], s[1])
-            and on_piece(piece, s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy, END)
+            and is_on_piece(piece, s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy, END)
         ):
             continue
         x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
@@ -263,8 +302,11 @@ def complete_third(roots: Matrix, given: Given, pocket_pieces: IntMatrix, out: M
 
 
 @compiled
-def fourths(fixed: Matrix, jaw: int, given: Given, out: Matrix) -> int:
-    """Writes what ``add_fourths`` does, of a part that three contacts fix to a jaw in places (N, 24)."""
+def write_fourths(fixed: Matrix, jaw: int, given: HeldPart, out: Matrix) -> int:
+    """Write the candidates of :func:`add_fourths` for each candidate in ``fixed`` (N, 24) to ``out``.
+
+    Return their number, -1 when there is no room. See ``seating.columns`` for the layout of ``fixed``.
+    """
     count = 0
     for n in range(fixed.shape[0]):
         count = add_fourths(fixed[n], jaw, given, out, count)
@@ -274,10 +316,15 @@ def fourths(fixed: Matrix, jaw: int, given: Given, out: Matrix) -> int:
 
 
 @compiled
-def settle(candidates: Matrix, given: Given, size: float, balance: Matrix, normal: Matrix) -> None:
-    """Writes the forces of candidates (N, 24), how well they balance, and the clearance of all other pegs.
+def write_forces_and_clearance(
+    candidates: Matrix, given: HeldPart, size: float, balance: Matrix, normal: Matrix
+) -> None:
+    """Write the columns FORCE, RESIDUAL and CLEAR of candidates (N, 24) in place.
 
-    Forces, moments over ``size`` in mm and the jaw give four equations; they are met by least squares.
+    They are the forces of the contacts per unit of jaw force, how far these are from a balance, and the least
+    clearance in mm of the pegs that do not touch. RESIDUAL is inf, and CLEAR is not written, where pegs are
+    off their pieces or forces are not determined. Forces, moments over ``size`` in mm and the jaw give four
+    equations; they are met by least squares. See ``seating.columns`` for the layout of ``candidates``.
 
     Parameters
     ----------
@@ -293,14 +340,14 @@ def settle(candidates: Matrix, given: Given, size: float, balance: Matrix, norma
             qx = given.pegs[peg, 0] + given.right[peg] * row[SEPARATION] - row[PLACE_X]
             qy = given.pegs[peg, 1] - row[PLACE_Y]
             x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
-            misfit = max(misfit, abs(distance_to(piece, x, y)))
-            nx, ny = normal_at(piece, x, y)
+            misfit = max(misfit, abs(measure_distance_to_piece(piece, x, y)))
+            nx, ny = compute_normal(piece, x, y)
             vx, vy = cosine * nx - sine * ny, sine * nx + cosine * ny
             balance[i, 0], balance[i, 1], balance[i, 2] = vx, vy, (qx * vy - qy * vx) / size
             balance[i, 3] = vx if given.right[peg] == 1 else 0.0
         row[RESIDUAL] = inf
         # Beyond a tangency there is no chord, whatever the formulas say.
-        if misfit > MISFIT or not solve(balance, normal, n):
+        if misfit > MISFIT or not eliminate_normal_equations(balance, normal, n):
             continue
         for i in range(n):
             row[FORCE + i] = normal[i, n] / normal[i, i]
@@ -321,16 +368,21 @@ def settle(candidates: Matrix, given: Given, size: float, balance: Matrix, norma
                 qy = given.pegs[peg, 1] - row[PLACE_Y]
                 first, end = given.parts[given.right[peg], 0], given.parts[given.right[peg], 1]
                 x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
-                row[CLEAR] = min(row[CLEAR], clearance(x, y, given.rows, first, end))
+                row[CLEAR] = min(row[CLEAR], measure_clearance(x, y, given.rows, first, end))
 
 
 @compiled
 def judge_balance(candidates: Matrix, slack: float, slack_in_doubt: float, verdicts: ByteVector) -> None:
-    """Writes whether all contacts of candidates (N, 24) press and balance, or whether that is in doubt.
+    """Write a verdict for each candidate (N, 24): NO_BALANCE, IN_BALANCE or DOUBTFUL.
+
+    In balance, all contacts press, forces balance, and no other peg is in the part. Candidates with DOUBT set
+    can only be DOUBTFUL or NO_BALANCE. See ``seating.columns`` for the layout of ``candidates``.
 
     Parameters
     ----------
-    slack, slack_in_doubt : by how much in mm pegs that do not touch may be in the part.
+    slack, slack_in_doubt : depth in mm to which pegs that do not touch may be in the part, without and with
+        DOUBT.
+    verdicts : (N,) receives the verdicts.
     """
     for number in range(candidates.shape[0]):
         row = candidates[number]
@@ -349,8 +401,12 @@ def judge_balance(candidates: Matrix, slack: float, slack_in_doubt: float, verdi
 
 
 @inner
-def solve(balance: Array, normal: Array, n: int) -> bool:
-    """Brings the normal equations of n forces to diagonal form; returns whether that is possible."""
+def eliminate_normal_equations(balance: Array, normal: Array, n: int) -> bool:
+    """Write the normal equations of n forces, eliminated to diagonal form, to ``normal`` (4, 5).
+
+    ``balance`` (n, 4) has a row for each contact. Force i is then normal[i, n] / normal[i, i]. Return False
+    where the forces are not determined.
+    """
     for i in range(n):
         for j in range(n):
             normal[i, j] = 0.0

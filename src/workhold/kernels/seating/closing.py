@@ -24,7 +24,7 @@ from workhold.kernels.base.compiling import (
     inner,
 )
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
-from workhold.kernels.seating.antipodal_step import antipodal_step
+from workhold.kernels.seating.antipodal_step import write_antipodal_step
 from workhold.kernels.seating.columns import (
     COSINE,
     MOVED,
@@ -35,8 +35,8 @@ from workhold.kernels.seating.columns import (
     DescentWorkSpace,
     Obstacles,
 )
-from workhold.kernels.seating.linear_program import Four, best_step, shortest_out
-from workhold.kernels.seating.obstacles import add_wall, cosine_and_sine
+from workhold.kernels.seating.linear_program import Four, write_best_step, write_shortest_step_out
+from workhold.kernels.seating.obstacles import add_wall, compute_cosine_and_sine
 
 # How a descent ended.
 GAVE_UP, AT_REST, AT_THE_STOP = 0, 1, 2
@@ -58,10 +58,13 @@ DOWN = (0.0, 0.0, 0.0, -1.0)
 
 
 @inner
-def remember(
+def remember_near_pieces(
     peg: int, x: float, y: float, reach: float, obstacles: Obstacles, work: DescentWorkSpace
 ) -> None:
-    """Writes the pieces within a reach of a peg's place on the part, in their order, to a peg's list."""
+    """List the pieces within ``reach`` mm of the point (x, y) of the part for a peg, in ascending order.
+
+    They go to ``work.lists[peg]``, their number to ``work.counts``, the point and reach to ``work.places``.
+    """
     count, side = 0, obstacles.right[peg]
     for k in range(obstacles.parts[side, 0], obstacles.parts[side, 1]):
         gx, gy, far = x - obstacles.discs[k, 0], y - obstacles.discs[k, 1], obstacles.discs[k, 2] + reach
@@ -73,17 +76,19 @@ def remember(
 
 
 @inner
-def look_around(config: Array, obstacles: Obstacles, reach: float, work: DescentWorkSpace) -> int:
-    """Writes the clearances of pegs from pieces within a reach; returns how many.
+def write_near_clearances(config: Array, obstacles: Obstacles, reach: float, work: DescentWorkSpace) -> int:
+    """Write the clearances of pegs from pieces within ``reach`` mm to
+    ``work.near``, and return how many there are.
 
-    Before each clearance stand its gradients over (theta size, x, y, S) in mm per mm, and after it peg and
-    piece. The stop and the largest S come first, with -1 in the place of a peg.
+    Each row (7,) holds the gradient over (theta size, x, y, S) in mm per mm, the clearance in mm, peg and
+    piece. The stop and the largest S come first, with -1 in place of a peg; the wall comes last. More than 64
+    are left out.
 
-    Pieces are listed for each peg farther around than is asked for, and listed anew where it has moved on (L.
-    Verlet, Physical Review 159, 1967).
+    The pieces within a wider reach are listed for each peg, and listed anew when the peg has moved on (L.
+    Verlet, Physical Review 159, 1967). S is the jaw separation in mm.
     """
     count, near = 0, work.near
-    cosine, sine = cosine_and_sine(config[0], work.turn)
+    cosine, sine = compute_cosine_and_sine(config[0], work.turn)
     if config[3] - obstacles.stop <= reach:
         near[0, 0], near[0, 1], near[0, 2], near[0, 3] = 0.0, 0.0, 0.0, 1.0
         near[0, 4] = config[3] - obstacles.stop
@@ -99,7 +104,7 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
         x, y = cosine * qx + sine * qy, cosine * qy - sine * qx
         gx, gy, left = x - work.places[peg, 0], y - work.places[peg, 1], work.places[peg, 2] - reach
         if left < 0.0 or gx * gx + gy * gy > left * left:
-            remember(peg, x, y, reach + AROUND * obstacles.size, obstacles, work)
+            remember_near_pieces(peg, x, y, reach + AROUND * obstacles.size, obstacles, work)
         for i in range(work.counts[peg]):
             k = work.lists[peg, i]
             row = obstacles.rows[k]
@@ -131,22 +136,23 @@ def look_around(config: Array, obstacles: Obstacles, reach: float, work: Descent
 
 
 @inner
-def push_out(config: Array, obstacles: Obstacles, reach: float, work: DescentWorkSpace) -> int:
-    """Moves a configuration out of what it enters by little, by the shortest way.
+def move_out_of_obstacles(config: Array, obstacles: Obstacles, reach: float, work: DescentWorkSpace) -> int:
+    """Move a configuration in place, by the shortest way, out of obstacles that it enters by little.
 
-    Returns how many clearances there are within a reach, or -1 where that was not possible. Where pegs are on
-    both sides of what is too wide, the way out of what is linearized leads far past what was looked at.
+    Return the number of clearances within ``reach`` mm, now in ``work.near``, or -1 where that was not
+    possible. Where pegs are on both sides of something too wide, the linearized way out leads far beyond what
+    was examined. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     near, step = work.near, work.step
     count, deepest = 0, 0.0
     for attempt in range(7):
-        count = look_around(config, obstacles, reach, work)
+        count = write_near_clearances(config, obstacles, reach, work)
         deepest = 0.0
         for i in range(count):
             deepest = min(deepest, near[i, 4])
         if deepest > -1e-10 or attempt == 6:
             break
-        shortest_out(count, work)
+        write_shortest_step_out(count, work)
         if step[0] * step[0] + step[1] * step[1] + step[2] * step[2] + step[3] * step[3] > (FAR * reach) ** 2:
             return -1
         config[0] += step[0] / obstacles.size
@@ -156,8 +162,14 @@ def push_out(config: Array, obstacles: Obstacles, reach: float, work: DescentWor
 
 
 @inner
-def is_in_one_of(config: Array, seats: Array, end: int, size: float) -> bool:
-    """Whether a configuration is next to that of one of the first ``end`` seats, which are ordered by S."""
+def is_at_a_seat(config: Array, seats: Array, end: int, size: float) -> bool:
+    """Return whether a configuration is next to one of the seats
+    ``seats[:end]``, which are in ascending order of S.
+
+    Seats lower than the configuration by ``SAME_LEVEL`` or more are not examined. A configuration is theta in
+    radians, x, y and the jaw separation S in mm. A configuration is theta in radians, x, y and the jaw
+    separation S in mm.
+    """
     for k in range(end - 1, -1, -1):
         if seats[k, 3] <= config[3] - SAME_LEVEL:
             break
@@ -172,18 +184,18 @@ def is_in_one_of(config: Array, seats: Array, end: int, size: float) -> bool:
 def add_node(
     config: Array, trust: float, longest: float, turn: Array, nodes: Array, first: int, at: int
 ) -> int:
-    """Writes a configuration on a path, if there is room, with how long the next steps are.
+    """Append a configuration to a path as node ``at``, if ``nodes`` has room; return ``at`` + 1 in any case.
 
-    Returns the next number.
-
-    The nodes of the path begin with a first one; ``turn`` is that of ``cosine_and_sine``.
+    ``first`` is the number of the path's first node; ``trust`` and ``longest`` in mm become its columns STEP
+    and STEP_ALONG. ``turn`` is described at ``obstacles.compute_cosine_and_sine``. A configuration is theta
+    in radians, x, y and the jaw separation S in mm. See ``seating.columns`` for the layout of ``nodes``.
     """
     if at < nodes.shape[0]:
         node = nodes[at]
         for j in range(4):
             node[j] = config[j]
         node[STEP], node[STEP_ALONG] = trust, longest
-        node[COSINE], node[SINE] = cosine_and_sine(config[0], turn)
+        node[COSINE], node[SINE] = compute_cosine_and_sine(config[0], turn)
         node[TURNED] = node[MOVED] = 0.0
         if at > first:
             before = nodes[at - 1]
@@ -195,13 +207,15 @@ def add_node(
 
 
 @inner
-def ahead(trust: float, most: float) -> float:
-    """The reach around pegs that counts in the next step, after one in a box of half width ``trust``."""
+def compute_reach_ahead(trust: float, most: float) -> float:
+    """Return the reach in mm around pegs that the next step needs,
+    after one in a box of half width ``trust``.
+    """
     return REACH * min(WIDER * trust, most) + 1e-6
 
 
 @inner
-def close_one(
+def close_from(
     config: Array,
     trust: float,
     longest: float,
@@ -212,9 +226,16 @@ def close_one(
     nodes: Array,
     at: int,
 ) -> tuple[int, int]:
-    """Closes the jaws from a configuration, in place; returns how it ended, and the next number of a node."""
+    """Close the jaws from a configuration (4,), in place, and append
+    the path to ``nodes`` from number ``at`` on.
+
+    Return (GAVE_UP, AT_REST or AT_THE_STOP; number after the last node, which may exceed the rows of
+    ``nodes``). Steps begin with ``trust`` (linear programs) and ``longest`` (along both faces), at most
+    ``most``, in mm. A configuration is theta in radians, x, y and the jaw separation S in mm. See
+    ``seating.columns`` for the layout of ``nodes``.
+    """
     trial, wait, below, first = work.trial, 0, seats.shape[0], at
-    count = push_out(config, obstacles, ahead(trust, most), work)
+    count = move_out_of_obstacles(config, obstacles, compute_reach_ahead(trust, most), work)
     if count < 0:
         return (GAVE_UP, at)
     at = add_node(config, trust, longest, work.turn, nodes, first, at)
@@ -224,11 +245,11 @@ def close_one(
             return (AT_THE_STOP, at)
         while below > 0 and seats[below - 1, 3] >= config[3] + SAME_LEVEL:
             below -= 1
-        if is_in_one_of(config, seats, below, obstacles.size):
+        if is_at_a_seat(config, seats, below, obstacles.size):
             return (AT_REST, at)
         if count < 0:
-            count = look_around(config, obstacles, ahead(trust, most), work)
-        length = antipodal_step(config, count, longest, most, obstacles, work) if wait == 0 else 0.0
+            count = write_near_clearances(config, obstacles, compute_reach_ahead(trust, most), work)
+        length = write_antipodal_step(config, count, longest, most, obstacles, work) if wait == 0 else 0.0
         if length <= 0.0:
             # What is in the way is a matter of linear programs, for a while.
             wait = WAIT if wait == 0 else wait - 1
@@ -240,13 +261,13 @@ def close_one(
             at = add_node(config, trust, longest, work.turn, nodes, first, at)
             count = -1
             continue
-        gain = best_step(count, trust, work, DOWN)
+        gain = write_best_step(count, trust, work, DOWN)
         good = gain >= LEAST_GAIN
         if good:
             trial[0] = config[0] + work.step[0] / obstacles.size
             for j in range(1, 4):
                 trial[j] = config[j] + work.step[j]
-            count = push_out(trial, obstacles, ahead(trust, most), work)
+            count = move_out_of_obstacles(trial, obstacles, compute_reach_ahead(trust, most), work)
             good = count >= 0 and trial[3] < config[3] - 0.1 * gain
         if not good:
             # Where no step leads down, no shorter one does: that is only seen again, against rounding.
@@ -276,17 +297,19 @@ def close_jaws(
     begins: IntVector,
     nodes: Matrix,
 ) -> None:
-    """Closes the jaws from configurations (N, 4), in place, until nothing moves or the stop is met.
+    """Close the jaws from configurations (N, 4), in place, until nothing moves or the stop is met.
+
+    See ``seating.columns`` for the layout of ``nodes``. S is the jaw separation in mm.
 
     Parameters
     ----------
-    lengths : (N, 2) how long the first steps are, in mm: of linear programs, and along both faces.
-    most : how long all of them are at most.
-    seats : (M, 4) configurations at which closing ends, known beforehand, ordered by S.
-    ends : (N,) how each ended, written here: GAVE_UP, AT_REST or AT_THE_STOP.
-    begins : (N + 1,) where the nodes of each path begin and, last, end, written here.
-    nodes : (M, 10) configurations after each step, with what ``columns`` says, written here as far as there
-        is room.
+    configs : (N, 4) theta, x, y, S, each replaced by the end of its path.
+    lengths : (N, 2) lengths of the first steps, in mm: of linear programs, and along both faces.
+    most : greatest length of all steps, in mm.
+    seats : (M, 4) configurations at which closing ends, known beforehand, in ascending order of S.
+    ends : (N,) receives how each path ended: GAVE_UP, AT_REST or AT_THE_STOP.
+    begins : (N + 1,) receives the number of the first node of each path and, last, the total number of nodes.
+    nodes : (M, 10) receives the configurations after each step, see ``columns``, as far as there is room.
     """
     count = 0
     for peg in range(obstacles.pegs.shape[0]):
@@ -294,7 +317,7 @@ def close_jaws(
         work.known[peg, 3] = 0.0
     for k in range(configs.shape[0]):
         begins[k] = count
-        ends[k], count = close_one(
+        ends[k], count = close_from(
             configs[k], lengths[k, 0], lengths[k, 1], most, obstacles, seats, work, nodes, count
         )
     begins[configs.shape[0]] = count
@@ -305,13 +328,16 @@ MOST_STEPS_OUT = 600
 
 
 @inner
-def reached(config: Array, aim: Four, size: float) -> float:
-    """How far in mm a configuration lies along an aim."""
+def measure_along_aim(config: Array, aim: Four, size: float) -> float:
+    """Return the scalar product in mm of a configuration (theta size, x, y, S) with the unit vector ``aim``.
+
+    S is the jaw separation in mm.
+    """
     return aim[0] * config[0] * size + aim[1] * config[1] + aim[2] * config[2] + aim[3] * config[3]
 
 
 @inner
-def reach_one(
+def move_one_along_aim(
     config: Array,
     aim: Four,
     far: float,
@@ -322,26 +348,31 @@ def reach_one(
     nodes: Array,
     at: int,
 ) -> int:
-    """Moves a configuration along an aim, in place, until nothing leads on.
+    """Move a configuration (4,) along an aim, in place, until no step
+    leads on or it has gone farther than ``far`` mm.
 
-    Returns the next number of a node.
+    Append the path to ``nodes`` from number ``at`` on, and return the number after its last node. A
+    configuration is theta in radians, x, y and the jaw separation S in mm. See ``seating.columns`` for the
+    layout of ``nodes``.
     """
     trial, first, won = work.trial, at, 0.0
     at = add_node(config, trust, trust, work.turn, nodes, first, at)
-    count = push_out(config, obstacles, ahead(trust, most), work)
+    count = move_out_of_obstacles(config, obstacles, compute_reach_ahead(trust, most), work)
     if count < 0:
         return at
     for _ in range(MOST_STEPS_OUT):
         if count < 0:
-            count = look_around(config, obstacles, ahead(trust, most), work)
-        gain = best_step(count, trust, work, aim)
+            count = write_near_clearances(config, obstacles, compute_reach_ahead(trust, most), work)
+        gain = write_best_step(count, trust, work, aim)
         good = gain >= LEAST_GAIN
         if good:
             trial[0] = config[0] + work.step[0] / obstacles.size
             for j in range(1, 4):
                 trial[j] = config[j] + work.step[j]
-            count = push_out(trial, obstacles, ahead(trust, most), work)
-            won = reached(trial, aim, obstacles.size) - reached(config, aim, obstacles.size)
+            count = move_out_of_obstacles(trial, obstacles, compute_reach_ahead(trust, most), work)
+            won = measure_along_aim(trial, aim, obstacles.size) - measure_along_aim(
+                config, aim, obstacles.size
+            )
             good = count >= 0 and won > 0.1 * gain
         if not good:
             trust *= 0.4 if gain >= LEAST_GAIN else 0.01
@@ -354,13 +385,13 @@ def reach_one(
         for j in range(4):
             config[j] = trial[j]
         at = add_node(config, trust, trust, work.turn, nodes, first, at)
-        if reached(config, aim, obstacles.size) > far:
+        if measure_along_aim(config, aim, obstacles.size) > far:
             break
     return at
 
 
 @compiled
-def reach_out(
+def move_along_aims(
     configs: Matrix,
     aims: Matrix,
     far: Vector,
@@ -371,15 +402,17 @@ def reach_out(
     begins: IntVector,
     nodes: Matrix,
 ) -> None:
-    """Moves configurations (N, 4) of theta, x, y and S, in place, along aims as far as they lead.
+    """Move configurations (N, 4) of theta, x, y and S along aims, in place, as far as steps lead.
+
+    See ``seating.columns`` for the layout of ``nodes``. S is the jaw separation in mm.
 
     Parameters
     ----------
     aims : (N, 4) unit vectors of (theta size, x, y, S), in mm.
-    far : (N,) how far along them in mm a way ends at the latest.
-    trust, most : how long the first steps and all of them are at most, in mm.
-    begins : (N + 1,) where the nodes of each path begin and, last, end, written here.
-    nodes : (M, 10) configurations after each step, as of ``closing.close_jaws``, as far as there is room.
+    far : (N,) coordinate along the aim in mm, see :func:`measure_along_aim`, beyond which a path ends.
+    trust, most : greatest length of the first steps and of all steps, in mm.
+    begins : (N + 1,) receives the number of the first node of each path and, last, the total number of nodes.
+    nodes : (M, 10) receives the configurations after each step, see ``columns``, as far as there is room.
     """
     count = 0
     for peg in range(obstacles.pegs.shape[0]):
@@ -387,5 +420,5 @@ def reach_out(
     for k in range(configs.shape[0]):
         begins[k] = count
         aim = (aims[k, 0], aims[k, 1], aims[k, 2], aims[k, 3])
-        count = reach_one(configs[k], aim, far[k], trust, most, obstacles, work, nodes, count)
+        count = move_one_along_aim(configs[k], aim, far[k], trust, most, obstacles, work, nodes, count)
     begins[configs.shape[0]] = count

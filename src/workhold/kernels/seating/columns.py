@@ -1,4 +1,4 @@
-"""The rows that kernels of seating hand each other, and what all of them are given.
+"""The rows that kernels of seating pass to each other, and the records that all of them take.
 
 A pair is two contacts of one jaw, a two-contact curve over psi, which is the orientation of the pegs seen
 from the part (= -theta). It is a chord curve, or one peg in a pocket, about which the part turns.
@@ -67,18 +67,18 @@ NODE_LENGTH = 10
 DEPTH = 128
 
 
-class Given(NamedTuple):
-    """What is held, and by what.
+class HeldPart(NamedTuple):
+    """A part held by four pegs of two jaws, and its two-contact curves.
 
     Parameters
     ----------
-    pairs : (H, 7), see above.
-    curves, reals : (C, 7) and (C, 14) of the chord curves, see ``base.tables``.
+    pairs : (H, 7) with columns KIND, SOURCE, FIRST_PEG, SECOND_PEG, ANGLE, PIVOT_X, PIVOT_Y.
+    curves, reals : whole numbers and reals of the chord curves, a row each, see ``base.tables``.
     rows : (N, 10) pieces of the boundary on which the pegs' centres lie.
     pegs : (4, 2) places of the pegs at jaw separation 0, in mm.
     right : (4,) 1 for pegs of the right jaw, which moves along x, 0 for others.
-    parts : (2, 2) first and past-the-last number of the pieces that pegs of the left jaw, and of the right
-        one, touch.
+    parts : (2, 2) first and past-the-last number of the pieces that pegs of the left jaw (row 0) and of the
+        right jaw (row 1) touch.
     """
 
     pairs: Matrix
@@ -95,9 +95,9 @@ class JawCells(NamedTuple):
 
     Parameters
     ----------
-    cells : (C, 7), ordered by their lowest orientation; those that reach beyond a turn stand there a second
-        time, a turn lower.
-    before : how many pairs of the pattern stand before its own.
+    cells : (C, 7), in ascending order of LOW; those that reach beyond a turn occur a second time, a turn
+        lower.
+    before : number of pairs of the pattern before those of this jaw.
     height : of its first peg in the pattern, in mm.
     """
 
@@ -107,20 +107,20 @@ class JawCells(NamedTuple):
 
 
 class Obstacles(NamedTuple):
-    """What keeps pegs off a part while the jaws close.
+    """The constraints on a part among pegs while the jaws close.
 
     Parameters
     ----------
     rows : (N, 10) pieces.
-    spans : (N, 4) lowest and highest parameter at which each counts: past a pocket it counts a little
-        further; and of arcs the cosines of both.
-    discs : (N, 3) in which they lie, as far as they count: middle and radius in mm.
-    pegs, right, parts : as of ``Given``.
-    size : of the part in mm, by which turns are compared with shifts.
+    spans : (N, 4) lowest and highest parameter at which each piece counts (beyond a pocket it counts a little
+        further than its ends), then for arcs the cosines of both.
+    discs : (N, 3) disc that holds each piece as far as it counts: centre x, y and radius in mm.
+    pegs, right, parts : as in ``HeldPart``.
+    size : of the part in mm; a turn in radians times this is compared with shifts.
     stop : the smallest jaw separation, in mm.
-    hull : (H, 6) what may touch a wall, see ``kernels.seating.obstacles``; none where there is no wall.
-    half_plane : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall
-        is.
+    hull : (H, 6) what may touch a wall, see ``kernels.seating.obstacles``; no rows where there is no wall.
+    half_plane : (3,) unit vector from the wall to the part, along x or y, and the wall's coordinate along it
+        in mm.
     most : the largest jaw separation, in mm.
     """
 
@@ -138,16 +138,17 @@ class Obstacles(NamedTuple):
 
 
 class SelfMotions(NamedTuple):
-    """Self-motions of a part, with one separation while some contacts stay, one after the other.
+    """W self-motions of a part: curves of configurations with one separation along which some contacts stay.
 
     Parameters
     ----------
-    configs, counts : (M, 4) along all, and how many of them are of each: (W,).
-    closed : (W,) 1 where the last one is beside the first.
-    across : see ``Manifolds``.
-    pegs, pieces : (W, 4) numbers of the pegs between which they lead, of which a wall is the last, and the
-        piece that each has to touch; -1 of none.
-    clear : (M, 4) clearances of these pegs in mm, -inf first where one of them hinders.
+    configs : (M, 4) theta, x, y, S along all self-motions, one after the other.
+    counts : (W,) how many of the configurations belong to each.
+    closed : (W,) 1 where the last configuration is beside the first.
+    across : (W, 2), see ``Manifolds``.
+    pegs, pieces : (W, 4) numbers of the pegs between which each leads, of which a wall is the last, and the
+        piece that each peg has to touch; -1 for none.
+    clear : (M, 4) clearances of these pegs in mm; -inf in the first column where one of them hinders.
     """
 
     configs: Matrix
@@ -159,8 +160,10 @@ class SelfMotions(NamedTuple):
     clear: Matrix
 
     @classmethod
-    def room(cls, count: int, configs: int) -> SelfMotions:
-        """Room for so many, and for so many configurations along them; of nothing is known whose it is."""
+    def allocate(cls, count: int, configs: int) -> SelfMotions:
+        """Return empty arrays for ``count`` self-motions with ``configs``
+        configurations; pegs and pieces are -1, counts 0.
+        """
         numbers = np.full((2, count, 4), -1)
         made = (
             np.empty((configs, 4)),
@@ -170,8 +173,8 @@ class SelfMotions(NamedTuple):
         )
         return cls(*made, numbers[0], numbers[1], np.zeros((configs, 4)))
 
-    def first(self, count: int) -> SelfMotions:
-        """The first ones, in arrays of their own."""
+    def take_first(self, count: int) -> SelfMotions:
+        """Return the first ``count`` self-motions, copied."""
         along = int(self.counts[:count].sum())
         configs, clear = np.array(self.configs[:along]), np.array(self.clear[:along])
         whole = np.array(self.counts[:count]), np.array(self.closed[:count]), np.array(self.across[:count])
@@ -179,15 +182,16 @@ class SelfMotions(NamedTuple):
 
 
 class Manifolds(NamedTuple):
-    """Loose sets: connected sets of equilibria with one separation.
+    """F loose sets: connected sets of equilibria with one separation.
 
     Parameters
     ----------
-    rows : (F, 24) candidates: of each the middle of where the most pegs touch, and what they touch.
-    configs, begins : (M, 4) along all, one after the other, and where those of each begin and, last, end: (F
-        + 1,).
+    rows : (F, 24) a candidate of each, with its contacts: the middle of the part of the set where the most
+        pegs touch.
+    configs : (M, 4) theta, x, y, S along all sets, one after the other.
+    begins : (F + 1,) number of the first configuration of each set and, last, M.
     closed : (F,) 1 for a whole turn, which has no ends.
-    across : (F, 2) direction in which the part gives way to both sides, NaN where it does not.
+    across : (F, 2) direction (x, y) in which the part gives way to both sides, NaN where it does not.
     """
 
     rows: Matrix
@@ -197,32 +201,32 @@ class Manifolds(NamedTuple):
     across: Matrix
 
     @classmethod
-    def room(cls, count: int, configs: int) -> Manifolds:
-        """Room for so many, and for so many configurations along them."""
+    def allocate(cls, count: int, configs: int) -> Manifolds:
+        """Return empty arrays for ``count`` sets with ``configs`` configurations; ``begins`` is 0."""
         begins = np.zeros(count + 1, np.int64)
         made = np.empty((count, CANDIDATE_LENGTH)), np.empty((configs, 4)), begins
         return cls(*made, np.empty(count, np.int8), np.empty((count, 2)))
 
-    def first(self, count: int) -> Manifolds:
-        """The first ones."""
+    def take_first(self, count: int) -> Manifolds:
+        """Return the first ``count`` sets, as views of these arrays."""
         begins = self.begins[: count + 1]
         kept = self.rows[:count], self.configs[: begins[-1]], begins
         return Manifolds(*kept, self.closed[:count], self.across[:count])
 
 
 class DescentWorkSpace(NamedTuple):
-    """Room for the linear programs of a step.
+    """Work space for the steps of a descent among N pieces.
 
     Parameters
     ----------
-    near : (64, 7) gradients, clearance, peg and piece of what is near.
+    near : (64, 7) rows with gradient (4), clearance, peg and piece, see ``closing.write_near_clearances``.
     basis, triangle : (5, 4) and (5, 6).
     step, way, trial : (4,).
     members : (8,).
-    known : (4, 4) for each peg a place on the part, the clearance there in mm, and the nearest piece there.
-        The first two are a disc in which the peg is free.
+    known : (4, 4) for each peg a place (x, y) on the part, the clearance there in mm, and the nearest piece
+        there. Place and clearance are a disc in which the peg is free.
     lists, counts : (4, N) and (4,) pieces near each peg, and how many.
-    places : (4, 3) place about which they were listed, and reach in mm.
+    places : (4, 3) place (x, y) about which they were listed, and reach in mm.
     turn : (3,) an orientation in radians, its cosine and its sine; NaN before the first.
     """
 
@@ -240,8 +244,8 @@ class DescentWorkSpace(NamedTuple):
     turn: Vector
 
     @classmethod
-    def for_pieces(cls, count: int) -> DescentWorkSpace:
-        """Room about a part with so many pieces."""
+    def allocate(cls, count: int) -> DescentWorkSpace:
+        """Return work space for a part with ``count`` pieces."""
         step, way, trial = np.empty(4), np.empty(4), np.empty(4)
         listed = np.empty((4, count), np.int64), np.empty(4, np.int64), np.empty((4, 3))
         normals = np.empty((64, 7)), np.empty((5, 4)), np.empty((5, 6))

@@ -33,7 +33,7 @@ from workhold.kernels.seating.columns import (
     Manifolds,
     Obstacles,
 )
-from workhold.kernels.seating.gathering import first_of, lies_in
+from workhold.kernels.seating.gathering import find_first_manifold, is_in_manifold
 
 # mm. How far from a pass a descent path begins, and how near it begins at least; and by which part of its
 # length the motion may have bent there.
@@ -47,16 +47,16 @@ PARTS = 3
 
 @compiled
 def begin_descents(rows: Matrix, size: float, starts: Matrix, lengths: Matrix) -> None:
-    """Writes where descent paths begin, to both sides of passes (N, 24) along their free motions.
+    """Write where descent paths begin, at both sides of passes (N, 24) along their free motions.
 
-    They begin nearer where the motion bends so much that they would lie elsewhere.
+    They begin nearer to the pass where the motion bends so much that they would lie elsewhere. See
+    ``seating.columns`` for the layout of ``rows``.
 
     Parameters
     ----------
-    size : of the part in mm, by which turns are counted.
-    starts : (2 N, 4) configurations, written here.
-    lengths : (2 N, 2) how long their first steps are in mm, half as far as they begin off the pass, written
-        here.
+    size : of the part in mm; a turn times this is compared with shifts.
+    starts : (2 N, 4) receives configurations; those of pass n are rows 2 n and 2 n + 1.
+    lengths : (2 N, 2) receives the lengths of their first steps in mm, half their distance from the pass.
     """
     for n in range(rows.shape[0]):
         row = rows[n]
@@ -74,8 +74,12 @@ def begin_descents(rows: Matrix, size: float, starts: Matrix, lengths: Matrix) -
 
 
 @inner
-def place_at(node: Array, shift: Array, peg: int, obstacles: Obstacles) -> tuple[float, float]:
-    """Place of a peg's centre on the part at a node, which is shifted but not turned."""
+def compute_shifted_place(node: Array, shift: Array, peg: int, obstacles: Obstacles) -> tuple[float, float]:
+    """Return the place (x, y) in mm of a peg's centre on the part at
+    a node, whose configuration ``shift`` is added to.
+
+    The orientation is not shifted. See ``seating.columns`` for the layout of ``node``.
+    """
     x = obstacles.pegs[peg, 0] + obstacles.right[peg] * (node[3] + shift[3]) - (node[1] + shift[1])
     y = obstacles.pegs[peg, 1] - (node[2] + shift[2])
     return (node[COSINE] * x + node[SINE] * y, node[COSINE] * y - node[SINE] * x)
@@ -92,7 +96,11 @@ def is_step_free(
     obstacles: Obstacles,
     known: Array,
 ) -> bool:
-    """Whether a peg is not in the part on a step, at places no farther apart than most but for a few."""
+    """Return whether a peg is outside the part at intermediate points
+    of a step longer than ``most`` mm on the part.
+
+    A shorter step is not examined: the result is True. The step's ends are never examined here.
+    """
     dx, dy = to_x - from_x, to_y - from_y
     if dx * dx + dy * dy > most * most:
         for part in range(1, PARTS):
@@ -102,10 +110,12 @@ def is_step_free(
 
 
 @inner
-def last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, known: Array) -> int:
-    """The last node up to which a peg surely stays within the disc in which it is known to be free.
+def find_last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, known: Array) -> int:
+    """Return the last node from ``at`` on up to which a peg certainly
+    stays in the disc in which it is known to be free.
 
-    No place on the part that is as far from its centre moves faster than the part turns and moves.
+    (x, y) is the peg's place on the part at node ``at``. No place at that distance from the part's centre
+    moves faster than the part turns and moves. See ``seating.columns`` for the layout of ``nodes``.
     """
     dx, dy = x - known[peg, 0], y - known[peg, 1]
     left = known[peg, 2] - sqrt(dx * dx + dy * dy)
@@ -118,7 +128,7 @@ def last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, kno
 
 
 @inner
-def end_of_free(
+def find_end_of_free(
     nodes: Array,
     first: int,
     end: int,
@@ -128,25 +138,26 @@ def end_of_free(
     obstacles: Obstacles,
     known: Array,
 ) -> int:
-    """The first node at which, or on the step to which, a peg is in the part.
+    """Return the first node in [first, end) at which, or on the step
+    to which, a peg is in the part; ``end`` for none.
 
-    The end of the nodes if there is none.
+    See ``seating.columns`` for the layout of ``nodes``.
     """
     at, from_x, from_y = first, 0.0, 0.0
     while at < end:
-        x, y = place_at(nodes[at], shift, peg, obstacles)
+        x, y = compute_shifted_place(nodes[at], shift, peg, obstacles)
         if at > first and not is_step_free(from_x, from_y, x, y, peg, most, obstacles, known):
             return at
         if not is_peg_free(x, y, peg, obstacles, known):
             return at
-        last = last_near(nodes, at, end, x, y, peg, known)
-        from_x, from_y = (x, y) if last == at else place_at(nodes[last], shift, peg, obstacles)
+        last = find_last_near(nodes, at, end, x, y, peg, known)
+        from_x, from_y = (x, y) if last == at else compute_shifted_place(nodes[last], shift, peg, obstacles)
         at = last + 1
     return end
 
 
 @compiled
-def free_until(
+def write_last_free_nodes(
     chosen: IntVector,
     whose: IntVector,
     nodes: Matrix,
@@ -158,19 +169,19 @@ def free_until(
     known: Matrix,
     lasts: IntVector,
 ) -> None:
-    """Writes the last node of each path at which, and before which, none of the other pegs is in the part.
+    """Write, for each of N paths, the last node up to which no peg outside a subset is in the part.
 
-    It is the one before the first node where that is not free.
+    See ``seating.columns`` for the layout of ``nodes``.
 
     Parameters
     ----------
-    chosen, whose : (N,) numbers of paths, and of the subsets of pegs whose they are.
-    nodes, begins : of all paths, as of ``closing.close_jaws``.
+    chosen, whose : (N,) numbers of paths, and of the subset of pegs that each is tested for.
+    nodes, begins : of all paths, see ``closing.close_jaws``.
     shifts : (G, 4) to be added to the configurations of each subset.
     others : (G, K) 1 for the pegs that are not in each subset.
-    most : how long a step of a peg on the part is that is looked at only where it ends, in mm.
+    most : steps of a peg on the part up to this length, in mm, are examined only at their ends.
     known : (4, 4) work space.
-    lasts : (N,) written here.
+    lasts : (N,) receives the nodes, the path's first node less 1 where not even that is free.
     """
     for peg in range(obstacles.pegs.shape[0]):
         known[peg, 2], known[peg, 3] = -1.0, 0.0
@@ -181,12 +192,12 @@ def free_until(
             end -= 1
         for peg in range(obstacles.pegs.shape[0]):
             if others[subset, peg] != 0:
-                end = end_of_free(nodes, first, end, shifts[subset], peg, most, obstacles, known)
+                end = find_end_of_free(nodes, first, end, shifts[subset], peg, most, obstacles, known)
         lasts[n] = end - 1
 
 
 @compiled
-def take_up(
+def write_known_path_ends(
     passes: IntVector,
     chosen: IntVector,
     whose: IntVector,
@@ -199,17 +210,20 @@ def take_up(
     lengths: Matrix,
     left: ByteVector,
 ) -> None:
-    """Writes where paths off both sides of passes come without leaving what is known, and which are left.
+    """Write how far the descent paths from passes are known from
+    other paths, and which remain to be followed.
+
+    See ``seating.columns`` for the layout of ``nodes``.
 
     Parameters
     ----------
     passes : (N,) their numbers.
-    chosen, whose, nodes, begins, shifts, lasts : of the 2 N paths, as of ``free_until``, which wrote the
-        last.
-    how : of all paths, how each ends.
-    ends, lengths : (2 P, 4) configurations and (2 P, 2) lengths of the next steps of the paths off all
-        passes.
-    left : (2 P,) 0 for paths of which nothing is left to be followed.
+    chosen, whose, nodes, begins, shifts, lasts : of the 2 N paths, see :func:`write_last_free_nodes`, which
+        wrote the last of these.
+    how : how each of all paths ended, see ``closing``.
+    ends, lengths : (2 P, 4) configurations and (2 P, 2) lengths of the next steps of the paths of all passes;
+        updated for paths of which a part is known.
+    left : (2 P,) set to 0 for paths that are known to their end.
     """
     for n in range(chosen.shape[0]):
         way, last, place = chosen[n], lasts[n], 2 * passes[n // 2] + n % 2
@@ -232,15 +246,24 @@ FALLS, ONE_DOUBT = 1e-6, 10.0 * AT_SEAT
 
 
 @inner
-def apart(config: Array, other: Array, size: float) -> float:
-    """How far in mm two configurations (4,) are apart, turns counted by the size."""
+def measure_distance(config: Array, other: Array, size: float) -> float:
+    """Return the distance in mm between two configurations: of
+    (x, y), plus the turn (mod 2 pi) times ``size``.
+
+    Separations are not compared. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     turn = abs((config[0] - other[0] + pi) % (2.0 * pi) - pi)
     return turn * size + hypot(config[1] - other[1], config[2] - other[2])
 
 
 @inner
-def seat_at(config: Array, seats: Array, size: float) -> int:
-    """The number of the nearest seat of some (M, 4), ordered by S, in which a configuration is, or -1."""
+def find_seat(config: Array, seats: Array, size: float) -> int:
+    """Return the index of the nearest seat (M, 4) within ``AT_SEAT``
+    mm and ``SAME_LEVEL`` of S, or -1 for none.
+
+    ``seats`` are in ascending order of S. A configuration is theta in radians, x, y and the jaw separation S
+    in mm.
+    """
     nearest, number, low, high = AT_SEAT, -1, 0, seats.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -249,7 +272,7 @@ def seat_at(config: Array, seats: Array, size: float) -> int:
         else:
             high = middle
     while low < seats.shape[0] and seats[low, 3] < config[3] + SAME_LEVEL:
-        away = apart(config, seats[low], size)
+        away = measure_distance(config, seats[low], size)
         if away < nearest:
             nearest, number = away, low
         low += 1
@@ -257,21 +280,24 @@ def seat_at(config: Array, seats: Array, size: float) -> int:
 
 
 @inner
-def fall_at(config: Array, how: int, manifolds: Manifolds, falling: IntArray, size: float) -> int:
-    """The falling manifold on which a path ended, or -1.
+def find_falling_manifold(
+    config: Array, how: int, manifolds: Manifolds, falling: IntArray, size: float
+) -> int:
+    """Return the position in ``falling`` of the manifold on which a path ended, or -1.
 
-    On flat faces no step leads down; the path goes on, lower, where the part slides off them.
+    On flat faces no step leads down, though from such a manifold the part slides off and the path goes on,
+    lower. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     if how == AT_REST:
         for k in range(falling.shape[0]):
             is_above = config[3] >= manifolds.rows[falling[k], SEPARATION] - FALLS
-            if is_above and lies_in(config, manifolds, falling[k], size, SAME_LEVEL):
+            if is_above and is_in_manifold(config, manifolds, falling[k], size, SAME_LEVEL):
                 return k
     return -1
 
 
 @inner
-def rest_at(
+def find_place_of_rest(
     config: Array,
     how: int,
     leaves: int,
@@ -282,27 +308,32 @@ def rest_at(
     first: int,
     size: float,
 ) -> int:
-    """The place of the end of a path that does not lead on, or ``UNKNOWN``.
+    """Return the number of the place in which a path that does not lead on ended, or ``UNKNOWN``.
 
-    Arguments as of ``write_places``.
+    ``how`` tells how the path ended, ``leaves`` is 1 where the part can be taken away. Other parameters are
+    those of :func:`write_places`. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     if how == AT_THE_STOP:
         return OUTSIDE if leaves != 0 else STOP
     if how != AT_REST:
         return UNKNOWN
-    seat = seat_at(config, seats, size)
+    seat = find_seat(config, seats, size)
     if seat >= 0:
         return numbers[seat]
-    loose = first_of(config, manifolds, lying, size, SAME_LEVEL)
+    loose = find_first_manifold(config, manifolds, lying, size, SAME_LEVEL)
     return first - lying.shape[0] + loose if loose >= 0 else UNKNOWN
 
 
 @inner
-def doubt_at(config: Array, doubtful: Array, count: int, size: float) -> int:
-    """The number of the nearest of ``count`` configurations that are not settled, or ``count``."""
+def find_doubtful(config: Array, doubtful: Array, count: int, size: float) -> int:
+    """Return the index of the nearest of the first ``count`` doubtful
+    configurations, or ``count`` if none is near.
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     nearest, number = inf, count
     for k in range(count):
-        away = apart(doubtful[k], config, size)
+        away = measure_distance(doubtful[k], config, size)
         if away < nearest:
             nearest, number = away, k
     return number if nearest < ONE_DOUBT else count
@@ -325,40 +356,44 @@ def write_places(
     fallen: IntVector,
     out: IntVector,
 ) -> int:
-    """Writes the places that descent paths end in, and returns how many configurations are not settled then.
+    """Write the places in which descent paths end to ``out``; return
+    the new number of configurations not settled.
+
+    A place is a number, OUTSIDE or STOP. An end that is in no known place becomes a new one, not settled. A
+    configuration is theta in radians, x, y and the jaw separation S in mm.
 
     Parameters
     ----------
-    ends, how, leaves : (N + G, 4) and (N + G,) where paths end, how, and 1 where a part can be taken away.
-        The last G are one path off each falling manifold.
+    ends, how, leaves : (N + G, 4) and (N + G,): where paths end, how (see ``closing``), and 1 where a part
+        can be taken away. The last G are one path from each falling manifold.
     manifolds : equilibrium manifolds.
-    lying, falling : (L,) numbers of manifolds off which no path leads, with the places before ``first``, and
-        (G,) of the others.
-    seats, numbers : (M, 4) configurations of seats, ordered by S, and their places.
-    first : the place of the first that is not settled.
-    size : of the part in mm, by which turns are counted.
-    doubtful, count : configurations that are not settled, the first so many before and with room for N + G
-        more.
+    lying : (L,) numbers of manifolds from which no path leads on; their places are the last L before
+        ``first``.
+    falling : (G,) numbers of the other manifolds.
+    seats, numbers : (M, 4) configurations of seats, in ascending order of S, and their places.
+    first : the place of the first configuration that is not settled.
+    size : of the part in mm; a turn times this is compared with shifts.
+    doubtful, count : configurations that are not settled, ``count`` before, with room for N + G more.
     fallen : (G,) work space.
-    out : (N,) written here.
+    out : (N,) receives the places.
     """
     ways = out.shape[0]
     for k in range(falling.shape[0]):
         fallen[k] = UNKNOWN
     for n in range(ways):
         # From set to set, each lower than the one before, to what is known or leads no further.
-        last, fall = n, fall_at(ends[n], how[n], manifolds, falling, size)
+        last, fall = n, find_falling_manifold(ends[n], how[n], manifolds, falling, size)
         while fall >= 0 and fallen[fall] == UNKNOWN:
             last = ways + fall
-            fall = fall_at(ends[last], how[last], manifolds, falling, size)
+            fall = find_falling_manifold(ends[last], how[last], manifolds, falling, size)
         if fall >= 0:
             place = fallen[fall]
         else:
-            place = rest_at(
+            place = find_place_of_rest(
                 ends[last], how[last], leaves[last], manifolds, lying, seats, numbers, first, size
             )
             if place == UNKNOWN:
-                number = doubt_at(ends[last], doubtful, count, size)
+                number = find_doubtful(ends[last], doubtful, count, size)
                 if number == count:
                     for j in range(4):
                         doubtful[count, j] = ends[last, j]
@@ -366,33 +401,36 @@ def write_places(
                 place = first + number
         out[n], at = place, n
         while at != last:
-            fall = fall_at(ends[at], how[at], manifolds, falling, size)
+            fall = find_falling_manifold(ends[at], how[at], manifolds, falling, size)
             fallen[fall], at = place, ways + fall
     return count
 
 
 @compiled
-def leads_out(joins: IntMatrix, place: int, groups: IntVector) -> int:
-    """The number of the first pass, by separation, from which on a place is joined with the outside, or -1.
+def find_pass_to_outside(joins: IntMatrix, place: int, groups: IntVector) -> int:
+    """Return the index of the first join with which a place becomes connected to OUTSIDE, or -1.
 
     Parameters
     ----------
-    joins : (J, 2) places that each joins.
+    joins : (J, 2) the two places that each pass joins, in order of separation.
+    place : a number, or -2 for STOP.
     groups : (P + 2,) work space for all places, of which the last two are the negative ones.
     """
     for k in range(groups.shape[0]):
         groups[k] = k
     for n in range(joins.shape[0]):
-        one, two = root(joins[n, 0], groups), root(joins[n, 1], groups)
+        one, two = find_root(joins[n, 0], groups), find_root(joins[n, 1], groups)
         groups[one] = two
-        if root(place, groups) == root(OUTSIDE, groups):
+        if find_root(place, groups) == find_root(OUTSIDE, groups):
             return n
     return -1
 
 
 @inner
-def root(place: int, groups: IntArray) -> int:
-    """The place that stands for all that are joined with a place."""
+def find_root(place: int, groups: IntArray) -> int:
+    """Return the representative of all places that are joined with a
+    place; a negative place counts from the end.
+    """
     at = place if place >= 0 else groups.shape[0] + place
     while groups[at] != at:
         at = groups[at]

@@ -29,10 +29,10 @@ from workhold.kernels.seating.columns import (
     SPEED,
     TOP,
     VAGUE,
-    Given,
+    HeldPart,
     JawCells,
 )
-from workhold.kernels.seating.obstacles import length
+from workhold.kernels.seating.obstacles import compute_length
 from workhold.kernels.seating.three_contacts import HALVES, MAYBE, NOTHING, write_root
 from workhold.kernels.seating.two_contact_curves import (
     APART,
@@ -40,15 +40,15 @@ from workhold.kernels.seating.two_contact_curves import (
     END,
     GAP,
     SINE,
-    Function,
     PairState,
-    gap,
+    RootFunction,
+    compute_pair_height,
+    compute_pair_state,
+    find_root_between,
     have_no_root,
-    height,
     is_level,
-    pair_at,
-    pair_in,
-    root_between,
+    measure_gap,
+    read_pair_state,
 )
 
 # Ranges narrower than this, in radians, are not halved.
@@ -58,17 +58,24 @@ ROUNDING, SAME = 2e-12, 1e-7
 
 
 @inner
-def verdict_on_two(p: Array, q: Array, low: float, high: float, given: Given) -> int:
-    """The verdict on a range of two cells: NOTHING there, HALVES to look at, or one root (MAYBE)."""
+def judge_two_cells(p: Array, q: Array, low: float, high: float, given: HeldPart) -> int:
+    """Return NOTHING, HALVES or MAYBE for roots of APART over a range of psi in two cells of both jaws.
+
+    NOTHING: there is no root; HALVES: halve the range; MAYBE: there is at most one root. Neither cell is
+    vague. See ``seating.columns`` for the layout of ``p`` and ``q``. Symbols are those of
+    ``seating.two_contact_curves``.
+    """
     one, two = given.pairs[int(p[PAIR])], given.pairs[int(q[PAIR])]
     psi, reach = (low + high) / 2.0, (high - low) / 2.0
-    s, t = pair_at(one, given, psi), pair_at(two, given, psi)
+    s, t = compute_pair_state(one, given, psi), compute_pair_state(two, given, psi)
     cosine, sine = cos(psi), sin(psi)
-    f = height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
+    f = compute_pair_height(two, given, t[0], t[1], cosine, sine) - compute_pair_height(
+        one, given, s[0], s[1], cosine, sine
+    )
     gx, gy, speed = t[6] - s[6], t[7] - s[7], p[SPEED] + q[SPEED]
-    apart = length(gx, gy)
+    apart = compute_length(gx, gy)
     # Two pegs cannot be in one place, and pairs that turn about one centre are loose throughout.
-    if (length(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
+    if (compute_length(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
         return NOTHING
     slope, bend = abs(cosine * gx + sine * gy), apart + speed * (1.0 + reach)
     if abs(f) > reach * (slope + bend * reach / 2.0 * 1.001) + ROUNDING:
@@ -77,27 +84,39 @@ def verdict_on_two(p: Array, q: Array, low: float, high: float, given: Given) ->
 
 
 @inner
-def verdict_on_third(
-    cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: Given
+def judge_third_peg(
+    cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: HeldPart
 ) -> int:
-    """The verdict on a range in which a peg (ox, oy) from the first may touch a piece."""
+    """Return NOTHING, HALVES or MAYBE for a peg that may touch a piece over a range of psi in a cell.
+
+    The peg is (ox, oy) mm from the first peg of the pair in the vise frame. See :func:`judge_two_cells` for
+    the verdicts. See ``seating.columns`` for the layout of ``cell``, ``base.feature`` for that of ``piece``.
+    """
     psi = (low + high) / 2.0
-    s = pair_at(given.pairs[int(cell[PAIR])], given, psi)
-    x, y = place_of(s, cos(psi), sin(psi), ox, oy)
-    return verdict_on_place(cell, s, x, y, piece, (high - low) / 2.0)
+    s = compute_pair_state(given.pairs[int(cell[PAIR])], given, psi)
+    x, y = compute_peg_place(s, cos(psi), sin(psi), ox, oy)
+    return judge_place(cell, s, x, y, piece, (high - low) / 2.0)
 
 
 @inner
-def place_of(s: PairState, cosine: float, sine: float, ox: float, oy: float) -> tuple[float, float]:
-    """Place on the part of a peg (ox, oy) from the first in the vise frame."""
+def compute_peg_place(s: PairState, cosine: float, sine: float, ox: float, oy: float) -> tuple[float, float]:
+    """Return the place (x, y) on the part of a peg that is (ox, oy)
+    mm from the pair's first peg in the vise frame.
+    """
     return (s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy)
 
 
 @inner
-def verdict_on_place(cell: Array, s: PairState, x: float, y: float, piece: Array, reach: float) -> int:
-    """The verdict on a range by what is in its middle: the pair, and the peg's place (x, y)."""
+def judge_place(cell: Array, s: PairState, x: float, y: float, piece: Array, reach: float) -> int:
+    """Return NOTHING, HALVES or MAYBE for a peg that may touch a
+    piece over a range of psi of half width ``reach``.
+
+    ``s`` is the pair and (x, y) the peg's place on the part, both in the middle of the range. See
+    :func:`judge_two_cells` for the verdicts. See ``seating.columns`` for the layout of ``cell``,
+    ``base.feature`` for that of ``piece``.
+    """
     gx, gy = x - s[6], y - s[7]
-    speed = (length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
+    speed = (compute_length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
     bend = speed + cell[SPEED]
     dx, dy = x - piece[X], y - piece[Y]
     if piece[IS_ARC] == 0.0:
@@ -105,9 +124,9 @@ def verdict_on_place(cell: Array, s: PairState, x: float, y: float, piece: Array
             return NOTHING
         f, nx, ny = dx * piece[AXIS_Y] - dy * piece[AXIS_X], piece[AXIS_Y], -piece[AXIS_X]
     else:
-        size = max(length(dx, dy), 1e-150)
+        size = max(compute_length(dx, dy), 1e-150)
         f, nx, ny = piece[SIGN] * (size - piece[RADIUS]), piece[SIGN] * dx / size, piece[SIGN] * dy / size
-        if cell[SPEED] == 0.0 and length(s[6] - piece[X], s[7] - piece[Y]) < SAME:
+        if cell[SPEED] == 0.0 and compute_length(s[6] - piece[X], s[7] - piece[Y]) < SAME:
             return NOTHING
         least = size - speed * reach
         bend += speed * speed / least if least > 0.0 else inf
@@ -120,12 +139,28 @@ def verdict_on_place(cell: Array, s: PairState, x: float, y: float, piece: Array
 
 
 @inner
-def roots_between(
-    kind: float, p: Array, q: Array, peg: int, number: int, given: Given, stack: Array, out: Array, count: int
+def write_roots_between(
+    kind: float,
+    p: Array,
+    q: Array,
+    peg: int,
+    number: int,
+    given: HeldPart,
+    stack: Array,
+    out: Array,
+    count: int,
 ) -> int:
-    """Writes the roots over two cells (APART), or over a cell, a peg and a piece (GAP).
+    """Append the roots of APART over two cells, or of GAP over a cell, a peg and a piece, to ``out`` (N, 6).
 
-    Returns the new count or -1.
+    Return the new number of roots, or -1 when there is no room. See ``seating.columns`` for the layout of
+    ``p`` and ``q``. Symbols are those of ``seating.two_contact_curves``.
+
+    Parameters
+    ----------
+    kind : APART or GAP.
+    p, q : cells; the same cell twice for GAP.
+    peg, number : peg and piece for GAP, else -1.
+    stack : (DEPTH, 2) work space.
     """
     one, two = given.pairs[int(p[PAIR])], given.pairs[int(q[PAIR])]
     vague = p[VAGUE] != 0.0 or q[VAGUE] != 0.0
@@ -133,7 +168,7 @@ def roots_between(
     if kind == GAP:
         piece, tail = given.rows[number], int(one[FIRST_PEG])
         ox, oy = given.pegs[peg, 0] - given.pegs[tail, 0], given.pegs[peg, 1] - given.pegs[tail, 1]
-    function, depth = Function(kind, one, two, piece, ox, oy, given), 1
+    function, depth = RootFunction(kind, one, two, piece, ox, oy, given), 1
     stack[0, 0], stack[0, 1] = max(p[LOW], q[LOW]), min(p[HIGH], q[HIGH])
     while depth > 0:
         depth -= 1
@@ -142,15 +177,15 @@ def roots_between(
         verdict = MAYBE
         if not vague:
             verdict = (
-                verdict_on_two(p, q, low, high, given)
+                judge_two_cells(p, q, low, high, given)
                 if kind == APART
-                else verdict_on_third(p, ox, oy, piece, low, high, given)
+                else judge_third_peg(p, ox, oy, piece, low, high, given)
             )
         if verdict == NOTHING:
             continue
         doubt = 0.0
         if verdict == MAYBE:
-            found, psi = root_between(function, low, high)
+            found, psi = find_root_between(function, low, high)
             if not found:
                 continue
         elif high - low > 2.0 * NARROWEST and depth < stack.shape[0] - 1:
@@ -170,7 +205,9 @@ def roots_between(
 
 @inner
 def write_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
-    """Writes a cell of a jaw as one of the pattern, whose heights count from another peg."""
+    """Write cell ``number`` of a jaw to ``out`` (7,) with heights and
+    pair number as in the pattern of both jaws.
+    """
     for k in range(CELL_LENGTH):
         out[k] = jaw.cells[number, k]
     out[BOTTOM] -= jaw.height
@@ -179,22 +216,25 @@ def write_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
 
 
 @compiled
-def two_pairs(
+def write_two_pairs(
     left: JawCells,
     right: JawCells,
-    given: Given,
+    given: HeldPart,
     two_cells: Matrix,
     stack: Matrix,
     reaching: IntVector,
     out: Matrix,
 ) -> int:
-    """Orientations at which a pair of the left jaw and one of the right have one height; how many, or -1.
+    """Write the roots at which a pair of the left jaw and one of the
+    right jaw have the same height to ``out``.
+
+    Return their number, or -1 when there is no room.
 
     Parameters
     ----------
     two_cells, stack : (2, 7) and (DEPTH, 2) work space.
-    reaching : as many as right cells: work space.
-    out : (N, 6) roots, written here: the right pair stands in the column of the piece.
+    reaching : work space, as many entries as there are right cells.
+    out : (N, 6) receives the roots, see ``three_contacts``; the right pair stands in the column ROOT_PIECE.
     """
     p, others, lifted = two_cells[0], right.cells, right.height
     count = known = begun = 0
@@ -219,61 +259,62 @@ def two_pairs(
             if others[number, BOTTOM] - lifted > p[TOP] or others[number, TOP] - lifted < p[BOTTOM]:
                 continue
             write_in_pattern(number, right, two_cells[1])
-            count = roots_between(APART, p, two_cells[1], -1, -1, given, stack, out, count)
+            count = write_roots_between(APART, p, two_cells[1], -1, -1, given, stack, out, count)
             if count < 0:
                 return -1
     return count
 
 
 @compiled
-def third_of_jaw(
-    cells: Matrix, middles: Matrix, given: Given, discs: Matrix, stack: Matrix, out: Matrix
+def write_third_of_jaw(
+    cells: Matrix, middles: Matrix, given: HeldPart, discs: Matrix, stack: Matrix, out: Matrix
 ) -> int:
-    """Writes orientations at which a third peg of a pair's own jaw touches a piece.
+    """Write the roots at which a third peg of a pair's own jaw touches a piece to ``out`` (N, 6).
 
-    Returns how many, or -1.
+    Return their number, or -1 when there is no room. See ``seating.columns`` for the layout of ``cells``.
 
     Parameters
     ----------
-    cells, middles : (C, 7) and (C, 19) of one jaw.
-    discs : (N, 3) around the pieces: middle and radius in mm.
+    cells, middles : (C, 7) and (C, 19) of one jaw; see ``two_contact_curves`` for the middles.
+    discs : (N, 3) disc around each piece: centre x, y and radius in mm.
+    stack : (DEPTH, 2) work space.
     """
     count = 0
     for number in range(cells.shape[0]):
         cell, middle = cells[number], middles[number]
         pair = given.pairs[int(cell[PAIR])]
         tail, head = int(pair[FIRST_PEG]), int(pair[SECOND_PEG])
-        reach, s = (cell[HIGH] - cell[LOW]) / 2.0, pair_in(middle)
+        reach, s = (cell[HIGH] - cell[LOW]) / 2.0, read_pair_state(middle)
         at_low, at_high = s, s
         if cell[VAGUE] != 0.0:
-            at_low, at_high = pair_at(pair, given, cell[LOW]), pair_at(pair, given, cell[HIGH])
+            at_low, at_high = (
+                compute_pair_state(pair, given, cell[LOW]),
+                compute_pair_state(pair, given, cell[HIGH]),
+            )
         for third in range(given.pegs.shape[0]):
             if given.right[third] != given.right[tail] or third in (tail, head):
                 continue
             ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
-            x, y = place_of(s, middle[COSINE], middle[SINE], ox, oy)
+            x, y = compute_peg_place(s, middle[COSINE], middle[SINE], ox, oy)
             low = high = (x, y)
             if cell[VAGUE] != 0.0:
-                low = place_of(at_low, cos(cell[LOW]), sin(cell[LOW]), ox, oy)
-                high = place_of(at_high, cos(cell[HIGH]), sin(cell[HIGH]), ox, oy)
+                low = compute_peg_place(at_low, cos(cell[LOW]), sin(cell[LOW]), ox, oy)
+                high = compute_peg_place(at_high, cos(cell[HIGH]), sin(cell[HIGH]), ox, oy)
             play = (
-                (length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach
+                (compute_length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach
                 + END
                 + ROUNDING
             )
             for piece in range(given.parts[given.right[tail], 0], given.parts[given.right[tail], 1]):
                 row = given.rows[piece]
                 if cell[VAGUE] != 0.0:
-                    if have_no_root(gap(row, low[0], low[1]), gap(row, high[0], high[1])):
+                    if have_no_root(measure_gap(row, low[0], low[1]), measure_gap(row, high[0], high[1])):
                         continue
                 else:
                     dx, dy, far = x - discs[piece, 0], y - discs[piece, 1], discs[piece, 2] + play
-                    if (
-                        dx * dx + dy * dy > far * far
-                        or verdict_on_place(cell, s, x, y, row, reach) == NOTHING
-                    ):
+                    if dx * dx + dy * dy > far * far or judge_place(cell, s, x, y, row, reach) == NOTHING:
                         continue
-                count = roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
+                count = write_roots_between(GAP, cell, cell, third, piece, given, stack, out, count)
                 if count < 0:
                     return -1
     return count

@@ -30,14 +30,14 @@ from workhold.kernels.base.compiling import (
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.seating.columns import Obstacles
 from workhold.kernels.seating.obstacles import (
-    angle_from_middle,
+    compute_angle_from_middle,
+    compute_length,
+    compute_normal,
+    compute_turned_place,
     cut_by_wall,
-    length,
-    normal_at,
-    on_piece,
-    turned_place,
+    is_on_piece,
 )
-from workhold.kernels.seating.two_contact_curves import gap
+from workhold.kernels.seating.two_contact_curves import measure_gap
 
 # Intervals of a jaw that are kept at one place, and crossings that are looked at.
 MOST_INTERVALS, MOST_CROSSINGS = 6, 256
@@ -47,7 +47,11 @@ OFF_TURN, OFF_SHIFT = 0.29, 0.37
 
 @inner
 def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
-    """Writes where pegs enter (1) or leave (-1) a part that moves along +x; returns the new count."""
+    """Append a crossing (position in mm, sign): pegs enter (1) or
+    leave (-1) a part there that moves along +x.
+
+    Return the new number, which counts also those for which there is no room.
+    """
     if count < crossings.shape[0]:
         crossings[count, 0], crossings[count, 1] = at, sign
     return count + 1
@@ -57,9 +61,12 @@ def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
 def collect_crossings(
     config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array
 ) -> int:
-    """Writes where a part moving along x meets the pegs of a jaw, which stands as in a configuration.
+    """Write where a part that moves along x, at ``theta`` and ``y``,
+    crosses the pegs of a jaw to ``crossings``, unsorted.
 
-    Returns how many.
+    The jaw stands as in ``config``. A row holds the part's shift in x from its place in ``config`` in mm, and
+    1 where a peg enters the part, -1 where it leaves. Return the number, also of those for which there is no
+    room. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     cosine, sine = cos(theta), sin(theta)
     count = 0
@@ -83,7 +90,7 @@ def collect_crossings(
                 continue
             for side in range(2):
                 dx = (1.0 - 2.0 * side) * sqrt((row[RADIUS] - up) * (row[RADIUS] + up))
-                angle = angle_from_middle(row, cosine * dx + sine * up, cosine * up - sine * dx)
+                angle = compute_angle_from_middle(row, cosine * dx + sine * up, cosine * up - sine * dx)
                 if row[HALF_EXTENT] >= pi or -row[HALF_EXTENT] <= angle < row[HALF_EXTENT]:
                     count = add_crossing(
                         crossings, count, ahead - (cx + dx), 1.0 if row[SIGN] * dx > 0.0 else -1.0
@@ -92,12 +99,15 @@ def collect_crossings(
 
 
 @inner
-def free_intervals(
+def write_free_intervals(
     config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array, out: Array
 ) -> int:
-    """Writes the intervals of x in which the pegs of a jaw are off the part; returns how many.
+    """Write the intervals (low, high) of x in which the pegs of a jaw
+    are outside the part to ``out``, ascending.
 
-    Where rounding leaves them in doubt there are none.
+    x is the part's shift in mm from its place in ``config``, at ``theta`` and ``y``; the first low end is
+    -inf, the last high end inf. Return their number; 0 where there is no room, or rounding leaves them in
+    doubt. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     count = collect_crossings(config, theta, y, jaw, obstacles, crossings)
     if count > crossings.shape[0]:
@@ -128,7 +138,7 @@ def free_intervals(
 
 
 @compiled
-def free_poses(
+def write_free_poses(
     config: Vector,
     opening: float,
     cells: int,
@@ -140,24 +150,25 @@ def free_poses(
     intervals: Stack,
     out: Matrix,
 ) -> int:
-    """Writes free poses around a seat with the jaws opened.
+    """Write free poses around a seat with the jaws opened to ``out``.
 
-    Of each cell of a grid of orientations and heights, and each pair of intervals, they are the nearest and
-    both ends.
+    Of each cell of a grid of orientations and heights, and each pair of free intervals in x, these are the
+    nearest pose and both ends. S is the jaw separation in mm.
 
     Parameters
     ----------
-    config : (4,) of the seat.
-    opening : in mm.
-    cells, step : of the grid, both ways; (2,) in radians and mm.
-    lean : how fast in mm per radian the grid's middle rises with the orientation.
+    config : (4,) theta, x, y, S of the seat.
+    opening : in mm, by which the jaws are opened.
+    cells : number of grid cells in either direction.
+    step : (2,) of the grid, in radians and mm.
+    lean : shift in mm of the grid's middle height per radian of orientation.
     arm : R, largest distance of a point of the silhouette from the centre, in mm.
     crossings, intervals : (MOST_CROSSINGS, 2) and (2, MOST_INTERVALS, 2) work space.
-    out : (N, 5) rows of |shift| + 2 R sin(|turn| / 2), and theta, x, y, S, as far as there is room.
+    out : (N, 5) receives |shift| + 2 R sin(|turn| / 2) in mm, and theta, x, y, S, as far as there is room.
 
     Returns
     -------
-    how many were written
+    number of poses written
     """
     count = 0
     for i in range(cells):
@@ -165,9 +176,9 @@ def free_poses(
         for j in range(cells):
             shift = lean * turn + (j - cells // 2 + OFF_SHIFT) * step[1]
             theta, y = config[0] + turn, config[2] + shift
-            n = free_intervals(config, theta, y, 0, obstacles, crossings, intervals[0])
+            n = write_free_intervals(config, theta, y, 0, obstacles, crossings, intervals[0])
             n = cut_by_wall(config, theta, y, obstacles, intervals[0], n)
-            m = free_intervals(config, theta, y, 1, obstacles, crossings, intervals[1])
+            m = write_free_intervals(config, theta, y, 1, obstacles, crossings, intervals[1])
             for a in range(n):
                 for b in range(m):
                     low = max(intervals[0, a, 0], intervals[1, b, 0] + opening)
@@ -200,21 +211,32 @@ RANGES = 4
 
 @inner
 def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
-    """Writes a range, its first direction and how far it goes on counter-clockwise; returns the new count."""
+    """Append a range of directions in radians to ``ranges``: its
+    first direction, and its sweep counter-clockwise.
+
+    Return the new number of ranges.
+    """
     ranges[count, 0], ranges[count, 1] = low, sweep
     return count + 1
 
 
 @inner
 def is_touched(row: Array, x: float, y: float) -> bool:
-    """Whether a peg at a place touches a piece."""
-    return -ENTERED < gap(row, x, y) < TOUCHED and on_piece(row, x, y, TOUCHED)
+    """Return whether a peg at (x, y) touches a piece, or is at most ``ENTERED`` mm inside it.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
+    return -ENTERED < measure_gap(row, x, y) < TOUCHED and is_on_piece(row, x, y, TOUCHED)
 
 
 @inner
 def add_line(row: Array, axis: float, x: float, y: float, ranges: Array, count: int) -> int:
-    """Writes the directions in which a point meets a line; see ``add_piece``."""
-    off = gap(row, x, y)
+    """Append the range of directions in which a point meets a line from
+    outside; return the new number, see :func:`add_piece`.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
+    off = measure_gap(row, x, y)
     if off <= 0.0:
         return count
     along = (x - row[X]) * row[AXIS_X] + (y - row[Y]) * row[AXIS_Y]
@@ -223,19 +245,24 @@ def add_line(row: Array, axis: float, x: float, y: float, ranges: Array, count: 
 
 
 @inner
-def seen_outside(radius: float, away: float, angle: float) -> float:
-    """The direction to a place of a circle from a point outside it, less that to the centre.
+def compute_angle_from_outside(radius: float, away: float, angle: float) -> float:
+    """Return the direction in radians from a point outside a circle
+    to a point of the circle, relative to its centre's.
 
-    The angle is the place's, from the direction of the point.
+    ``away`` is the outer point's distance from the centre; ``angle`` is that of the circle's point seen from
+    the centre, relative to the direction of the outer point.
     """
     return atan2(-radius * sin(angle), away - radius * cos(angle))
 
 
 @inner
-def seen_inside(radius: float, away: float, angle: float) -> float:
-    """The direction to a place of a circle from a point inside it, from the direction of the point.
+def compute_angle_from_inside(radius: float, away: float, angle: float) -> float:
+    """Return the direction in radians from a point inside a circle to a
+    point of the circle, relative to the inner point's.
 
-    It is never a quarter turn from the angle of the place, so that it goes on with it past half turns.
+    The inner point's direction is that seen from the centre, ``away`` its distance from the centre; ``angle``
+    is that of the circle's point seen from the centre, relative to it. The result stays within a quarter turn
+    of ``angle``, so it is continuous past half turns.
     """
     return angle + atan2(away * sin(angle), radius - away * cos(angle))
 
@@ -244,9 +271,11 @@ def seen_inside(radius: float, away: float, angle: float) -> float:
 def add_side(
     row: Array, axis: float, away: float, toward: float, near: bool, ranges: Array, count: int
 ) -> int:
-    """Writes the directions in which a point outside an arc's circle meets its near or its far side.
+    """Append the ranges of directions in which a point outside an
+    arc's circle meets the near or far side of the arc.
 
-    The point is ``away`` from the centre in a direction.
+    The point is ``away`` mm from the centre, in direction ``toward``; ``axis`` is the direction of the arc's
+    middle. Return the new number of ranges. See ``base.feature`` for the layout of ``row``.
     """
     seen = acos(row[RADIUS] / away)
     first, last = (-seen, seen) if near else (seen, TURN - seen)
@@ -256,16 +285,23 @@ def add_side(
         around = middle + TURN * turns
         low, high = max(around - row[HALF_EXTENT], first), min(around + row[HALF_EXTENT], last)
         if low < high:
-            one, two = seen_outside(row[RADIUS], away, low), seen_outside(row[RADIUS], away, high)
+            one, two = (
+                compute_angle_from_outside(row[RADIUS], away, low),
+                compute_angle_from_outside(row[RADIUS], away, high),
+            )
             count = add_range(toward + pi + min(one, two) - HAIR, abs(two - one) + 2.0 * HAIR, ranges, count)
     return count
 
 
 @inner
 def add_concave(row: Array, axis: float, x: float, y: float, ranges: Array, count: int) -> int:
-    """Writes the directions in which a point meets a concave arc, from inside or through the opening."""
+    """Append the ranges of directions in which a point meets a
+    concave arc, from inside or through its opening.
+
+    Return the new number of ranges. See ``base.feature`` for the layout of ``row``.
+    """
     dx, dy, radius = x - row[X], y - row[Y], row[RADIUS]
-    away, toward = length(dx, dy), atan2(dy, dx)
+    away, toward = compute_length(dx, dy), atan2(dy, dx)
     if is_touched(row, x, y):
         # Along it there is no way.
         count = add_range(toward - pi / 2.0 - HAIR, pi + 2.0 * HAIR, ranges, count)
@@ -275,24 +311,25 @@ def add_concave(row: Array, axis: float, x: float, y: float, ranges: Array, coun
     if row[HALF_EXTENT] >= pi:
         return add_range(0.0, TURN, ranges, count)
     middle = axis - toward
-    low = seen_inside(radius, away, middle - row[HALF_EXTENT])
-    high = seen_inside(radius, away, middle + row[HALF_EXTENT])
+    low = compute_angle_from_inside(radius, away, middle - row[HALF_EXTENT])
+    high = compute_angle_from_inside(radius, away, middle + row[HALF_EXTENT])
     return add_range(toward + low - HAIR, high - low + 2.0 * HAIR, ranges, count)
 
 
 @inner
 def add_piece(row: Array, axis: float, x: float, y: float, ranges: Array, count: int) -> int:
-    """Writes the directions in which a point that moves straight meets a piece, whose axis has a direction,
-    from outside.
+    """Append the ranges of directions in which a point at (x, y) that
+    moves straight meets a piece from outside.
 
-    Returns the new count.
+    ``axis`` is the direction in radians of the piece's axis. Return the new number of ranges. See
+    ``base.feature`` for the layout of ``row``.
     """
     if row[IS_ARC] == 0.0:
         return add_line(row, axis, x, y, ranges, count)
     if row[SIGN] < 0.0:
         return add_concave(row, axis, x, y, ranges, count)
     dx, dy = x - row[X], y - row[Y]
-    away = length(dx, dy)
+    away = compute_length(dx, dy)
     return count if away <= row[RADIUS] else add_side(row, axis, away, atan2(dy, dx), True, ranges, count)
 
 
@@ -300,15 +337,17 @@ def add_piece(row: Array, axis: float, x: float, y: float, ranges: Array, count:
 def add_peg(
     x: float, y: float, rows: Array, axes: Array, first: int, end: int, ranges: Array, count: int
 ) -> int:
-    """Writes the ranges of directions in which a peg meets the pieces of its boundary; returns the new count.
+    """Append the ranges of directions in which a peg at (x, y) meets
+    pieces ``first`` to ``end`` of its boundary.
 
-    Of pieces that it touches they are those into them, and of all others those seen from beside what it
-    touches.
+    For pieces that it touches these are the directions into them; for all others they are taken from a point
+    just off those that it touches. Return the new number of ranges. See ``base.feature`` for the layout of
+    ``rows``.
     """
     beside_x, beside_y = x, y
     for k in range(first, end):
         if is_touched(rows[k], x, y) and (rows[k, IS_ARC] == 0.0 or rows[k, SIGN] > 0.0):
-            nx, ny = normal_at(rows[k], x, y)
+            nx, ny = compute_normal(rows[k], x, y)
             count = add_range(atan2(ny, nx) + pi / 2.0 + HAIR, pi - 2.0 * HAIR, ranges, count)
             beside_x, beside_y = beside_x + LIFTED * nx, beside_y + LIFTED * ny
     for k in range(first, end):
@@ -319,11 +358,11 @@ def add_peg(
 
 
 @inner
-def way_left(ranges: Array, count: int) -> float:
-    """A direction in none of some open ranges, or NaN.
+def find_direction_left(ranges: Array, count: int) -> float:
+    """Return a direction in radians outside all of some open ranges, or NaN when they leave none.
 
-    The search goes from the end of one to that of another which goes on farthest, until none does or all has
-    been gone around.
+    The search goes from the end of one range to the farthest end of a range that contains it, until none does
+    or a whole turn is covered.
     """
     if count == 0:
         return 0.0
@@ -344,8 +383,11 @@ def way_left(ranges: Array, count: int) -> float:
 
 
 @inner
-def way_away(config: Array, obstacles: Obstacles, axes: Array, ranges: Array) -> float:
-    """The direction that ``leave`` writes, of one configuration."""
+def find_escape_direction(config: Array, obstacles: Obstacles, axes: Array, ranges: Array) -> float:
+    """Return the direction in which all pegs can leave a part, or NaN, see :func:`write_escape_directions`.
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     count = 0
     if obstacles.half_plane[0] != 0.0 or obstacles.half_plane[1] != 0.0:
         # The part moves the other way than pegs do on it, and nothing moves toward the wall.
@@ -354,25 +396,29 @@ def way_away(config: Array, obstacles: Obstacles, axes: Array, ranges: Array) ->
         )
     cosine, sine = cos(config[0]), sin(config[0])
     for peg in range(obstacles.pegs.shape[0]):
-        (x, y), side = turned_place(config, cosine, sine, obstacles, peg), obstacles.right[peg]
+        (x, y), side = compute_turned_place(config, cosine, sine, obstacles, peg), obstacles.right[peg]
         first, end = obstacles.parts[side, 0], obstacles.parts[side, 1]
         count = add_peg(x, y, obstacles.rows, axes, first, end, ranges, count)
-    return way_left(ranges, count)
+    return find_direction_left(ranges, count)
 
 
 @compiled
-def leave(configs: Matrix, obstacles: Obstacles, axes: Vector, ranges: Matrix, out: Vector) -> None:
-    """Writes a direction (N,) along which all pegs can leave a part in configurations (N, 4), or NaN.
+def write_escape_directions(
+    configs: Matrix, obstacles: Obstacles, axes: Vector, ranges: Matrix, out: Vector
+) -> None:
+    """Write, for each configuration (N, 4), a direction in which all
+    pegs can leave the part straight to ``out``, or NaN.
 
-    It is in radians in the part's frame; no peg enters the part, which comes no nearer to a wall. Entries
-    that are NaN already are left as they are.
+    It is the direction of the pegs' motion in the part's frame, in radians; no peg enters the part, which
+    comes no nearer to a wall. Only entries of ``out`` (N,) that are NaN before are computed. A configuration
+    is theta in radians, x, y and the jaw separation S in mm.
 
     Parameters
     ----------
-    axes, ranges : (P,) and (RANGES * K * P + 1, 2) work space, of so many pegs K and pieces P.
+    axes, ranges : (P,) and (RANGES * K * P + 1, 2) work space, for K pegs and P pieces.
     """
     for piece in range(axes.shape[0]):
         axes[piece] = atan2(obstacles.rows[piece, AXIS_Y], obstacles.rows[piece, AXIS_X])
     for n in range(configs.shape[0]):
         if not isnan(out[n]):
-            out[n] = way_away(configs[n], obstacles, axes, ranges)
+            out[n] = find_escape_direction(configs[n], obstacles, axes, ranges)

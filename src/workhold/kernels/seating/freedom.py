@@ -23,15 +23,15 @@ from workhold.kernels.seating.columns import (
 )
 from workhold.kernels.seating.obstacles import (
     SUPPORTS,
-    beside_wall,
-    cosine_and_sine,
-    nearest_piece,
-    off_wall,
-    on_piece,
-    place_on_part,
-    turned_place,
+    compute_cosine_and_sine,
+    compute_peg_place,
+    compute_turned_place,
+    find_nearest_piece,
+    find_wall_clearance,
+    is_on_piece,
+    measure_wall_clearance,
 )
-from workhold.kernels.seating.two_contact_curves import gap
+from workhold.kernels.seating.two_contact_curves import measure_gap
 
 # mm. Pegs this near touch, and may be in the part by as much.
 TOUCHES = 1e-7
@@ -42,22 +42,21 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
 
 @inner
-def off_peg(x: float, y: float, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
-    """The clearance of a peg in mm at a place on the part; -inf where it is off a piece that it has to
-    touch.
+def measure_peg_clearance(x: float, y: float, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
+    """Return the clearance in mm of a peg at (x, y) on the part, or a
+    lower bound of its size with the right sign.
 
-    Piece -1 is none.
-
-    Where none, as far as ``seen`` (4,) has it, a place on the part, its clearance and the nearest piece
-    there: no nearer than that, and on its side.
+    Return -inf where the peg is off ``piece``, which it has to touch (-1 for none). ``seen`` (4,) caches a
+    place (x, y), its clearance and the nearest piece there. A bound is returned only for a peg without a
+    piece to touch, near that place; otherwise the cache is overwritten.
     """
-    if piece >= 0 and not on_piece(around.rows[piece], x, y, END_SLACK):
+    if piece >= 0 and not is_on_piece(around.rows[piece], x, y, END_SLACK):
         return -inf
     rest = abs(seen[2]) - hypot(x - seen[0], y - seen[1])
     if piece < 0 and rest > SURELY:
         return rest if seen[2] > 0.0 else -rest
     first, end = around.parts[around.right[peg], 0], around.parts[around.right[peg], 1]
-    off, nearest = nearest_piece(x, y, around.rows, first, end, int(seen[3]))
+    off, nearest = find_nearest_piece(x, y, around.rows, first, end, int(seen[3]))
     seen[0], seen[1], seen[2], seen[3] = x, y, off, nearest
     return off
 
@@ -66,31 +65,41 @@ def off_peg(x: float, y: float, peg: int, piece: int, around: Obstacles, seen: A
 def write_clearances(
     config: Array, touched: IntArray, known: int, around: Obstacles, seen: Array, out: Array
 ) -> bool:
-    """Writes the clearances of all pegs from a number on, and last of a wall, in a configuration.
+    """Write the clearances in mm of all pegs not in ``known``, and
+    last of a wall if there is one, to ``out``.
 
-    Returns whether all leave the part free, and those that have to touch pieces (K,) do. Where one does not,
-    what follows it is not written.
+    Return whether no peg and no wall enters the part and all pegs that have to touch pieces do. After the
+    first that does not, nothing more is written. S is the jaw separation in mm.
+
+    Parameters
+    ----------
+    config : (4,) theta, x, y, S.
+    touched : (P,) the piece that each peg has to touch, or -1.
+    known : has bit k set where the clearance of peg k is known.
+    seen : (P + 1, 4), see :func:`forget_seen`.
     """
     pegs = around.pegs.shape[0]
     # Along a slide the part does not turn.
-    cosine, sine = cosine_and_sine(config[0], seen[pegs])
+    cosine, sine = compute_cosine_and_sine(config[0], seen[pegs])
     # What stays on its piece seldom hinders.
     for late in range(2):
         for peg in range(pegs):
             if (touched[peg] >= 0) == (late == 1) and not known >> peg & 1:
-                x, y = turned_place(config, cosine, sine, around, peg)
-                out[peg] = off_peg(x, y, peg, touched[peg], around, seen[peg])
+                x, y = compute_turned_place(config, cosine, sine, around, peg)
+                out[peg] = measure_peg_clearance(x, y, peg, touched[peg], around, seen[peg])
                 if out[peg] <= -TOUCHES:
                     return False
     if around.hull.shape[0] > 0:
-        out[pegs] = off_wall(config, around, SUPPORTS)
+        out[pegs] = measure_wall_clearance(config, around, SUPPORTS)
         return bool(out[pegs] > -TOUCHES)
     return True
 
 
 @inner
-def nothing_seen(seen: Array) -> None:
-    """Begins anew with what is seen of pegs (P, 4) and, last, an orientation with its cosine and its sine."""
+def forget_seen(seen: Array) -> None:
+    """Reset the caches of P pegs and, in the last row, of an
+    orientation with its cosine and sine; ``seen`` is (P + 1, 4).
+    """
     for k in range(seen.shape[0]):
         seen[k, 0], seen[k, 1], seen[k, 2], seen[k, 3] = 0.0, 0.0, 0.0, 0.0
     seen[seen.shape[0] - 1, 1] = 1.0
@@ -98,17 +107,18 @@ def nothing_seen(seen: Array) -> None:
 
 @compiled
 def keep_free(motions: SelfMotions, around: Obstacles, seen: Matrix) -> int:
-    """Moves the self-motions along which a part is free somewhere to the front; returns how many they are.
+    """Move the self-motions along which a part is free somewhere to the front, in place; return their number.
 
-    Writes the clearances of all pegs along them, or less where these are large.
+    Write the clearances of all pegs along them to ``motions.clear``, or lower bounds where these are large;
+    -inf in the first column of a configuration that is not free.
 
     Parameters
     ----------
-    seen : (P + 1, 4) work space, of so many pegs.
+    seen : (P + 1, 4) work space, for P pegs.
     """
     count, begin, at = 0, 0, 0
     for w in range(motions.counts.shape[0]):
-        nothing_seen(seen)
+        forget_seen(seen)
         length, good = motions.counts[w], 0
         for n in range(begin, begin + length):
             if write_clearances(motions.configs[n], motions.pieces[w], 0, around, seen, motions.clear[n]):
@@ -130,17 +140,20 @@ def keep_free(motions: SelfMotions, around: Obstacles, seen: Matrix) -> int:
 
 
 @inner
-def last_free(ends: Array, touched: IntArray, around: Obstacles, seen: Array) -> None:
-    """Moves the first of two configurations, which is free, straight towards the second, which is not.
+def move_to_last_free(ends: Array, touched: IntArray, around: Obstacles, seen: Array) -> None:
+    """Move the free configuration ``ends[0]`` in place to the last
+    free one on the straight line to ``ends[1]``.
 
-    It ends in the last free one.
+    ``ends[1]``, which is not free, is moved to just beyond it.
 
     Parameters
     ----------
-    ends, seen : (4, 4), the last two rows of it work space, and (P + 1, 4) work space.
+    ends : (4, 4); its last two rows are work space.
+    touched : (P,) the piece that each peg has to touch, or -1.
+    seen : (P + 1, 4) work space.
     """
     trial, clear = ends[2], ends[3]
-    nothing_seen(seen)
+    forget_seen(seen)
     for attempt in range(EDGE_ROUNDS):
         last, end = 0, EDGE_PARTS
         while last + 1 < end:
@@ -159,8 +172,8 @@ def last_free(ends: Array, touched: IntArray, around: Obstacles, seen: Array) ->
 
 
 @inner
-def touching(clear: Array) -> int:
-    """How many of some clearances (K,) are none."""
+def count_touching(clear: Array) -> int:
+    """Return how many of the clearances (K,) are less than ``TOUCHES`` mm in size."""
     count = 0
     for k in range(clear.shape[0]):
         count += abs(clear[k]) < TOUCHES
@@ -168,25 +181,25 @@ def touching(clear: Array) -> int:
 
 
 @inner
-def middle_of(clear: Array, begin: int, length: int, first: int, count: int) -> int:
-    """The middle of those configurations of a run at which the most pegs touch.
+def find_middle(clear: Array, begin: int, length: int, first: int, count: int) -> int:
+    """Return the number of the middle one of those configurations of a run at which the most pegs touch.
 
     Parameters
     ----------
-    clear : (M, K) clearances along all motions.
-    begin, length : of the way.
-    first, count : of the run; it goes on from the last configuration to the first.
+    clear : (M, K) clearances along all self-motions.
+    begin, length : number of the first configuration, and how many there are, of the self-motion.
+    first, count : of the run; it continues from the self-motion's last configuration to its first.
     """
     most, number = 0, 0
     for i in range(count):
-        touches = touching(clear[begin + (first - begin + i) % length])
+        touches = count_touching(clear[begin + (first - begin + i) % length])
         if touches > most or number == 0:
             most, number = touches, 0
         number += touches == most
     seen = 0
     for i in range(count):
         at = begin + (first - begin + i) % length
-        if touching(clear[at]) == most:
+        if count_touching(clear[at]) == most:
             if seen == number // 2:
                 return at
             seen += 1
@@ -194,25 +207,31 @@ def middle_of(clear: Array, begin: int, length: int, first: int, count: int) -> 
 
 
 @inner
-def touched_piece(config: Array, peg: int, around: Obstacles) -> int:
-    """Number of the piece that a peg, or after them the wall, touches in a configuration (4,)."""
+def find_touched_piece(config: Array, peg: int, around: Obstacles) -> int:
+    """Return the number of the piece that a peg touches in a configuration (4,).
+
+    The peg number after the last one stands for the wall; the result is then the number of pieces plus that
+    of the row of the hull. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     if peg == around.pegs.shape[0]:
-        return around.rows.shape[0] + beside_wall(config, around, SUPPORTS)[1]
-    x, y = place_on_part(config, around, peg)
+        return around.rows.shape[0] + find_wall_clearance(config, around, SUPPORTS)[1]
+    x, y = compute_peg_place(config, around, peg)
     side = around.right[peg]
     nearest, best = around.parts[side, 0], inf
     for k in range(around.parts[side, 0], around.parts[side, 1]):
-        away = abs(gap(around.rows[k], x, y))
-        if away < best and on_piece(around.rows[k], x, y, END_SLACK):
+        away = abs(measure_gap(around.rows[k], x, y))
+        if away < best and is_on_piece(around.rows[k], x, y, END_SLACK):
             nearest, best = k, away
     return nearest
 
 
 @inner
 def write_touching(config: Array, clear: Array, touched: IntArray, around: Obstacles, row: Array) -> None:
-    """Writes a configuration as a candidate (24,) of the pegs, and a wall, whose clearances (K,) are none.
+    """Write a configuration as a candidate (24,) whose contacts are the pegs, and wall, with clearance 0.
 
-    The pieces are those that they have to touch (P,), or the nearest ones.
+    ``touched`` (P,) names the piece that each peg has to touch; where it is -1, the nearest piece is written.
+    A configuration is theta in radians, x, y and the jaw separation S in mm. See ``seating.columns`` for the
+    layout of ``row``.
     """
     for j in range(row.shape[0]):
         row[j] = config[j] if j < CONTACTS else 0.0
@@ -223,7 +242,7 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
         if abs(clear[peg]) < TOUCHES:
             known = touched[peg] if peg < touched.shape[0] else -1
             row[PEG + count] = peg
-            row[PIECE + count] = known if known >= 0 else touched_piece(config, peg, around)
+            row[PIECE + count] = known if known >= 0 else find_touched_piece(config, peg, around)
             count += 1
     row[CONTACTS] = count
 
@@ -232,10 +251,12 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
 def write_clear(
     motions: SelfMotions, w: int, begin: int, touched: IntArray, around: Obstacles, seen: Array, clear: Array
 ) -> tuple[int, int]:
-    """Writes the clearances (M, K) of all pegs along a self-motion, -inf first where the part is not free.
+    """Write the clearances of all pegs and the wall along self-motion
+    ``w`` to ``clear`` (M, K), known ones included.
 
-    Writes the pieces (P,) that they have to touch, too. Returns how many configurations are free, and the
-    first that is not, or -1.
+    -inf in the first column marks a configuration that is not free. ``touched`` (P,) receives the pieces that
+    the pegs have to touch, or -1. Return (number of free configurations, number of the first that is not free
+    or -1).
     """
     bits, bad, good = 0, -1, 0
     for peg in range(touched.shape[0]):
@@ -246,7 +267,7 @@ def write_clear(
             bits |= 1 << peg
             if peg < touched.shape[0]:
                 touched[peg] = motions.pieces[w, j]
-    nothing_seen(seen)
+    forget_seen(seen)
     for n in range(begin, begin + motions.counts[w]):
         free = motions.clear[n, 0] != -inf
         if free:
@@ -276,7 +297,16 @@ def write_along(
     out: Manifolds,
     number: int,
 ) -> None:
-    """Writes the configurations along a run of a self-motion, and those of its ends."""
+    """Write the configurations of a free run of a self-motion, with
+    the exact ends of freedom, as set ``number`` of ``out``.
+
+    Parameters
+    ----------
+    w, begin : the self-motion, and the number of its first configuration.
+    first, count : number of the first configuration of the run, and how many it has.
+    touched : (P,) the piece that each peg has to touch, or -1.
+    work, seen : (4, 4) and (P + 1, 4) work space.
+    """
     at, length = out.begins[number], motions.counts[w]
     # What is closed has no ends.
     end, ends = begin + length, 1 if motions.closed[w] == 0 else 0
@@ -290,7 +320,7 @@ def write_along(
         if begin <= inside + step < end:
             for j in range(4):
                 work[1, j] = motions.configs[inside + step, j]
-            last_free(work, touched, around, seen)
+            move_to_last_free(work, touched, around, seen)
         for j in range(4):
             out.configs[at + side * (count + 1), j] = work[0, j]
     out.begins[number + 1] = at + count + 2 * ends
@@ -298,7 +328,7 @@ def write_along(
 
 
 @compiled
-def free_runs(
+def write_free_runs(
     motions: SelfMotions,
     low: float,
     high: float,
@@ -309,14 +339,14 @@ def free_runs(
     work: Matrix,
     out: Manifolds,
 ) -> int:
-    """Writes the runs of motions in which a part is free, and returns how many there are.
+    """Write the runs of self-motions in which a part is free to ``out``, each as a set; return their number.
 
     Parameters
     ----------
-    low, high : in mm, between which the separations of motions are that count.
-    clear, seen, touched, work : (M, K), (P + 1, 4), (P,) and (4, 4) work space, of so many pegs and, last, a
-        wall.
-    out : with room for all, written here.
+    low, high : in mm; only self-motions with a separation between them count.
+    clear, seen, touched, work : (M, K), (P + 1, 4), (P,) and (4, 4) work space, for P pegs; K counts the
+        wall, last.
+    out : receives the sets, with room for all.
     """
     count, begin = 0, 0
     for w in range(motions.counts.shape[0]):
@@ -332,7 +362,7 @@ def free_runs(
                     start = n if length == 0 else start
                     length += 1
                 elif length > 0:
-                    middle = middle_of(clear, begin, size, start, length)
+                    middle = find_middle(clear, begin, size, start, length)
                     write_touching(motions.configs[middle], clear[middle], touched, around, out.rows[count])
                     write_along(motions, w, begin, start, length, touched, around, work, seen, out, count)
                     out.across[count, 0], out.across[count, 1] = motions.across[w, 0], motions.across[w, 1]

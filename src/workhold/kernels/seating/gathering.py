@@ -35,10 +35,10 @@ from workhold.kernels.seating.columns import (
     PLACE_Y,
     SEPARATION,
     THETA,
-    Given,
+    HeldPart,
     Manifolds,
 )
-from workhold.kernels.seating.obstacles import length
+from workhold.kernels.seating.obstacles import compute_length
 
 FIRST, END, NUMBER, JAW, NAMES, SHIFT = 0, 1, 2, 3, 4, 8
 SUBSET, ORIGIN = CANDIDATE_LENGTH, CANDIDATE_LENGTH + 1
@@ -47,7 +47,12 @@ GATHERED_LENGTH = CANDIDATE_LENGTH + 2
 
 @inner
 def write_moved(row: Array, subset: Array, out: Array) -> None:
-    """Writes a candidate of a subset as one of the pattern."""
+    """Write a candidate of a subset as one of the pattern to ``out``:
+    with pegs named and x, y, S shifted as in the pattern.
+
+    ``subset`` is a row (11,) with NAMES (4) and SHIFT (3). See ``seating.columns`` for the layout of ``row``,
+    ``seating.gathering`` for that of ``subset``. S is the jaw separation in mm.
+    """
     for k in range(CANDIDATE_LENGTH):
         out[k] = row[k]
     for k in range(3):
@@ -58,9 +63,10 @@ def write_moved(row: Array, subset: Array, out: Array) -> None:
 
 @inner
 def keep_reached(out: Array, count: int, end: int, stop: float, widest: float) -> int:
-    """Keeps the rows from ``count`` to ``end`` at separations that are reached, which no subset has.
+    """Keep only those of the rows ``count`` to ``end`` of ``out``
+    whose separation is between ``stop`` and ``widest``.
 
-    Returns the new count.
+    Their columns SUBSET and ORIGIN become -1. Return the new number of rows.
     """
     for n in range(count, end):
         if stop < out[n, SEPARATION] < widest:
@@ -73,8 +79,11 @@ def keep_reached(out: Array, count: int, end: int, stop: float, widest: float) -
 
 @inner
 def add_rows(rows: Array, stop: float, widest: float, out: Array, count: int) -> int:
-    """Adds candidates of no subset at separations that are reached; returns the new count, -1 where they do
-    not fit."""
+    """Append candidates of no subset with separations between ``stop`` and ``widest`` to ``out`` (N, 26).
+
+    Return the new number of rows, or -1 when there is no room for all of ``rows``. See ``seating.columns``
+    for the layout of ``rows``.
+    """
     if count + rows.shape[0] > out.shape[0]:
         return -1
     for n in range(rows.shape[0]):
@@ -84,31 +93,32 @@ def add_rows(rows: Array, stop: float, widest: float, out: Array, count: int) ->
 
 
 @compiled
-def gathered(
+def write_gathered(
     subsets: Matrix,
     kept: Matrix,
     before: Matrix,
     after: Matrix,
     stop: float,
     widest: float,
-    given: Given,
+    given: HeldPart,
     fixed: Vector,
     out: Matrix,
 ) -> int:
-    """Writes all candidates of a pattern at separations that are reached; returns their number, or -1.
+    """Write all candidates of a pattern with separations between ``stop`` and ``widest`` to ``out``.
 
-    -1 means that they do not fit.
-
-    Of subsets of one jaw they are those with a fourth contact.
+    Return their number, or -1 when there is no room. For subsets whose pegs are all of one jaw, the
+    candidates are those with a fourth contact, on the other jaw. See ``seating.gathering`` for the layout of
+    ``subsets``, ``seating.columns`` for that of ``fixed``.
 
     Parameters
     ----------
-    subsets : (G, 11), see above.
-    kept : (C, 24) candidates of subsets.
+    subsets : (G, 11) with columns FIRST, END, NUMBER, JAW, NAMES (4), SHIFT (3).
+    kept : (C, 24) candidates of subsets, in the subsets' frames.
     before, after : (N, 24) candidates of no subset, which come before and after those of subsets.
     stop, widest : separations in mm.
+    given : of the pattern.
     fixed : (24,) work space.
-    out : (N, 26), written here.
+    out : (N, 26) receives the candidates with SUBSET and ORIGIN.
     """
     count = add_rows(before, stop, widest, out, 0)
     for number in range(subsets.shape[0]):
@@ -135,8 +145,10 @@ MOST_CONTACTS = 4
 
 
 @inner
-def longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
-    """The longest in mm of the steps along a set."""
+def find_longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
+    """Return the length in mm of the longest step between neighbours
+    of ``sets[begin:end]``; turns count times ``arm``.
+    """
     longest = 0.0
     for n in range(begin + 1, end):
         dx, dy = sets[n, 1] - sets[n - 1, 1], sets[n, 2] - sets[n - 1, 2]
@@ -145,12 +157,15 @@ def longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
 
 
 @inner
-def lies_in(config: Array, manifolds: Manifolds, number: int, arm: float, most: float) -> bool:
-    """Whether a configuration (4,) is as near to one of a set's as these are to each other.
+def is_in_manifold(config: Array, manifolds: Manifolds, number: int, arm: float, most: float) -> bool:
+    """Return whether a configuration (4,) is as near to a configuration of a set as these are to each other.
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
 
     Parameters
     ----------
-    arm : in mm, by which turns are counted.
+    number : of the set.
+    arm : in mm; a turn in radians times this is compared with shifts.
     most : by how much in mm the separation may differ.
     """
     if not abs(config[3] - manifolds.rows[number, SEPARATION]) < most:
@@ -159,34 +174,43 @@ def lies_in(config: Array, manifolds: Manifolds, number: int, arm: float, most: 
     begin, end = manifolds.begins[number], manifolds.begins[number + 1]
     for n in range(begin, end):
         turn = (sets[n, 0] - config[0] + pi) % (2.0 * pi) - pi
-        nearest = min(nearest, abs(turn) * arm + length(sets[n, 1] - config[1], sets[n, 2] - config[2]))
-    return nearest <= BESIDE or nearest <= longest_step(sets, begin, end, arm) + BESIDE
+        nearest = min(
+            nearest, abs(turn) * arm + compute_length(sets[n, 1] - config[1], sets[n, 2] - config[2])
+        )
+    return nearest <= BESIDE or nearest <= find_longest_step(sets, begin, end, arm) + BESIDE
 
 
 @inner
-def first_of(config: Array, manifolds: Manifolds, asked: IntArray, arm: float, most: float) -> int:
-    """The place among the asked of the first manifold in which a configuration lies.
+def find_first_manifold(config: Array, manifolds: Manifolds, asked: IntArray, arm: float, most: float) -> int:
+    """Return the position in ``asked`` (numbers of sets) of the first
+    set in which a configuration lies, or -1.
 
-    -1 where it lies in none.
+    ``arm`` and ``most`` are those of :func:`is_in_manifold`. A configuration is theta in radians, x, y and
+    the jaw separation S in mm.
     """
     for k in range(asked.shape[0]):
-        if lies_in(config, manifolds, asked[k], arm, most):
+        if is_in_manifold(config, manifolds, asked[k], arm, most):
             return k
     return -1
 
 
 @compiled
-def first_sets(
+def write_first_manifolds(
     configs: Matrix, manifolds: Manifolds, asked: IntVector, arm: float, most: float, out: IntVector
 ) -> None:
-    """Writes ``first_of`` of configurations (N, 4) to ``out`` (N,)."""
+    """Write the result of :func:`find_first_manifold` for each of N configurations (N, 4) to ``out`` (N,).
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     for n in range(configs.shape[0]):
-        out[n] = first_of(configs[n], manifolds, asked, arm, most)
+        out[n] = find_first_manifold(configs[n], manifolds, asked, arm, most)
 
 
 @inner
 def write_set(manifolds: Manifolds, number: int, out: Manifolds, at: int) -> None:
-    """Writes one of some sets in a place among others, after those before it."""
+    """Copy set ``number`` of ``manifolds`` to set ``at`` of ``out``,
+    whose sets before that are written already.
+    """
     begin, to = manifolds.begins[number], out.begins[at]
     for j in range(manifolds.rows.shape[1]):
         out.rows[at, j] = manifolds.rows[number, j]
@@ -200,12 +224,13 @@ def write_set(manifolds: Manifolds, number: int, out: Manifolds, at: int) -> Non
 
 @compiled
 def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifolds) -> int:
-    """Writes sets, of those that lie in each other the one with the most contacts; how many they are.
+    """Write the sets to ``out``, without those whose middle lies in a
+    set with as many contacts or more; return their number.
 
     Parameters
     ----------
-    arm, most : as of ``lies_in``, of the middle of one in the other.
-    out : written here, by the number of their contacts.
+    arm, most : see :func:`is_in_manifold`.
+    out : receives the sets in descending order of their numbers of contacts.
     """
     count = 0
     for contacts in range(MOST_CONTACTS, -1, -1):
@@ -213,7 +238,7 @@ def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifold
             if manifolds.rows[number, CONTACTS] == contacts:
                 is_new = True
                 for k in range(count):
-                    if lies_in(manifolds.rows[number], out, k, arm, most):
+                    if is_in_manifold(manifolds.rows[number], out, k, arm, most):
                         is_new = False
                         break
                 if is_new:
@@ -224,15 +249,16 @@ def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifold
 
 @compiled
 def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Matrix, whose: IntVector) -> int:
-    """Writes configurations just past both ends of each manifold; returns how many.
+    """Write configurations just past both ends of each set to ``configs``, and return their number.
 
-    Of one that gives way they are to both sides of its middle, and of a whole turn there are none.
+    For a set that gives way (``across`` is not NaN) they are on both sides of its middle; for a whole turn
+    there are none. A configuration is theta in radians, x, y and the jaw separation S in mm.
 
     Parameters
     ----------
-    arm : in mm, by which turns are counted.
+    arm : in mm; a turn in radians times this is compared with shifts.
     step : how far beyond, in mm.
-    configs, whose : (2 F, 4) and (2 F,) written here, the latter the numbers of the sets.
+    configs, whose : (2 F, 4) and (2 F,) receive the configurations and the numbers of their sets.
     """
     count = 0
     for number in range(manifolds.rows.shape[0]):
@@ -265,12 +291,16 @@ def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Matrix,
 
 
 @compiled
-def first_of_each(rows: Matrix, turn: float, shift: float, kept: IntVector) -> int:
-    """Writes the numbers of candidates (N, 24) that are none of those before them; how many they are.
+def write_first_of_equals(rows: Matrix, turn: float, shift: float, kept: IntVector) -> int:
+    """Write the indices of those candidates (N, 24) that equal none
+    before them to ``kept``; return their number.
+
+    See ``seating.columns`` for the layout of ``rows``.
 
     Parameters
     ----------
-    turn, shift : radians and mm by which configurations that are one differ less.
+    turn, shift : differences in radians and mm below which two configurations with as many contacts are
+        equal.
     """
     count = 0
     for n in range(rows.shape[0]):

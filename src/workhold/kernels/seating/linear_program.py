@@ -20,9 +20,12 @@ ALONG = 1e-10
 
 @inner
 def add_normal(number: int, count: int, place: int, work: DescentWorkSpace) -> bool:
-    """Adds the normal of a clearance, or of a side of the box, to the basis.
+    """Orthogonalize the normal of a constraint against the first
+    ``place`` rows of the basis, and write it as row ``place``.
 
-    Returns whether it is independent.
+    Constraint ``number`` is a clearance below ``count``, and a side of the box from ``count`` on: count + 2 j
+    bounds unknown j from below, count + 2 j + 1 from above. Return whether the normal is independent of the
+    rows before.
     """
     new, triangle = work.basis[place], work.triangle
     for j in range(4):
@@ -47,11 +50,13 @@ def add_normal(number: int, count: int, place: int, work: DescentWorkSpace) -> b
 
 
 @inner
-def shortest_out(count: int, work: DescentWorkSpace) -> None:
-    """Writes the shortest step that keeps all of ``count`` linearized clearances, as far as there is one.
+def write_shortest_step_out(count: int, work: DescentWorkSpace) -> None:
+    """Write the shortest step with which all of ``count`` linearized
+    clearances are non-negative to ``work.step``.
 
-    A dual active-set method: from no step at all, to what is entered deepest, along the others that were met,
-    of which one is let go that would pull (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
+    Where there is none, the step is as far as the method came. It is a dual active-set method: from no step
+    at all, to what is entered deepest, along the other constraints that were met, of which one that would
+    pull is let go (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
     """
     near, basis, triangle, step, way = work.near, work.basis, work.triangle, work.step, work.way
     members = work.members
@@ -104,8 +109,10 @@ def shortest_out(count: int, work: DescentWorkSpace) -> None:
 
 
 @inner
-def way_left(work: DescentWorkSpace, size: int, aim: Four) -> Four:
-    """The way that leads farthest along the aim of those that ``size`` normals of the basis leave."""
+def find_direction_left(work: DescentWorkSpace, size: int, aim: Four) -> Four:
+    """Return the projection of the aim on the directions orthogonal to
+    the first ``size`` rows of the basis, not normalized.
+    """
     basis = work.basis
     wx, wy, wz, ws = aim
     for q in range(size):
@@ -118,10 +125,12 @@ def way_left(work: DescentWorkSpace, size: int, aim: Four) -> Four:
 
 
 @inner
-def holding_back(work: DescentWorkSpace, size: int, aim: Four) -> int:
-    """The place of the working normal that pulls most, -1 where none does.
+def find_strongest_normal(work: DescentWorkSpace, size: int, aim: Four) -> int:
+    """Return the row of the basis of the working constraint whose
+    multiplier is the most negative, -1 for none.
 
-    Multipliers come by back substitution in the triangle that orthogonalizing left.
+    Multipliers come by back substitution in the triangle that orthogonalizing left; they are written to its
+    column 5.
     """
     basis, triangle = work.basis, work.triangle
     worst, dropped = -1e-9, -1
@@ -138,13 +147,14 @@ def holding_back(work: DescentWorkSpace, size: int, aim: Four) -> int:
 
 
 @inner
-def first_to_block(
+def find_first_block(
     count: int, trust: float, step: Four, way: Four, taken: int, work: DescentWorkSpace
 ) -> tuple[float, int]:
-    """The length by which a step can go on in a direction, and what ends it, -1 where nothing does.
+    """Return how far a step can go on in the direction ``way``, and
+    the number of the constraint that ends it.
 
-    A clearance ends it or, from ``count`` on, a side of the box; ``taken`` has a bit for each clearance that
-    the direction keeps.
+    It is (inf, -1) where nothing does. Constraints are numbered as in :func:`add_normal`; ``taken`` has bit i
+    set for each clearance i that the direction keeps.
     """
     near, length, blocking = work.near, inf, -1
     for i in range(count):
@@ -167,21 +177,23 @@ def first_to_block(
 
 
 @inner
-def best_step(count: int, trust: float, work: DescentWorkSpace, aim: Four) -> float:
-    """Writes the step that leads farthest along a unit vector of (theta size, x, y, S); returns how far.
+def write_best_step(count: int, trust: float, work: DescentWorkSpace, aim: Four) -> float:
+    """Write the step that leads farthest along ``aim`` to ``work.step``
+    (theta size, x, y, S), and return how far in mm.
 
-    It stays within a box of half width ``trust`` and ``count`` linearized clearances.
+    It stays within a box of half width ``trust`` mm and ``count`` linearized clearances; ``aim`` is a unit
+    vector.
 
     A primal active-set method: descend in the null space of the working normals to what blocks, and drop a
     normal that holds back (M. J. Best and K. Ritter, *Linear Programming: Active Set Analysis and Computer
-    Programs*, 1985).
+    Programs*, 1985). S is the jaw separation in mm.
     """
     step, members = (0.0, 0.0, 0.0, 0.0), work.members
     size, taken = 0, 0
     for _ in range(60):
-        way = way_left(work, size, aim)
+        way = find_direction_left(work, size, aim)
         if way[0] * way[0] + way[1] * way[1] + way[2] * way[2] + way[3] * way[3] < 1e-14:
-            dropped = holding_back(work, size, aim)
+            dropped = find_strongest_normal(work, size, aim)
             if dropped < 0:
                 break
             if members[dropped] < count:
@@ -192,7 +204,7 @@ def best_step(count: int, trust: float, work: DescentWorkSpace, aim: Four) -> fl
             for q in range(size):
                 add_normal(members[q], count, q, work)
             continue
-        length, blocking = first_to_block(count, trust, step, way, taken, work)
+        length, blocking = find_first_block(count, trust, step, way, taken, work)
         if blocking < 0:
             break
         step = (

@@ -1,4 +1,4 @@
-"""What stops a part: pieces of the boundary on which centres of pegs lie, and a straight wall.
+"""Obstacles to a part: pieces of the boundary on which centres of pegs lie, and a straight wall.
 
 Corners of the part's hull, and convex arcs on it, come no nearer to a wall than they may. A row of a hull has
 the centre x and y of a piece about the centre of the part's box, and its radius. Then follow the unit vector
@@ -20,7 +20,7 @@ from workhold.kernels.base.compiling import (
     compiled,
     inner,
 )
-from workhold.kernels.base.distance import segment_distance
+from workhold.kernels.base.distance import measure_segment_distance
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y, is_shallow
 from workhold.kernels.seating.columns import Obstacles
 
@@ -30,147 +30,193 @@ Foot = tuple[float, float, float, float, float]
 
 
 @inner
-def length(x: float, y: float) -> float:
-    """The length of a vector in mm whose squares are in range, in a third of the time of ``hypot``."""
+def compute_length(x: float, y: float) -> float:
+    """Return the length of a vector by sqrt(x^2 + y^2), in a third of
+    the time of ``hypot``; its squares must not overflow.
+    """
     return sqrt(x * x + y * y)
 
 
 @inner
-def place_on_part(config: Array, obstacles: Obstacles, peg: int) -> tuple[float, float]:
-    """Place of a peg's centre on the part in a configuration (4,)."""
-    return turned_place(config, cos(config[0]), sin(config[0]), obstacles, peg)
+def compute_peg_place(config: Array, obstacles: Obstacles, peg: int) -> tuple[float, float]:
+    """Return the place (x, y) of a peg's centre in the part's frame in a configuration (4,), in mm.
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
+    return compute_turned_place(config, cos(config[0]), sin(config[0]), obstacles, peg)
 
 
 @inner
-def turned_place(
+def compute_turned_place(
     config: Array, cosine: float, sine: float, obstacles: Obstacles, peg: int
 ) -> tuple[float, float]:
-    """Place of a peg's centre on the part in a configuration (4,) of known cosine and sine."""
+    """Return the place (x, y) of a peg's centre in the part's frame,
+    in mm, with the cosine and sine of theta given.
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     x = obstacles.pegs[peg, 0] + obstacles.right[peg] * config[3] - config[1]
     y = obstacles.pegs[peg, 1] - config[2]
     return (cosine * x + sine * y, cosine * y - sine * x)
 
 
 @inner
-def cosine_and_sine(theta: float, turn: Array) -> tuple[float, float]:
-    """The cosine and the sine of an orientation, which ``turn`` (3,) keeps until another is asked for."""
+def compute_cosine_and_sine(theta: float, turn: Array) -> tuple[float, float]:
+    """Return the cosine and sine of an orientation; ``turn`` (3,) caches the last orientation with both."""
     if theta != turn[0]:
         turn[0], turn[1], turn[2] = theta, cos(theta), sin(theta)
     return (turn[1], turn[2])
 
 
 @inner
-def angle_from_middle(row: Array, dx: float, dy: float) -> float:
-    """Angle in radians, in (-pi, pi], of a direction from an arc's centre, seen from its middle."""
+def compute_angle_from_middle(row: Array, dx: float, dy: float) -> float:
+    """Return the angle in radians, in [-pi, pi], from an arc's middle
+    to the direction (dx, dy), seen from its centre.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     return atan2(row[AXIS_X] * dy - row[AXIS_Y] * dx, row[AXIS_X] * dx + row[AXIS_Y] * dy)
 
 
 @inner
-def on_piece(row: Array, x: float, y: float, slack: float) -> bool:
-    """Whether a point of a piece's carrier lies on the piece, or past its end by at most a slack in mm."""
+def is_on_piece(row: Array, x: float, y: float, slack: float) -> bool:
+    """Return whether a point of a piece's line or circle lies on the
+    piece, or past its end by at most ``slack`` mm.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         return abs(dx * row[AXIS_X] + dy * row[AXIS_Y]) <= row[HALF_EXTENT] + slack
     return (
         row[HALF_EXTENT] >= pi
-        or abs(angle_from_middle(row, dx, dy)) <= row[HALF_EXTENT] + slack / row[RADIUS]
+        or abs(compute_angle_from_middle(row, dx, dy)) <= row[HALF_EXTENT] + slack / row[RADIUS]
     )
 
 
 @inner
-def normal_at(row: Array, x: float, y: float) -> tuple[float, float]:
-    """Outward unit normal of a piece at a point on it."""
+def compute_normal(row: Array, x: float, y: float) -> tuple[float, float]:
+    """Return the outward unit normal (x, y) of a piece at a point on it.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] == 0.0:
         return (row[AXIS_Y], -row[AXIS_X])
     dx, dy = x - row[X], y - row[Y]
-    size = max(length(dx, dy), 1e-150)
+    size = max(compute_length(dx, dy), 1e-150)
     return (row[SIGN] * dx / size, row[SIGN] * dy / size)
 
 
 @inner
-def foot(row: Array, x: float, y: float, side: float) -> Foot:
-    """Foot of a point on a piece's carrier, of a circle that on the point's side (1) or the far one (-1).
+def find_foot(row: Array, x: float, y: float, side: float) -> Foot:
+    """Return the foot of a point on a piece's line or circle.
+
+    On a circle it is that on the point's side of the centre (``side`` 1) or on the opposite side (-1). See
+    ``base.feature`` for the layout of ``row``.
 
     Returns
     -------
-    (x, y, outward normal's x and y, distance in mm from the centre or inf of a line)
+    (x, y, outward normal's x and y, distance in mm of the point from the circle's centre, inf for a line)
     """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         s = dx * row[AXIS_X] + dy * row[AXIS_Y]
         return (row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], row[AXIS_Y], -row[AXIS_X], inf)
-    size = max(length(dx, dy), 1e-150)
+    size = max(compute_length(dx, dy), 1e-150)
     ex, ey = side * dx / size, side * dy / size
     return (row[X] + row[RADIUS] * ex, row[Y] + row[RADIUS] * ey, row[SIGN] * ex, row[SIGN] * ey, size)
 
 
 @inner
 def share_normals(a: Array, b: Array) -> bool:
-    """Whether two pieces are parallel lines or concentric arcs: a normal of one is one of the other."""
+    """Return whether two pieces are parallel lines or concentric arcs,
+    so that a normal of one is one of the other.
+
+    See ``base.feature`` for the layout of ``a`` and ``b``.
+    """
     if a[IS_ARC] != b[IS_ARC]:
         return False
     if a[IS_ARC] == 0.0:
         return abs(a[AXIS_X] * b[AXIS_Y] - a[AXIS_Y] * b[AXIS_X]) <= PARALLEL
-    return length(a[X] - b[X], a[Y] - b[Y]) <= SAME_CENTER
+    return compute_length(a[X] - b[X], a[Y] - b[Y]) <= SAME_CENTER
 
 
 @inner
-def distance_to(row: Array, x: float, y: float) -> float:
-    """The distance in mm of a point from a piece, negative where the piece is seen from the part's side."""
+def measure_distance_to_piece(row: Array, x: float, y: float) -> float:
+    """Return the distance in mm of a point from a piece, negative
+    where the point is on the part's side of the piece.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         across = dx * row[AXIS_Y] - dy * row[AXIS_X]
         beyond = max(abs(dx * row[AXIS_X] + dy * row[AXIS_Y]) - row[HALF_EXTENT], 0.0)
-        away = length(beyond, across)
+        away = compute_length(beyond, across)
         return away if across >= 0.0 else -away
-    size = length(dx, dy)
-    angle = 0.0 if row[HALF_EXTENT] >= pi else angle_from_middle(row, dx, dy)
+    size = compute_length(dx, dy)
+    angle = 0.0 if row[HALF_EXTENT] >= pi else compute_angle_from_middle(row, dx, dy)
     if abs(angle) <= row[HALF_EXTENT]:
         return row[SIGN] * (size - row[RADIUS])
     end = row[HALF_EXTENT] if angle > 0.0 else -row[HALF_EXTENT]
     nx = row[AXIS_X] * cos(end) - row[AXIS_Y] * sin(end)
     ny = row[AXIS_Y] * cos(end) + row[AXIS_X] * sin(end)
     ex, ey = dx - row[RADIUS] * nx, dy - row[RADIUS] * ny
-    away = length(ex, ey)
+    away = compute_length(ex, ey)
     return away if row[SIGN] * (ex * nx + ey * ny) >= 0.0 else -away
 
 
 @inner
-def nearest_piece(x: float, y: float, rows: Array, first: int, end: int, guess: int) -> tuple[float, int]:
-    """The distance in mm of a peg's centre from pieces of the boundary, and the nearest piece.
+def find_nearest_piece(
+    x: float, y: float, rows: Array, first: int, end: int, guess: int
+) -> tuple[float, int]:
+    """Return the distance in mm of a peg's centre from pieces
+    ``first`` to ``end`` of the boundary, and the nearest piece.
 
-    The distance is negative where the peg is in the part. A guess of the nearest piece saves time; it need
-    not be one of them.
+    The distance is negative where the peg is in the part. ``guess`` is a piece that may be the nearest, to
+    save time; it is ignored outside the range.
 
     Where the nearest point is an inner corner, in which two pieces end, the centre is in the part. It may lie
-    on the outer side of one of them, so that of two as near the one on whose inner side it is counts.
+    on the outer side of one of them, so that of two equally near pieces the one on whose inner side it is
+    counts. See ``base.feature`` for the layout of ``rows``.
     """
     best, nearest = inf, first
     if first <= guess < end:
-        best, nearest = distance_to(rows[guess], x, y), guess
+        best, nearest = measure_distance_to_piece(rows[guess], x, y), guess
     for k in range(first, end):
         row = rows[k]
         # What cannot be nearer: its carrier is not.
         dx, dy = x - row[X], y - row[Y]
-        off = dx * row[AXIS_Y] - dy * row[AXIS_X] if row[IS_ARC] == 0.0 else length(dx, dy) - row[RADIUS]
+        off = (
+            dx * row[AXIS_Y] - dy * row[AXIS_X]
+            if row[IS_ARC] == 0.0
+            else compute_length(dx, dy) - row[RADIUS]
+        )
         if abs(off) < abs(best) + SAME_END:
-            d = distance_to(row, x, y)
+            d = measure_distance_to_piece(row, x, y)
             if abs(d) < abs(best) - SAME_END or (abs(d) < abs(best) + SAME_END and d < 0.0):
                 best, nearest = d, k
     return (best, nearest)
 
 
 @inner
-def clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
-    """The distance alone, as of ``nearest_piece``."""
-    return nearest_piece(x, y, rows, first, end, first)[0]
+def measure_clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
+    """Return the distance of :func:`find_nearest_piece` in mm, negative where the peg is in the part.
+
+    See ``base.feature`` for the layout of ``rows``.
+    """
+    return find_nearest_piece(x, y, rows, first, end, first)[0]
 
 
 @compiled
-def clearances(points: Matrix, rows: Matrix, first: int, end: int, out: Vector) -> None:
-    """Writes the distances in mm (M,) of peg centres (M, 2) from pieces ``first`` to ``end``."""
+def write_clearances_of_points(points: Matrix, rows: Matrix, first: int, end: int, out: Vector) -> None:
+    """Write the distances in mm of peg centres (M, 2) from pieces
+    ``first`` to ``end`` to ``out`` (M,), negative in the part.
+
+    See ``base.feature`` for the layout of ``rows``.
+    """
     for k in range(points.shape[0]):
-        out[k] = clearance(points[k, 0], points[k, 1], rows, first, end)
+        out[k] = measure_clearance(points[k, 0], points[k, 1], rows, first, end)
 
 
 # What supports in a direction may fall short of it by this much: rounding.
@@ -179,11 +225,11 @@ SUPPORTS = 1e-12
 
 @inner
 def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, count: int) -> int:
-    """Writes clearances from the wall within a reach after ``count`` others, and -1 for a peg.
+    """Append the clearances from the wall within ``reach`` mm to
+    ``near`` from row ``count`` on; return the new number.
 
-    Returns the new count.
-
-    See ``closing.look_around``.
+    Columns are those of ``closing.write_near_clearances``, with -1 for the peg and the row of the hull as the
+    piece. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     if obstacles.hull.shape[0] == 0:
         return count
@@ -205,10 +251,12 @@ def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, cou
 
 
 @inner
-def beside_wall(config: Array, obstacles: Obstacles, slack: float) -> tuple[float, int]:
-    """The distance in mm of the part from the wall, infinite without one, and the number of what is nearest.
+def find_wall_clearance(config: Array, obstacles: Obstacles, slack: float) -> tuple[float, int]:
+    """Return the distance in mm of the part from the wall and the row
+    of the hull that is nearest; (inf, -1) without one.
 
-    What supports may fall short by a slack.
+    A row counts where it supports in the wall's direction, to within ``slack`` of a cosine. A configuration
+    is theta in radians, x, y and the jaw separation S in mm.
     """
     best, nearest = inf, -1
     if obstacles.hull.shape[0] == 0:
@@ -227,16 +275,24 @@ def beside_wall(config: Array, obstacles: Obstacles, slack: float) -> tuple[floa
 
 
 @inner
-def off_wall(config: Array, obstacles: Obstacles, slack: float) -> float:
-    """The distance of ``beside_wall``."""
-    return beside_wall(config, obstacles, slack)[0]
+def measure_wall_clearance(config: Array, obstacles: Obstacles, slack: float) -> float:
+    """Return the distance in mm of the part from the wall, inf without one, see :func:`find_wall_clearance`.
+
+    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
+    return find_wall_clearance(config, obstacles, slack)[0]
 
 
 @inner
 def cut_by_wall(
     config: Array, theta: float, y: float, obstacles: Obstacles, intervals: Array, count: int
 ) -> int:
-    """Cuts intervals of x, from the part's place, to where it is off a wall; returns how many there are."""
+    """Cut intervals (low, high) in place to where the part is clear
+    of the wall, and return how many are left.
+
+    They are shifts of the part in x, in mm, from its place in ``config``, at ``theta`` and ``y``. A
+    configuration is theta in radians, x, y and the jaw separation S in mm.
+    """
     cosine, sine = cos(theta), sin(theta)
     ux, uy = obstacles.half_plane[0], obstacles.half_plane[1]
     px, py = cosine * ux + sine * uy, cosine * uy - sine * ux
@@ -266,18 +322,28 @@ def cut_by_wall(
 
 @inner
 def is_near(x: float, y: float, row: Array, most: float) -> bool:
-    """Whether a point is within a distance of a segment. The carrier decides of most that they are not."""
+    """Return whether a point is within ``most`` mm of a segment.
+
+    For most segments their line or circle decides already that it is not. See ``base.feature`` for the layout
+    of ``row``.
+    """
     if not is_shallow(row):
         dx, dy = x - row[X], y - row[Y]
         off = hypot(dx, dy) - row[RADIUS] if row[IS_ARC] != 0.0 else dx * row[AXIS_Y] - dy * row[AXIS_X]
         if abs(off) > most:
             return False
-    return segment_distance(x, y, row) <= most
+    return measure_segment_distance(x, y, row) <= most
 
 
 @inner
-def covers_same(one: Array, other: Array, sign: float, rows: Array, points: Array, most: float) -> bool:
-    """Whether a part covers in two configurations the same place; ``sign`` is -1 for one turned over."""
+def is_same_cover(one: Array, other: Array, sign: float, rows: Array, points: Array, most: float) -> bool:
+    """Return whether a part covers the same place in two
+    configurations (4,): whether all points lie on its faces.
+
+    ``sign`` is -1 where the part is turned over in ``other``, x to -x in its own frame, else 1. ``points``
+    (M, 2) are moved from ``other`` to ``one``, where each must be within ``most`` mm of a face in ``rows``
+    (S, 10). See ``base.feature`` for the layout of ``rows``.
+    """
     turn = other[0] - one[0]
     cosine, sine, c, s = cos(turn), sin(turn), cos(one[0]), sin(one[0])
     dx, dy = other[1] - one[1], other[2] - one[2]
@@ -295,7 +361,7 @@ def covers_same(one: Array, other: Array, sign: float, rows: Array, points: Arra
 
 
 @compiled
-def cover_same(
+def write_same_cover(
     one: Vector,
     others: Matrix,
     turned_over: ByteVector,
@@ -304,14 +370,18 @@ def cover_same(
     most: float,
     out: ByteVector,
 ) -> None:
-    """Writes whether a part covers in configurations (N, 4) the place that it covers in one (4,).
+    """Write 1 to ``out`` (N,) for each configuration in which a part
+    covers the same place as in ``one`` (4,), else 0.
+
+    See ``base.feature`` for the layout of ``rows``.
 
     Parameters
     ----------
+    others : (N, 4) configurations.
     turned_over : (N,) 1 where the part is turned over, x to -x in its own frame.
     rows, points : (S, 10) faces about the centre of the part, and (M, 2) points on them.
     most : how far in mm a point may be from all faces.
     """
     for n in range(others.shape[0]):
         sign = -1.0 if turned_over[n] == 1 else 1.0
-        out[n] = 1 if covers_same(one, others[n], sign, rows, points, most) else 0
+        out[n] = 1 if is_same_cover(one, others[n], sign, rows, points, most) else 0

@@ -24,8 +24,8 @@ from workhold.kernels.base.compiling import (
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.chord.intervals import are_parallel
 from workhold.kernels.seating.candidates import write_pose
-from workhold.kernels.seating.columns import MOTION, PEG, PIECE, SECOND, SEPARATION, Given
-from workhold.kernels.seating.obstacles import foot, length, on_piece, share_normals
+from workhold.kernels.seating.columns import MOTION, PEG, PIECE, SECOND, SEPARATION, HeldPart
+from workhold.kernels.seating.obstacles import compute_length, find_foot, is_on_piece, share_normals
 from workhold.kernels.seating.slides import (
     SLIDE_FIRST,
     SLIDE_HIGH,
@@ -50,11 +50,13 @@ THREE_FACES = 7
 
 
 @compiled
-def tangent_chords(rows: Matrix, first: int, end: int, d: float, out: Matrix) -> int:
-    """Writes the tangencies (C, 5) of chords of length d from lines to arcs; returns their number, -1 where
-    they do not fit.
+def write_tangent_chords(rows: Matrix, first: int, end: int, d: float, out: Matrix) -> int:
+    """Write the tangencies of chords of length d mm from lines to arcs to ``out`` (C, 5).
 
-    Both are pieces from ``first`` to ``end``, and the arc's normal at the head is the line's.
+    Return their number, -1 when there is no room. Both are pieces from ``first`` to ``end``, and the arc's
+    normal at the head is parallel to the line's. Columns: ON_LINE and ON_ARC (numbers of the pieces), TAIL_X
+    and TAIL_Y of the tail on the line in mm, and ALPHA, the chord's direction on the part in radians. See
+    ``base.feature`` for the layout of ``rows``.
     """
     count = 0
     for a in range(first, end):
@@ -68,12 +70,12 @@ def tangent_chords(rows: Matrix, first: int, end: int, d: float, out: Matrix) ->
                 continue
             x, y = arc[X] + side * arc[RADIUS] * nx, arc[Y] + side * arc[RADIUS] * ny
             rise = (x - line[X]) * nx + (y - line[Y]) * ny
-            if abs(rise) >= d or not on_piece(arc, x, y, END_SLACK):
+            if abs(rise) >= d or not is_on_piece(arc, x, y, END_SLACK):
                 continue
             for way in range(2):
                 run = (1.0 - 2.0 * way) * sqrt(d * d - rise * rise)
                 wx, wy = rise * nx + run * line[AXIS_X], rise * ny + run * line[AXIS_Y]
-                if not on_piece(line, x - wx, y - wy, END_SLACK):
+                if not is_on_piece(line, x - wx, y - wy, END_SLACK):
                     continue
                 if count >= out.shape[0]:
                     return -1
@@ -85,11 +87,16 @@ def tangent_chords(rows: Matrix, first: int, end: int, d: float, out: Matrix) ->
 
 
 @inner
-def separation_on(
-    theta: float, line: Array, other: Array, first: int, third: int, given: Given
+def find_separation(
+    theta: float, line: Array, other: Array, first: int, third: int, given: HeldPart
 ) -> tuple[bool, float]:
-    """Whether parallel lines are not level at an orientation, and S at which pegs of both jaws lie on
-    them."""
+    """Return (whether the forces have an x component, S in mm) for
+    two pegs on parallel lines at an orientation.
+
+    Peg ``first`` is on ``line``, peg ``third`` of the other jaw on ``other``. Where lines are level, S is not
+    determined (0). See ``base.feature`` for the layout of ``line`` and ``other``. S is the jaw separation in
+    mm.
+    """
     nx = cos(theta) * line[AXIS_Y] + sin(theta) * line[AXIS_X]
     ny = sin(theta) * line[AXIS_Y] - cos(theta) * line[AXIS_X]
     moving = nx * (given.right[third] - given.right[first])
@@ -101,13 +108,21 @@ def separation_on(
 
 
 @compiled
-def at_tangencies(
-    first: int, second: int, chords: Matrix, stop: float, widest: float, given: Given, out: Matrix
+def write_at_tangencies(
+    first: int, second: int, chords: Matrix, stop: float, widest: float, given: HeldPart, out: Matrix
 ) -> int:
-    """Writes the candidates of two pegs of one jaw at tangencies (C, 5) of their chord, with a third peg.
+    """Write the candidates of two pegs of one jaw at tangencies of
+    their chord, with a third peg, to ``out`` (N, 24).
 
-    The third peg, of the other jaw, is on a line parallel to the first's, or on the same. Returns their
-    number, -1 where they do not fit.
+    The third peg, of the other jaw, is on a line parallel to the first's, or on the same line. Return the
+    number of candidates, -1 when there is no room. See ``seating.parallel_and_concentric`` for the layout of
+    ``chords``, ``seating.columns`` for that of candidates.
+
+    Parameters
+    ----------
+    first, second : numbers of the chord's pegs.
+    chords : (C, 5), see :func:`write_tangent_chords`.
+    stop, widest : separations in mm between which S must lie.
     """
     count = 0
     dx, dy = given.pegs[second, 0] - given.pegs[first, 0], given.pegs[second, 1] - given.pegs[first, 1]
@@ -124,7 +139,7 @@ def at_tangencies(
                 other = given.rows[number]
                 if not are_parallel(line, other):
                     continue
-                known, s = separation_on(theta, line, other, first, third, given)
+                known, s = find_separation(theta, line, other, first, third, given)
                 if not known or not (stop < s < widest):
                     continue
                 run = (
@@ -133,7 +148,7 @@ def at_tangencies(
                     + s * (given.right[third] - given.right[first])
                 )
                 rise = given.pegs[third, 1] - given.pegs[first, 1]
-                if not on_piece(
+                if not is_on_piece(
                     other, chord[TAIL_X] + c * run + e * rise, chord[TAIL_Y] + c * rise - e * run, END_SLACK
                 ):
                     continue
@@ -154,7 +169,7 @@ def at_tangencies(
                     wx, wy = d * cos(alpha), d * sin(alpha)
                     if abs((line[X] + wx - arc[X]) * nx + (line[Y] + wy - arc[Y]) * ny) < arc[RADIUS]:
                         turn = step
-                known, after = separation_on(theta + turn, line, other, first, third, given)
+                known, after = find_separation(theta + turn, line, other, first, third, given)
                 row[SECOND] = (after - s) / STEP if known else 0.0
                 row[MOTION + 1] = c * line[AXIS_X] - e * line[AXIS_Y]
                 row[MOTION + 2] = e * line[AXIS_X] + c * line[AXIS_Y]
@@ -164,7 +179,11 @@ def at_tangencies(
 
 @inner
 def is_between(p: float, q: float, r: float, one: float, two: float, three: float) -> bool:
-    """Whether the middle one of parallel forces at p, q and r, of signs 1 to 3, is against the others."""
+    """Return whether, of three parallel forces, the middle one has the sign opposite to both others.
+
+    p, q, r are the positions of the forces in mm; ``one``, ``two``, ``three`` their signs (1 or -1). Forces
+    must be more than ``SHORTEST`` apart.
+    """
     if p > q:
         p, q, one, two = q, p, two, one
     if q > r:
@@ -175,11 +194,14 @@ def is_between(p: float, q: float, r: float, one: float, two: float, three: floa
 
 
 @compiled
-def on_three_faces(slides: Matrix, given: Given, stop: float, widest: float, out: Matrix) -> int:
-    """Writes the self-motions on three parallel faces, the middle one against the outer two.
+def write_on_three_faces(slides: Matrix, given: HeldPart, stop: float, widest: float, out: Matrix) -> int:
+    """Write the self-motions on three parallel faces, the middle
+    force against the outer two, to ``out`` (N, 7).
 
-    Two pegs of one jaw are on a slide (S, 7), and one of the other jaw is the third. Returns their number, -1
-    where they do not fit.
+    Two pegs of one jaw are on a slide (S, 7), and the third is of the other jaw. Return their number, -1 when
+    there is no room. Columns: OF_SLIDE (number of the slide), THIRD peg, ON_THIRD (its piece), AT_THETA in
+    radians, AT_SEPARATION in mm, AT_LOW and AT_HIGH (parameters in mm between which the first peg slides).
+    See ``seating.slides`` for the layout of ``slides``.
     """
     count = 0
     for n in range(slides.shape[0]):
@@ -236,9 +258,13 @@ NEAREST = 1e-6
 
 @inner
 def is_touched(piece: Array, theta: float, dx: float, dy: float) -> bool:
-    """Whether an arc is there in the direction of a vector from its centre, in the frame of the pegs."""
-    c, s, scale = cos(theta), sin(theta), piece[RADIUS] / length(dx, dy)
-    return on_piece(piece, piece[X] + scale * (c * dx + s * dy), piece[Y] + scale * (c * dy - s * dx), END)
+    """Return whether an arc's contact in the direction (dx, dy) from
+    its centre, in the frame of the pegs, lies on the arc.
+
+    See ``base.feature`` for the layout of ``piece``.
+    """
+    c, s, scale = cos(theta), sin(theta), piece[RADIUS] / compute_length(dx, dy)
+    return is_on_piece(piece, piece[X] + scale * (c * dx + s * dy), piece[Y] + scale * (c * dy - s * dx), END)
 
 
 @inner
@@ -250,27 +276,28 @@ def add_about(
     f: int,
     c: int,
     side: float,
-    given: Given,
+    given: HeldPart,
     stop: float,
     widest: float,
     out: Array,
     at: int,
 ) -> int:
-    """Writes the candidates of pegs on arcs of one centre, and on a piece whose normal goes through it.
+    """Append the candidates of pegs on two arcs with one centre and
+    on a piece whose normal goes through it to ``out``.
 
     Peg p is on arc a and peg b on piece f, both of one jaw. Peg q of the other jaw is on arc c, which has the
-    centre of a, and the foot of the centre is on a side of f. Returns the new count, -1 where they do not
-    fit.
+    centre of a. ``side`` selects the foot of the centre on f, see ``obstacles.find_foot``. Return the new
+    number of candidates (``at`` before), -1 when there is no room.
     """
     arc, other, piece = given.rows[a], given.rows[c], given.rows[f]
     cx, cy = arc[X], arc[Y]
-    touched = foot(piece, cx, cy, side)
+    touched = find_foot(piece, cx, cy, side)
     ex, ey = touched[0] - cx, touched[1] - cy
-    far = length(ex, ey)
-    if far < NEAREST or not on_piece(piece, touched[0], touched[1], END):
+    far = compute_length(ex, ey)
+    if far < NEAREST or not is_on_piece(piece, touched[0], touched[1], END):
         return at
     dx, dy = given.pegs[b, 0] - given.pegs[p, 0], given.pegs[b, 1] - given.pegs[p, 1]
-    d = length(dx, dy)
+    d = compute_length(dx, dy)
     along = (arc[RADIUS] * arc[RADIUS] - far * far + d * d) / (2.0 * d)
     square = arc[RADIUS] * arc[RADIUS] - along * along
     if square < NEAREST * NEAREST:
@@ -312,11 +339,13 @@ def add_about(
 
 
 @compiled
-def about_one_center(given: Given, stop: float, widest: float, out: Matrix) -> int:
-    """Writes the candidates (N, 24) of pegs on two arcs of one centre and a piece with a normal through it.
+def write_about_one_center(given: HeldPart, stop: float, widest: float, out: Matrix) -> int:
+    """Write all candidates of pegs on two arcs with one centre and on
+    a piece with a normal through it to ``out`` (N, 24).
 
-    The arcs are those of pegs p and q of both jaws, the piece that of peg b of p's jaw. Returns their number,
-    -1 where they do not fit.
+    The arcs are touched by a peg of each jaw, the piece by another peg of either jaw. Return their number, -1
+    when there is no room. ``stop`` and ``widest`` are separations in mm between which S must lie. See
+    ``seating.columns`` for the layout of candidates.
     """
     count = 0
     for p in range(given.pegs.shape[0]):

@@ -35,11 +35,15 @@ from workhold.kernels.seating.columns import (
     PIECE,
     SECOND,
     SOURCE,
-    Given,
+    HeldPart,
     JawCells,
 )
-from workhold.kernels.seating.obstacles import on_piece
-from workhold.kernels.seating.two_contact_curves import height, is_on_its_pieces, pair_at
+from workhold.kernels.seating.obstacles import is_on_piece
+from workhold.kernels.seating.two_contact_curves import (
+    compute_pair_height,
+    compute_pair_state,
+    is_on_its_pieces,
+)
 
 SLIDE_FIRST, SLIDE_SECOND, SLIDE_ONE, SLIDE_TWO, SLIDE_LOW, SLIDE_HIGH, SLIDE_PSI = range(7)
 SLIDE_LENGTH = 7
@@ -52,8 +56,13 @@ NONE = (nan, nan)
 
 
 @inner
-def turned_in(slide: Array, row: Array, t: float, turn: int) -> float:
-    """A parameter that a slide has, of a circle moved by -1, 0 or 1 whole turns; NaN where it has not."""
+def turn_parameter_in(slide: Array, row: Array, t: float, turn: int) -> float:
+    """Return a parameter t if it lies within a slide's range, else NaN.
+
+    On an arc, t is brought into [-pi, pi) and shifted by ``turn`` (-1, 0 or 1) whole turns first; on a line
+    only turn 0 counts. See ``seating.slides`` for the layout of ``slide``, ``base.feature`` for that of
+    ``row``.
+    """
     if row[IS_ARC] != 0.0:
         t = (t + pi) % TURN - pi + turn * TURN
     elif turn != 0:
@@ -62,22 +71,33 @@ def turned_in(slide: Array, row: Array, t: float, turn: int) -> float:
 
 
 @inner
-def middle_of(row: Array) -> float:
-    """Direction in radians of the middle of an arc, 0 of a line."""
+def compute_middle_angle(row: Array) -> float:
+    """Return the direction in radians from an arc's centre to its middle, 0 for a line.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     return atan2(row[AXIS_Y], row[AXIS_X]) if row[IS_ARC] != 0.0 else 0.0
 
 
 @inner
-def track_at(row: Array, middle: float, t: float) -> Two:
-    """Place of the first peg at a parameter."""
+def compute_first_peg_place(row: Array, middle: float, t: float) -> Two:
+    """Return the place (x, y) of the first peg at parameter t of its
+    piece, with ``middle`` of :func:`compute_middle_angle`.
+
+    See ``base.feature`` for the layout of ``row``.
+    """
     if row[IS_ARC] != 0.0:
         return (row[X] + row[RADIUS] * cos(middle + t), row[Y] + row[RADIUS] * sin(middle + t))
     return (row[X] + t * row[AXIS_X], row[Y] + t * row[AXIS_Y])
 
 
 @inner
-def track_crossing(row: Array, middle: float, nx: float, ny: float, level: float) -> Two:
-    """Parameters at which n . u has a value, n a unit vector."""
+def find_track_crossings(row: Array, middle: float, nx: float, ny: float, level: float) -> Two:
+    """Return two parameters on a piece's line or circle at which n . u equals ``level``, for a unit vector n.
+
+    NaN stands for those that do not exist. ``middle`` is that of :func:`compute_middle_angle`. See
+    ``base.feature`` for the layout of ``row``.
+    """
     start = nx * row[X] + ny * row[Y]
     if row[IS_ARC] != 0.0:
         cosine = (level - start) / row[RADIUS]
@@ -90,8 +110,12 @@ def track_crossing(row: Array, middle: float, nx: float, ny: float, level: float
 
 
 @inner
-def begin(out: Array, slide: Array, x: float, y: float, contacts: int, given: Given) -> None:
-    """Begins a candidate with both contacts of a slide, the first at (x, y), placed as at separation 0."""
+def begin_candidate(out: Array, slide: Array, x: float, y: float, contacts: int, given: HeldPart) -> None:
+    """Write a candidate with both contacts of a slide to ``out``
+    (24,), the first at (x, y), posed for separation 0.
+
+    See ``seating.slides`` for the layout of ``slide``, ``seating.columns`` for that of candidates.
+    """
     c, s = cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
     first = int(slide[SLIDE_FIRST])
     px, py = given.pegs[first, 0] - (c * x + s * y), given.pegs[first, 1] - (c * y - s * x)
@@ -101,31 +125,45 @@ def begin(out: Array, slide: Array, x: float, y: float, contacts: int, given: Gi
 
 
 @inner
-def square_to(slide: Array, row: Array, middle: float, piece: Array, side: float, above: float) -> Two:
-    """The parameters at which a third peg, ``above`` mm over the first, is on a piece of parallel normal."""
+def find_parallel_normals(
+    slide: Array, row: Array, middle: float, piece: Array, side: float, above: float
+) -> Two:
+    """Return two parameters of a slide at which a third peg meets a
+    piece with a normal parallel to the first peg's.
+
+    The third peg is ``above`` mm over the first; ``side`` (1 or -1) selects the sense of the normal. NaN
+    stands for those that do not exist. See ``seating.slides`` for the layout of ``slide``, ``base.feature``
+    for that of ``row`` and ``piece``.
+    """
     ux, uy = -sin(slide[SLIDE_PSI]), cos(slide[SLIDE_PSI])
     if row[IS_ARC] == 0.0:
         if piece[IS_ARC] == 0.0:
             return NONE
         x, y = piece[X] + side * piece[RADIUS] * row[AXIS_Y], piece[Y] - side * piece[RADIUS] * row[AXIS_X]
-        return track_crossing(row, middle, ux, uy, ux * x + uy * y - above)
+        return find_track_crossings(row, middle, ux, uy, ux * x + uy * y - above)
     if piece[IS_ARC] == 0.0:
         return (atan2(-side * piece[AXIS_X], side * piece[AXIS_Y]) - middle, nan)
     apart = side * piece[RADIUS] - row[RADIUS]
     if abs(apart) <= HAIR:
         return NONE
     level = (above - ux * (piece[X] - row[X]) - uy * (piece[Y] - row[Y])) / apart
-    return track_crossing(row, middle, ux, uy, ux * row[X] + uy * row[Y] + row[RADIUS] * level)
+    return find_track_crossings(row, middle, ux, uy, ux * row[X] + uy * row[Y] + row[RADIUS] * level)
 
 
 @inner
-def met_at(slide: Array, row: Array, middle: float, piece: Array, side: float, above: float, t: float) -> Two:
-    """Where the third peg then is."""
+def compute_third_peg_place(
+    slide: Array, row: Array, middle: float, piece: Array, side: float, above: float, t: float
+) -> Two:
+    """Return the place (x, y) on the part of the third peg of
+    :func:`find_parallel_normals` at parameter t, NaN for none.
+
+    See ``seating.slides`` for the layout of ``slide``, ``base.feature`` for that of ``row`` and ``piece``.
+    """
     if row[IS_ARC] == 0.0:
         return (piece[X] + side * piece[RADIUS] * row[AXIS_Y], piece[Y] - side * piece[RADIUS] * row[AXIS_X])
     if piece[IS_ARC] == 0.0:
         ux, uy = -sin(slide[SLIDE_PSI]), cos(slide[SLIDE_PSI])
-        x, y = track_at(row, middle, t)
+        x, y = compute_first_peg_place(row, middle, t)
         rise = ux * piece[AXIS_X] + uy * piece[AXIS_Y]
         if abs(rise) <= LEVEL:
             return NONE
@@ -136,16 +174,19 @@ def met_at(slide: Array, row: Array, middle: float, piece: Array, side: float, a
 
 
 @compiled
-def slides_squared(slides: Matrix, given: Given, out: Matrix) -> int:
-    """Writes the candidates of slides (S, 7) with a third peg, of the other jaw, whose normal is parallel.
+def write_parallel_third_contacts(slides: Matrix, given: HeldPart, out: Matrix) -> int:
+    """Write the candidates of slides (S, 7) with a third contact, of
+    the other jaw, with a parallel normal to ``out``.
 
-    It is on an arc or, if the part goes round, on a line. Returns their number, -1 where they do not fit.
+    The third peg is on an arc or, if the part moves round an arc, on a line. Return the number of candidates
+    (N, 24), -1 when there is no room. See ``seating.slides`` for the layout of ``slides``,
+    ``seating.columns`` for that of candidates.
     """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
         row, first = given.rows[int(slide[SLIDE_ONE])], int(slide[SLIDE_FIRST])
-        middle, c, s = middle_of(row), cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
+        middle, c, s = compute_middle_angle(row), cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[first]:
                 continue
@@ -159,17 +200,17 @@ def slides_squared(slides: Matrix, given: Given, out: Matrix) -> int:
                 for way in range(12):
                     side, turn = 1.0 - 2.0 * (way // 6), way % 3 - 1
                     if way % 6 == 0:
-                        ts = square_to(slide, row, middle, piece, side, above)
-                    t = turned_in(slide, row, ts[0] if way // 3 % 2 == 0 else ts[1], turn)
+                        ts = find_parallel_normals(slide, row, middle, piece, side, above)
+                    t = turn_parameter_in(slide, row, ts[0] if way // 3 % 2 == 0 else ts[1], turn)
                     if t != t:
                         continue
-                    x, y = met_at(slide, row, middle, piece, side, above, t)
-                    if x != x or not on_piece(piece, x, y, END_SLACK):
+                    x, y = compute_third_peg_place(slide, row, middle, piece, side, above, t)
+                    if x != x or not is_on_piece(piece, x, y, END_SLACK):
                         continue
                     if count >= out.shape[0]:
                         return -1
                     one = out[count]
-                    begin(one, slide, *track_at(row, middle, t), 3, given)
+                    begin_candidate(one, slide, *compute_first_peg_place(row, middle, t), 3, given)
                     one[PEG + 2], one[PIECE + 2] = third, number
                     one[SECOND] = -1.0 / total if abs(total) > HAIR else 0.0
                     place_third(one, c * x + s * y, third, given)
@@ -182,8 +223,12 @@ def slides_squared(slides: Matrix, given: Given, out: Matrix) -> int:
 
 
 @inner
-def inside(pair: Array, given: Given, psi: float) -> float:
-    """An orientation moved by whole turns into the range of a pair."""
+def turn_into_range(pair: Array, given: HeldPart, psi: float) -> float:
+    """Return an orientation psi shifted by whole turns and clamped
+    into the range of a pair; as it is for a pocket.
+
+    See ``seating.columns`` for the layout of ``pair``.
+    """
     if pair[KIND] == 1.0:
         return psi
     k = int(pair[SOURCE])
@@ -192,18 +237,20 @@ def inside(pair: Array, given: Given, psi: float) -> float:
 
 
 @compiled
-def slides_held(
-    slides: Matrix, left: JawCells, right: JawCells, given: Given, pocket_pieces: IntMatrix, out: Matrix
+def write_held_slides(
+    slides: Matrix, left: JawCells, right: JawCells, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix
 ) -> int:
-    """Writes the candidates of slides (S, 7) with two contacts of the other jaw at their height.
+    """Write the candidates of slides (S, 7) with a pair of the other
+    jaw at the height where both fit to ``out`` (N, 24).
 
-    Returns their number, -1 where they do not fit.
+    Return their number, -1 when there is no room. See ``seating.slides`` for the layout of ``slides``,
+    ``seating.columns`` for that of candidates.
     """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
         row, first, psi = given.rows[int(slide[SLIDE_ONE])], int(slide[SLIDE_FIRST]), slide[SLIDE_PSI]
-        middle, c, s, within = middle_of(row), cos(psi), sin(psi), psi % TURN
+        middle, c, s, within = compute_middle_angle(row), cos(psi), sin(psi), psi % TURN
         jaw = left if given.right[first] == 1 else right
         for number in range(jaw.cells.shape[0]):
             cell = jaw.cells[number]
@@ -212,20 +259,23 @@ def slides_held(
             if cell[HIGH] + BESIDE < within:
                 continue
             pair = given.pairs[int(cell[PAIR]) + jaw.before]
-            exact = inside(pair, given, psi)
-            there = pair_at(pair, given, exact)
+            exact = turn_into_range(pair, given, psi)
+            there = compute_pair_state(pair, given, exact)
             if not is_on_its_pieces(pair, given, exact, there[0], there[1]):
                 continue
-            level = height(pair, given, there[0], there[1], cos(exact), sin(exact)) + given.pegs[first, 1]
-            ts = track_crossing(row, middle, -s, c, level)
+            level = (
+                compute_pair_height(pair, given, there[0], there[1], cos(exact), sin(exact))
+                + given.pegs[first, 1]
+            )
+            ts = find_track_crossings(row, middle, -s, c, level)
             for way in range(6):
-                t = turned_in(slide, row, ts[0] if way < 3 else ts[1], way % 3 - 1)
+                t = turn_parameter_in(slide, row, ts[0] if way < 3 else ts[1], way % 3 - 1)
                 if t != t:
                     continue
                 if count >= out.shape[0]:
                     return -1
                 one = out[count]
-                begin(one, slide, *track_at(row, middle, t), 4, given)
+                begin_candidate(one, slide, *compute_first_peg_place(row, middle, t), 4, given)
                 place_third(one, c * there[0] + s * there[1], int(pair[FIRST_PEG]), given)
                 write_pair(one, 2, pair, given, pocket_pieces)
                 count += 1
@@ -233,11 +283,16 @@ def slides_held(
 
 
 @inner
-def blocked(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Two:
-    """Parameters at which a peg (ox, oy) from the first is on the carrier of a piece."""
+def find_blocking_parameters(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Two:
+    """Return two parameters of a slide at which a peg is on the line
+    or circle of a piece, NaN for those that do not exist.
+
+    The peg is (ox, oy) mm from the slide's first peg, in the part's frame. See ``base.feature`` for the
+    layout of ``row`` and ``piece``.
+    """
     if piece[IS_ARC] == 0.0:
         nx, ny = piece[AXIS_Y], -piece[AXIS_X]
-        return track_crossing(row, middle, nx, ny, nx * (piece[X] - ox) + ny * (piece[Y] - oy))
+        return find_track_crossings(row, middle, nx, ny, nx * (piece[X] - ox) + ny * (piece[Y] - oy))
     gx, gy = piece[X] - ox - row[X], piece[Y] - oy - row[Y]
     if row[IS_ARC] == 0.0:
         along, across = gx * row[AXIS_X] + gy * row[AXIS_Y], gx * row[AXIS_Y] - gy * row[AXIS_X]
@@ -254,16 +309,18 @@ def blocked(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Tw
 
 
 @compiled
-def slides_blocked(slides: Matrix, given: Given, out: Matrix) -> int:
-    """Writes candidates of slides (S, 7) with a third contact, where a peg of their own jaw blocks them.
+def write_blocked_slides(slides: Matrix, given: HeldPart, out: Matrix) -> int:
+    """Write the candidates of slides (S, 7) with a third contact, of a
+    peg of their own jaw that blocks them, to ``out``.
 
-    Their place is that at separation 0. Returns their number, -1 where they do not fit.
+    Their place is that at separation 0. Return the number of candidates (N, 24), -1 when there is no room.
+    See ``seating.slides`` for the layout of ``slides``, ``seating.columns`` for that of candidates.
     """
     count = 0
     for n in range(slides.shape[0]):
         slide = slides[n]
         row, first = given.rows[int(slide[SLIDE_ONE])], int(slide[SLIDE_FIRST])
-        middle, c, s = middle_of(row), cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
+        middle, c, s = compute_middle_angle(row), cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
         jaw = given.right[first]
         for third in range(given.pegs.shape[0]):
             if given.right[third] != jaw or third == first or third == int(slide[SLIDE_SECOND]):
@@ -272,17 +329,17 @@ def slides_blocked(slides: Matrix, given: Given, out: Matrix) -> int:
             ox, oy = c * dx - s * dy, s * dx + c * dy
             for number in range(given.parts[jaw, 0], given.parts[jaw, 1]):
                 piece = given.rows[number]
-                ts = blocked(row, middle, piece, ox, oy)
+                ts = find_blocking_parameters(row, middle, piece, ox, oy)
                 for way in range(6):
-                    t = turned_in(slide, row, ts[0] if way < 3 else ts[1], way % 3 - 1)
+                    t = turn_parameter_in(slide, row, ts[0] if way < 3 else ts[1], way % 3 - 1)
                     if t != t:
                         continue
-                    x, y = track_at(row, middle, t)
-                    if not on_piece(piece, x + ox, y + oy, END_SLACK):
+                    x, y = compute_first_peg_place(row, middle, t)
+                    if not is_on_piece(piece, x + ox, y + oy, END_SLACK):
                         continue
                     if count >= out.shape[0]:
                         return -1
-                    begin(out[count], slide, x, y, 3, given)
+                    begin_candidate(out[count], slide, x, y, 3, given)
                     out[count, PEG + 2], out[count, PIECE + 2] = third, number
                     count += 1
     return count

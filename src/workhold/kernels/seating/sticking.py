@@ -33,8 +33,8 @@ MOST_CUTS = 200
 
 
 @inner
-def determinant(a: Array, b: Array, c: Array) -> float:
-    """The determinant of three rows."""
+def compute_determinant(a: Array, b: Array, c: Array) -> float:
+    """Return the determinant of the 3x3 matrix with rows a, b and c."""
     return (
         a[0] * (b[1] * c[2] - b[2] * c[1])
         - a[1] * (b[0] * c[2] - b[2] * c[0])
@@ -43,14 +43,26 @@ def determinant(a: Array, b: Array, c: Array) -> float:
 
 
 @inner
-def cubic_of(
+def make_cubic(
     straight: Array, across: Array, i: int, j: int, k: int, si: float, sj: float, sk: float
 ) -> Cubic:
-    """The coefficients of the determinant over the friction, the constant first; what is rounding is 0."""
+    """Return the coefficients of det(straight + mu s across) of
+    contacts i, j, k as a cubic in mu, the constant first.
+
+    ``si``, ``sj``, ``sk`` are the signs s. Coefficients within rounding of 0 are set to 0.
+    """
     a, b, c, d, e, f = straight[i], straight[j], straight[k], across[i], across[j], across[k]
-    zero, three = determinant(a, b, c), si * sj * sk * determinant(d, e, f)
-    one = si * determinant(d, b, c) + sj * determinant(a, e, c) + sk * determinant(a, b, f)
-    two = si * sj * determinant(d, e, c) + si * sk * determinant(d, b, f) + sj * sk * determinant(a, e, f)
+    zero, three = compute_determinant(a, b, c), si * sj * sk * compute_determinant(d, e, f)
+    one = (
+        si * compute_determinant(d, b, c)
+        + sj * compute_determinant(a, e, c)
+        + sk * compute_determinant(a, b, f)
+    )
+    two = (
+        si * sj * compute_determinant(d, e, c)
+        + si * sk * compute_determinant(d, b, f)
+        + sj * sk * compute_determinant(a, e, f)
+    )
     size = max(abs(zero), abs(one), abs(two), abs(three))
     least = NO_COEFFICIENT * size if size >= NO_CUBIC else inf
     return (
@@ -62,14 +74,14 @@ def cubic_of(
 
 
 @inner
-def at(p: Cubic, x: float) -> float:
-    """Value of a cubic."""
+def evaluate_cubic(p: Cubic, x: float) -> float:
+    """Return the value of a cubic at x; coefficients begin with the constant."""
     return p[0] + x * (p[1] + x * (p[2] + x * p[3]))
 
 
 @inner
-def turning_points(p: Cubic) -> tuple[float, float]:
-    """Where a cubic's derivative vanishes, in order; infinite where it does not."""
+def find_turning_points(p: Cubic) -> tuple[float, float]:
+    """Return the two zeros of a cubic's derivative in ascending order, inf for those that do not exist."""
     a, b, c = 3.0 * p[3], 2.0 * p[2], p[1]
     if a == 0.0:
         return (-c / b, inf) if b != 0.0 else (inf, inf)
@@ -82,12 +94,12 @@ def turning_points(p: Cubic) -> tuple[float, float]:
 
 
 @inner
-def root_in(p: Cubic, low: float, high: float) -> float:
-    """The root of a cubic in a range in which it is monotone and changes its sign."""
-    falls = at(p, low) > 0.0
+def find_root_between(p: Cubic, low: float, high: float) -> float:
+    """Return the root of a cubic in [low, high], where it must be monotone and change its sign."""
+    falls = evaluate_cubic(p, low) > 0.0
     x = (low + high) / 2.0
     for _ in range(MOST_CUTS):
-        value = at(p, x)
+        value = evaluate_cubic(p, x)
         if (value > 0.0) == falls:
             low = x
         else:
@@ -103,10 +115,14 @@ def root_in(p: Cubic, low: float, high: float) -> float:
 
 
 @inner
-def presses(
+def is_pressing(
     straight: Array, across: Array, right: IntArray, i: int, j: int, k: int, fi: float, fj: float, fk: float
 ) -> bool:
-    """Whether three dependent wrenches of frictions ``f`` balance with forces of one sign."""
+    """Return whether three contacts at edges of their cones balance
+    with forces of one sign that close the jaw.
+
+    ``fi``, ``fj``, ``fk`` are signed friction coefficients with which the three wrenches are dependent.
+    """
     h0, h1, h2, size = 0.0, 0.0, 0.0, 0.0
     for way in range(3):
         # Forces are square to two of the three components, of the two that are largest.
@@ -130,18 +146,21 @@ def presses(
 
 
 @inner
-def three_balance(straight: Array, across: Array, right: IntArray, left_out: int, least: float) -> float:
-    """The least friction at which three contacts, without one, balance at edges of their cones.
+def find_friction_of_three(
+    straight: Array, across: Array, right: IntArray, left_out: int, least: float
+) -> float:
+    """Return the least friction coefficient at which three contacts,
+    all except ``left_out``, balance at edges of cones.
 
-    It is ``least`` where there is none below.
+    Return ``least`` where there is none below that.
     """
     i, j, k = (1 if left_out == 0 else 0), (2 if left_out <= 1 else 1), (3 if left_out <= 2 else 2)
     for signs in range(8):
         si, sj, sk = 1.0 - 2.0 * (signs & 1), 1.0 - 2.0 * (signs >> 1 & 1), 1.0 - 2.0 * (signs >> 2)
-        p = cubic_of(straight, across, i, j, k, si, sj, sk)
+        p = make_cubic(straight, across, i, j, k, si, sj, sk)
         if p[0] == 0.0 and p[1] == 0.0 and p[2] == 0.0 and p[3] == 0.0:
             continue
-        one, two = turning_points(p)
+        one, two = find_turning_points(p)
         low = 0.0
         for part in range(3):
             end = one if part == 0 else two if part == 1 else inf
@@ -154,24 +173,30 @@ def three_balance(straight: Array, across: Array, right: IntArray, left_out: int
                 if lead == 0.0:
                     break
                 high = max(low, 1.0 + max(abs(p[0]), abs(p[1]), abs(p[2])) / abs(lead))
-            f_low, f_high, root = at(p, low), at(p, high), inf
+            f_low, f_high, root = evaluate_cubic(p, low), evaluate_cubic(p, high), inf
             if f_low == 0.0:
                 root = low
             elif f_low * f_high < 0.0:
-                root = root_in(p, low, high)
+                root = find_root_between(p, low, high)
             elif high == end:
                 bend = abs(p[2] + 3.0 * p[3] * end)
                 if abs(f_high) <= bend * (APART * (1.0 + end)) ** 2:
                     root = end
-            if root < least and presses(straight, across, right, i, j, k, si * root, sj * root, sk * root):
+            if root < least and is_pressing(
+                straight, across, right, i, j, k, si * root, sj * root, sk * root
+            ):
                 least = root
             low = high
     return least
 
 
 @inner
-def two_balance(points: Array, normals: Array, right: IntArray, least: float) -> float:
-    """The least friction at which the line through two contacts lies in both cones, at most ``least``."""
+def find_friction_of_two(points: Array, normals: Array, right: IntArray, least: float) -> float:
+    """Return the least friction coefficient at which the line through
+    two contacts of both jaws lies in both cones.
+
+    Return ``least`` where there is none below that. ``points`` and ``normals`` are (4, 2).
+    """
     for i in range(4):
         for j in range(i + 1, 4):
             dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
@@ -191,10 +216,11 @@ def two_balance(points: Array, normals: Array, right: IntArray, least: float) ->
 
 
 @inner
-def all_push(matrix: Array, inverse: Array) -> bool:
-    """Whether four forces whose wrenches add up to zero, and which close the jaw with 1, are all at least 0.
+def is_each_pushing(matrix: Array, inverse: Array) -> bool:
+    """Return whether four forces whose wrenches add up to zero and
+    that close the jaw with force 1 are all non-negative.
 
-    The system (4, 4) is used up.
+    ``matrix`` (4, 4) holds the system and is overwritten, as is ``inverse``.
     """
     if not eliminate(matrix, inverse) > SINGULAR:
         return False
@@ -203,12 +229,14 @@ def all_push(matrix: Array, inverse: Array) -> bool:
 
 
 @inner
-def balances(
+def is_balanced(
     straight: Array, across: Array, right: IntArray, friction: float, matrix: Array, inverse: Array
 ) -> bool:
-    """Whether three of four contacts balance the jaw inside cones of a friction.
+    """Return whether three of four contacts balance the jaw inside
+    their friction cones, for a friction coefficient.
 
-    Some four of their six edges do then.
+    This is the case when four of the six edges of some three cones do. ``matrix`` and ``inverse`` are (4, 4)
+    work space.
     """
     # Edges no longer than about 1, so that their determinant shows whether they are independent.
     along = 1.0 / max(1.0, friction)
@@ -226,13 +254,13 @@ def balances(
                         matrix[e, count] = along * straight[contact, e] + beside * across[contact, e]
                     matrix[3, count] = matrix[0, count] * right[contact]
                     count += 1
-                if all_push(matrix, inverse):
+                if is_each_pushing(matrix, inverse):
                     return True
     return False
 
 
 @compiled
-def least_friction(
+def find_least_friction(
     points: Matrix,
     normals: Matrix,
     right: IntVector,
@@ -241,13 +269,14 @@ def least_friction(
     matrix: Matrix,
     inverse: Matrix,
 ) -> float:
-    """The least friction at which three of four contacts, or two, balance a jaw, or infinity.
+    """Return the least friction coefficient at which two or three of
+    four contacts balance a jaw, inf for none.
 
     Parameters
     ----------
-    points : (4, 2) contacts, in parts of how far they are apart, about their middle.
+    points : (4, 2) contacts about their middle, divided by the distance that they are apart.
     normals : (4, 2) outward unit normals.
-    right : (4,) 1 for contacts of what moves.
+    right : (4,) 1 for contacts of the jaw that moves, else 0.
     straight, across, matrix, inverse : (4, 3), (4, 3), (4, 4) and (4, 4) work space.
     """
     for i in range(4):
@@ -256,14 +285,14 @@ def least_friction(
         across[i, 0], across[i, 1], across[i, 2] = -ny, nx, x * nx + y * ny
     least = inf
     for left_out in range(4):
-        least = three_balance(straight, across, right, left_out, least)
-    high = two_balance(points, normals, right, least)
-    if high == inf or not balances(straight, across, right, high * (1.0 - LESS), matrix, inverse):
+        least = find_friction_of_three(straight, across, right, left_out, least)
+    high = find_friction_of_two(points, normals, right, least)
+    if high == inf or not is_balanced(straight, across, right, high * (1.0 - LESS), matrix, inverse):
         return high
     low = 0.0
     for _ in range(HALVINGS):
         middle = (low + high) / 2.0
-        if balances(straight, across, right, middle, matrix, inverse):
+        if is_balanced(straight, across, right, middle, matrix, inverse):
             high = middle
         else:
             low = middle

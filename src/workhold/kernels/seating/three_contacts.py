@@ -23,7 +23,7 @@ from workhold.kernels.base.compiling import (
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
 from workhold.kernels.base.interval import Interval, idivide, imul
 from workhold.kernels.base.tables import HEAD, TAIL
-from workhold.kernels.chord.stretches import center_motion
+from workhold.kernels.chord.stretches import enclose_center_motion
 from workhold.kernels.seating.columns import (
     ANGLE,
     FIRST_PEG,
@@ -34,25 +34,31 @@ from workhold.kernels.seating.columns import (
     SOURCE,
     SPEED,
     VAGUE,
-    Given,
+    HeldPart,
 )
-from workhold.kernels.seating.obstacles import Foot, angle_from_middle, foot, length, share_normals
+from workhold.kernels.seating.obstacles import (
+    Foot,
+    compute_angle_from_middle,
+    compute_length,
+    find_foot,
+    share_normals,
+)
 from workhold.kernels.seating.two_contact_curves import (
     AT_END,
     COSINE,
     END,
     MISS,
     SINE,
-    Function,
     PairState,
     Ray,
-    foot_is_off,
+    RootFunction,
+    compute_pair_state,
+    find_root_between,
+    is_foot_off,
     is_level,
-    pair_at,
-    pair_in,
-    ray_in,
-    ray_over,
-    root_between,
+    make_ray_over,
+    read_pair_state,
+    read_ray,
 )
 
 # Ranges narrower than this, in radians, are not halved, but where values differ over them that are near 0 and
@@ -69,9 +75,10 @@ NOTHING, HALVES, MAYBE = 0, 1, 2
 
 @inner
 def may_balance(s: PairState, nx: float, ny: float, ray: Ray, turn: float) -> bool:
-    """Whether the third contact's force may lie between the other two somewhere in a range.
+    """Return whether the third contact's force may lie between the other two somewhere in a range.
 
-    Its normal n turns by ``turn`` at most, and theirs as the ray has it.
+    (nx, ny) is the third normal in the middle of the range; it turns by at most ``turn`` radians over the
+    range, the other two by at most what the ray states.
     """
     sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
     first, second = sign * (ny * s[4] - nx * s[5]), sign * (s[3] * nx - s[2] * ny)
@@ -82,15 +89,18 @@ def may_balance(s: PairState, nx: float, ny: float, ray: Ray, turn: float) -> bo
 def write_off_level(
     discs: Array, s: PairState, cosine: float, sine: float, speed: float, reach: float, off: Array
 ) -> None:
-    """Writes over which heights above the first peg points in discs of the part may be over a range.
+    """Write the heights above the first peg that points in discs of
+    the part may have over a range of psi to ``off``.
 
     Seen from the first peg, a point c of the part rises by x . (P - c) per radian; P moves no faster than
-    ``speed``.
+    ``speed`` (mm per radian). Symbols are those of ``seating.two_contact_curves``.
 
     Parameters
     ----------
-    discs : (3, N) middles and radii in mm.
-    off : (2, N) heights in the middle of the range, and how far from them they may be, in mm.
+    discs : (3, N) centre x, centre y and radius in mm.
+    s, cosine, sine : pair and orientation in the middle of the range.
+    reach : half of the range in radians.
+    off : (2, N) receives heights in the middle of the range, and how far from them they may be, in mm.
     """
     xs, ys, radii, heights, slacks = discs[0], discs[1], discs[2], off[0], off[1]
     most = speed * (1.0 + reach)
@@ -112,13 +122,16 @@ def is_behind(
     beyond: float,
     push: float,
 ) -> bool:
-    """Whether no point in a disc of the part meets the third peg over a range, above the stop.
+    """Return whether no point in a disc of the part can meet the
+    third peg over a range with S above the stop.
 
-    Seen from the first peg, a point c goes along x by y . (c - P) per radian.
+    Seen from the first peg, a point c moves along x by y . (c - P) per radian. Symbols are those of
+    ``seating.two_contact_curves``. S is the jaw separation in mm.
 
     Parameters
     ----------
-    disc : (3,) middle and radius in mm.
+    disc : (3,) centre x, centre y and radius in mm.
+    speed, reach : see :func:`write_off_level`.
     beyond : place of the third peg along x from the first at the stop, in mm.
     push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
     """
@@ -129,7 +142,7 @@ def is_behind(
 
 
 @inner
-def excluded(
+def judge_by_foot(
     piece: Array,
     push: float,
     missed: float,
@@ -140,7 +153,18 @@ def excluded(
     speed: float,
     reach: float,
 ) -> int:
-    """The verdict on a range by the foot of P alone: NOTHING there, HALVES to look at, or MAYBE more."""
+    """Return the verdict on a range by the foot of P alone.
+
+    NOTHING: there is no root; HALVES: halve the range; MAYBE: examine it further. See ``base.feature`` for
+    the layout of ``piece``. Symbols are those of ``seating.two_contact_curves``.
+
+    Parameters
+    ----------
+    push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
+    missed : MISS in the middle of the range, in mm.
+    s, f : pair, and foot of P on the piece, there.
+    speed, reach : bound of P's speed in mm per radian, and half of the range in radians.
+    """
     move, turn = speed * reach, 0.0
     if piece[IS_ARC] != 0.0:
         if f[4] <= move * 1.0001 + ROUNDING:
@@ -149,13 +173,15 @@ def excluded(
     if push * (f[2] * cosine + f[3] * sine) < -(turn + reach):
         return NOTHING
     way = speed if piece[IS_ARC] == 0.0 else piece[RADIUS] * speed / (f[4] - move)
-    if abs(missed) > (length(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
+    if abs(missed) > (compute_length(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
         return NOTHING
     if piece[IS_ARC] == 0.0:
         at = (f[0] - piece[X]) * piece[AXIS_X] + (f[1] - piece[Y]) * piece[AXIS_Y]
         return NOTHING if abs(at) > piece[HALF_EXTENT] + move + END else MAYBE
     beyond = piece[HALF_EXTENT] + turn + END / piece[RADIUS]
-    is_off = beyond < pi and abs(angle_from_middle(piece, piece[SIGN] * f[2], piece[SIGN] * f[3])) > beyond
+    is_off = (
+        beyond < pi and abs(compute_angle_from_middle(piece, piece[SIGN] * f[2], piece[SIGN] * f[3])) > beyond
+    )
     return NOTHING if is_off else MAYBE
 
 
@@ -163,15 +189,19 @@ def excluded(
 def may_decide(
     piece: Array, missed: float, cosine: float, sine: float, s: PairState, f: Foot, speed: float, reach: float
 ) -> bool:
-    """Whether ``slope_over`` may leave one root at most, or none: its doubt is no less than without P'."""
+    """Return whether :func:`compute_slope_range` may show that a range has at most one root, or none.
+
+    If not, it need not be called; its doubt without P' is already too large. See ``base.feature`` for the
+    layout of ``piece``. Symbols are those of ``seating.two_contact_curves``.
+    """
     move, gx, gy = speed * reach, s[6] - f[0], s[7] - f[1]
     turn, ratio = (0.0, 1.0) if piece[IS_ARC] == 0.0 else (asin(move / f[4]), piece[RADIUS] / f[4])
-    doubt = move + (length(gx, gy) + move) * (turn + reach)
+    doubt = move + (compute_length(gx, gy) + move) * (turn + reach)
     return abs(cosine * gx + sine * gy) + ratio * speed > doubt or abs(missed) > doubt * reach
 
 
 @inner
-def slope_over(
+def compute_slope_range(
     piece: Array,
     side: float,
     cosine: float,
@@ -182,14 +212,25 @@ def slope_over(
     speed: float,
     reach: float,
 ) -> tuple[float, float]:
-    """A derivative of the height missed, and how far from it others over a range may be, enclosing P'."""
+    """Return (slope, doubt): the derivative of MISS in the middle of
+    a range and its largest deviation over the range.
+
+    Both are in mm per radian; (0, inf) where P' is not bounded. ``motion`` encloses x and y of P' over the
+    range; ``s`` and ``f`` are the pair and the foot of P in its middle, ``reach`` is half of the range in
+    radians. See ``base.feature`` for the layout of ``piece``. Symbols are those of
+    ``seating.two_contact_curves``.
+    """
     qx, qy = motion
     if not (qx[1] - qx[0] < inf and qy[1] - qy[0] < inf):
         return (0.0, inf)
-    mx, my, spread = (qx[0] + qx[1]) / 2.0, (qy[0] + qy[1]) / 2.0, length(qx[1] - qx[0], qy[1] - qy[0]) / 2.0
-    move, size = speed * reach, min(length(mx, my) + spread, speed)
+    mx, my, spread = (
+        (qx[0] + qx[1]) / 2.0,
+        (qy[0] + qy[1]) / 2.0,
+        compute_length(qx[1] - qx[0], qy[1] - qy[0]) / 2.0,
+    )
+    move, size = speed * reach, min(compute_length(mx, my) + spread, speed)
     gx, gy = s[6] - f[0], s[7] - f[1]
-    far = length(gx, gy) + move
+    far = compute_length(gx, gy) + move
     slope = cosine * gx + sine * gy
     if piece[IS_ARC] == 0.0:
         tx, ty = -f[3], f[2]
@@ -207,50 +248,60 @@ def slope_over(
 
 
 @inner
-def center_velocity(
+def enclose_center_velocity(
     a: Array, b: Array, reals: Array, low: float, high: float, sign: float
 ) -> tuple[Interval, Interval]:
-    """Enclosure of P' over alpha in [low, high]; ``sign`` that of the cross product of the normals."""
-    motion = center_motion(a, b, reals, low, high, sign * a[SIGN] * b[SIGN])
+    """Return enclosures of x and y of P' (mm per radian) over alpha in [low, high].
+
+    ``reals`` are those of the chord curve, ``sign`` is that of the cross product of the outward normals. See
+    ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``reals``. Symbols are
+    those of ``seating.two_contact_curves``.
+    """
+    motion = enclose_center_motion(a, b, reals, low, high, sign * a[SIGN] * b[SIGN])
     cube = imul(motion[0], imul(motion[0], motion[0]))
     return (idivide(motion[1], cube), idivide(motion[2], cube))
 
 
 @inner
-def roots_of_cell(
+def write_roots_of_cell(
     cell: Array,
     third: int,
     number: int,
     side: float,
     middle: Array,
-    given: Given,
+    given: HeldPart,
     stack: Array,
     out: Array,
     count: int,
 ) -> int:
-    """Writes the balances of a cell with a third peg on a piece; returns the new count, -1 where they do not
-    fit."""
+    """Append the roots of MISS over a cell with peg ``third`` on piece ``number`` to ``out`` (N, 6).
+
+    Return the new number of roots, -1 when there is no room. ``middle`` (19,) is the cell's row of
+    ``write_middles``, ``side`` that of the foot. See ``seating.columns`` for the layout of ``cell``,
+    ``seating.two_contact_curves`` for that of ``middle``. Symbols are those of
+    ``seating.two_contact_curves``.
+    """
     pair, piece = given.pairs[int(cell[PAIR])], given.rows[number]
     k, tail, speed = int(pair[SOURCE]), int(pair[FIRST_PEG]), cell[SPEED]
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
     # Forces press the left jaw to the left, the right one to the right.
     push = 1.0 if given.right[third] == 1 else -1.0
     above = given.pegs[third, 1] - given.pegs[tail, 1]
-    s, ray, cosine, sine = pair_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
-    function, depth = Function(MISS, pair, pair, piece, above, side, given), 1
+    s, ray, cosine, sine = read_pair_state(middle), read_ray(middle), middle[COSINE], middle[SINE]
+    function, depth = RootFunction(MISS, pair, pair, piece, above, side, given), 1
     stack[0, 0], stack[0, 1] = cell[LOW], cell[HIGH]
     while depth > 0:
         depth -= 1
         low, high = stack[depth, 0], stack[depth, 1]
         psi, reach = (low + high) / 2.0, (high - low) / 2.0
         if reach < (cell[HIGH] - cell[LOW]) / 2.0:
-            s, cosine, sine = pair_at(pair, given, psi), cos(psi), sin(psi)
-            ray = ray_over(pair, given, s, speed, reach)
-        if foot_is_off(piece, side, push, above, cosine, sine, s, ray, reach):
+            s, cosine, sine = compute_pair_state(pair, given, psi), cos(psi), sin(psi)
+            ray = make_ray_over(pair, given, s, speed, reach)
+        if is_foot_off(piece, side, push, above, cosine, sine, s, ray, reach):
             continue
-        f = foot(piece, s[6], s[7], side)
+        f = find_foot(piece, s[6], s[7], side)
         missed = cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - above
-        verdict = excluded(piece, push, missed, cosine, sine, s, f, speed, reach)
+        verdict = judge_by_foot(piece, push, missed, cosine, sine, s, f, speed, reach)
         if verdict == NOTHING:
             continue
         if verdict == MAYBE:
@@ -260,12 +311,14 @@ def roots_of_cell(
             slope, doubt = 0.0, inf
             if may_decide(piece, missed, cosine, sine, s, f, speed, reach):
                 sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-                motion = center_velocity(a, b, given.reals[k], low + pair[ANGLE], high + pair[ANGLE], sign)
-                slope, doubt = slope_over(piece, side, cosine, sine, s, f, motion, speed, reach)
+                motion = enclose_center_velocity(
+                    a, b, given.reals[k], low + pair[ANGLE], high + pair[ANGLE], sign
+                )
+                slope, doubt = compute_slope_range(piece, side, cosine, sine, s, f, motion, speed, reach)
             if abs(missed) > (abs(slope) + doubt) * reach + AT_END:
                 continue
             if abs(slope) > doubt:
-                found, psi = root_between(function, low, high)
+                found, psi = find_root_between(function, low, high)
                 if found:
                     count = write_root(out, count, cell[PAIR], third, number, side, psi, 0.0)
                 if count < 0:
@@ -291,7 +344,11 @@ def roots_of_cell(
 def write_root(
     out: Array, count: int, pair: float, peg: int, piece: int, side: float, psi: float, doubt: float
 ) -> int:
-    """Writes a root; returns the new count, or -1 where it does not fit."""
+    """Append a root (6,) to ``out``; return the new number of roots, or -1 when there is no room.
+
+    Columns are ROOT_PAIR to ROOT_DOUBT; psi is in radians, ``doubt`` 1 where it is undecided whether the root
+    exists.
+    """
     if count >= out.shape[0]:
         return -1
     row = out[count]
@@ -301,29 +358,29 @@ def write_root(
 
 
 @compiled
-def three_contacts(
+def write_three_contacts(
     cells: Matrix,
     middles: Matrix,
-    given: Given,
+    given: HeldPart,
     discs: Matrix,
     stop: float,
     stack: Matrix,
     work: Matrix,
     out: Matrix,
 ) -> int:
-    """Writes all orientations at which two pegs of one jaw and one of the other may balance.
+    """Write all roots of MISS at which two pegs of one jaw and one of the other may balance to ``out``.
 
-    Returns how many.
-
-    It is -1 where they do not fit.
+    Return their number, -1 when there is no room. See ``seating.columns`` for the layout of ``cells``.
+    Symbols are those of ``seating.two_contact_curves``.
 
     Parameters
     ----------
-    cells, middles : (C, 7) and (C, 19) of the pairs of two pegs of one jaw.
-    discs : (N, 3) around the pieces.
+    cells, middles : (C, 7) and (C, 19) of the pairs of one jaw, see ``two_contact_curves``; pockets and vague
+        cells are left out.
+    discs : (N, 3) disc around each piece: centre x, y and radius in mm.
     stop : the smallest jaw separation in mm.
     stack, work : (DEPTH, 2) and (5, N) work space.
-    out : (N, 6) roots, written here.
+    out : (N, 6) receives the roots, see :func:`write_root`.
     """
     # The same number of each disc in a row, for loops that work out several at a time.
     for piece in range(discs.shape[0]):
@@ -337,7 +394,7 @@ def three_contacts(
             continue
         k, tail, reach = int(pair[SOURCE]), int(pair[FIRST_PEG]), (cell[HIGH] - cell[LOW]) / 2.0
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-        s, ray, cosine, sine = pair_in(middle), ray_in(middle), middle[COSINE], middle[SINE]
+        s, ray, cosine, sine = read_pair_state(middle), read_ray(middle), middle[COSINE], middle[SINE]
         write_off_level(work[:3], s, cosine, sine, cell[SPEED], reach, work[3:])
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:
@@ -359,7 +416,7 @@ def three_contacts(
                     continue
                 for sides in range(1 if c[IS_ARC] == 0.0 else 2):
                     side = 1.0 - 2.0 * sides
-                    count = roots_of_cell(cell, third, piece, side, middle, given, stack, out, count)
+                    count = write_roots_of_cell(cell, third, piece, side, middle, given, stack, out, count)
                     if count < 0:
                         return -1
     return count

@@ -22,9 +22,9 @@ from workhold.kernels.base.compiling import (
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.seating.candidates import write_pose
 from workhold.kernels.seating.columns import CONTACTS, DOUBT, PEG, PIECE, SEPARATION
-from workhold.kernels.seating.obstacles import on_piece
-from workhold.kernels.seating.turning import END, NONE, ROOT, judged, to_look_at
-from workhold.kernels.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, Stood, heights
+from workhold.kernels.seating.obstacles import is_on_piece
+from workhold.kernels.seating.turning import END, NONE, ROOT, judge_range, push_rest
+from workhold.kernels.seating.wall_equilibria import LOCATOR, ON_WALL, TIP, StandingPart, compute_heights
 
 Waves = tuple[float, float, float, float, float]
 # Of a sum of coefficients: rounding of the polynomial.
@@ -32,8 +32,11 @@ ROUNDING = 2e-15
 
 
 @inner
-def value_of(waves: Waves, theta: float) -> tuple[float, float]:
-    """A polynomial at an orientation, and its derivative."""
+def evaluate_waves(waves: Waves, theta: float) -> tuple[float, float]:
+    """Return the value and derivative at theta (radians) of a trigonometric polynomial.
+
+    Coefficients: constant, of cos and sin theta, of cos and sin 2 theta.
+    """
     c, s = cos(theta), sin(theta)
     twice_c, twice_s = c * c - s * s, 2.0 * s * c
     value = waves[0] + waves[1] * c + waves[2] * s + waves[3] * twice_c + waves[4] * twice_s
@@ -41,14 +44,16 @@ def value_of(waves: Waves, theta: float) -> tuple[float, float]:
 
 
 @inner
-def zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> int:
-    """Writes where a polynomial vanishes between two orientations (N, 2), and 1 where that is in doubt.
+def write_zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> int:
+    """Write the zeros of a trigonometric polynomial in [low, high] to ``found`` (N, 2); return their number.
 
-    Returns their number. If it all but vanishes everywhere, only some are written.
+    The columns are theta in radians, and 1 where it is undecided whether there is a zero, else 0. At most N
+    are written, which may be only some if the polynomial nearly vanishes everywhere.
 
     Parameters
     ----------
-    waves : constant, of cos and sin theta, of cos and sin 2 theta.
+    waves : coefficients: constant, of cos and sin theta, of cos and sin 2 theta.
+    stack : (DEPTH, 2) work space.
     """
     first, second = hypot(waves[1], waves[2]), hypot(waves[3], waves[4])
     if max(first, second) <= SAME_CENTER:
@@ -61,12 +66,12 @@ def zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> 
         looked += 1
         turn = (stack[depth, 0], stack[depth, 1])
         middle, reach = (turn[0] + turn[1]) / 2.0, (turn[1] - turn[0]) / 2.0
-        at, slope = value_of(waves, middle)
+        at, slope = evaluate_waves(waves, middle)
         off = bend * reach * (1.0 + 1e-9) + slack
-        verdict, turn = judged(turn, middle, (at - slack, at + slack), (slope - off, slope + off))
+        verdict, turn = judge_range(turn, middle, (at - slack, at + slack), (slope - off, slope + off))
         if verdict == NONE:
             continue
-        more = -1 if verdict >= ROOT else to_look_at(verdict, turn, looked, stack, depth)
+        more = -1 if verdict >= ROOT else push_rest(verdict, turn, looked, stack, depth)
         if more < 0:
             found[count, 0], found[count, 1] = middle, 0.0 if verdict == ROOT else 1.0
             count += 1
@@ -77,15 +82,20 @@ def zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> 
 
 
 @inner
-def off_piece(row: Array, ox: float, oy: float, dx: float, dy: float, along: float, above: float) -> Waves:
-    """The distance of the locator from a line, or its square from a circle over the diameter, as waves.
+def make_distance_waves(
+    row: Array, ox: float, oy: float, dx: float, dy: float, along: float, above: float
+) -> Waves:
+    """Return the locator's distance from a line or circle, as
+    coefficients of a trigonometric polynomial in theta.
 
-    The part turns about its point (ox, oy).
+    It is the signed distance in mm from a line; for a circle, the difference of squares |locator - centre|^2
+    - R^2 over 2 R. The part turns about its point (ox, oy). See ``base.feature`` for the layout of ``row``.
 
     Parameters
     ----------
-    dx, dy : the pocket from there.
-    along, above : the locator's place along the tip's way from there, and across it from the tip.
+    row : the line or arc.
+    dx, dy : the pocket from (ox, oy).
+    along, above : the locator's coordinate along the tip's travel from (ox, oy), and across it from the tip.
     """
     ex, ey = row[X] - ox, row[Y] - oy
     if row[IS_ARC] == 0.0:
@@ -111,12 +121,13 @@ def off_piece(row: Array, ox: float, oy: float, dx: float, dy: float, along: flo
 
 @inner
 def write_pocketed(
-    stood: Stood, m: int, pocket: Array, pieces: IntArray, found: Array, row: Array
+    stood: StandingPart, m: int, pocket: Array, pieces: IntArray, found: Array, row: Array
 ) -> tuple[float, float]:
-    """Writes the candidate of a part with the tip in a pocket at an orientation that was found.
+    """Write the candidate of a part on a wall with the tip in a pocket at an orientation to ``row`` (24,).
 
-    Its place is that at separation 0, or on an upright wall; its first contact comes later. Returns where the
-    centre of the piece on the wall is.
+    ``found`` (2,) is a row of :func:`write_zeros`, m the number of the run. The place is that at separation
+    0, unless the wall is upright; then contact 0 is left for the locator. Return the place (x, y) of the
+    centre of the piece on the wall. See ``seating.columns`` for the layout of ``row``.
     """
     piece, theta = int(stood.runs[m, 0]), found[0]
     c, s = cos(theta), sin(theta)
@@ -126,7 +137,7 @@ def write_pocketed(
     x, y = stood.pegs[TIP, 0] - ahead, stood.pegs[TIP, 1] - up
     at = 0
     if stood.half_plane[0] != 0.0:
-        x, at = heights(stood, piece)[0] - hx, 1
+        x, at = compute_heights(stood, piece)[0] - hx, 1
     write_pose(row, theta, x, y, 3)
     row[SEPARATION], row[DOUBT] = x + ahead - stood.pegs[TIP, 0], found[1]
     row[PEG + at], row[PIECE + at] = ON_WALL, stood.rows.shape[0] + piece
@@ -136,33 +147,33 @@ def write_pocketed(
 
 
 @compiled
-def tip_in_pocket(
-    stood: Stood, pockets: Matrix, pieces: IntMatrix, stack: Matrix, found: Matrix, out: Matrix
+def write_tip_in_pocket(
+    stood: StandingPart, pockets: Matrix, pieces: IntMatrix, stack: Matrix, found: Matrix, out: Matrix
 ) -> int:
-    """Writes the candidates (N, 24) of a part on a wall with the tip in a pocket; returns their number or -1.
+    """Write the candidates (N, 24) of a part on a wall with the tip in a pocket to ``out``.
 
-    -1 means that they do not fit.
-
-    Where the wall is upright the locator touches, too. Else the tip and the wall fix all but how far along
-    the wall the part is. Then its place is that at separation 0, and the locator is still to come.
+    Return their number, -1 when there is no room. Where the wall is upright, they include the locator's
+    contact. Otherwise tip and wall fix all but the part's position along the wall. Then its place is that at
+    separation 0, and the locator is still to be added. See ``seating.columns`` for the layout of candidates.
 
     Parameters
     ----------
-    pockets, pieces : (V, 2) places on the part, and (V, 2) pieces, of those of the tip.
+    pockets, pieces : (V, 2) places on the part, and (V, 2) numbers of the two pieces that the tip touches in
+        each.
     stack, found : (DEPTH, 2) and (64, 2) work space.
     """
     count, upright = 0, stood.half_plane[0] != 0.0
     for m in range(stood.runs.shape[0]):
         piece, low, last = int(stood.runs[m, 0]), stood.runs[m, 1], stood.runs[m, 2]
-        ox, oy, high = stood.hull[piece, 0], stood.hull[piece, 1], heights(stood, piece)
+        ox, oy, high = stood.hull[piece, 0], stood.hull[piece, 1], compute_heights(stood, piece)
         for v in range(pockets.shape[0]):
             dx, dy = pockets[v, 0] - ox, pockets[v, 1] - oy
             for i in range(stood.parts[0, 0], stood.parts[0, 1] if upright else stood.parts[0, 0] + 1):
                 if upright:
-                    waves = off_piece(stood.rows[i], ox, oy, dx, dy, high[1], -high[2])
+                    waves = make_distance_waves(stood.rows[i], ox, oy, dx, dy, high[1], -high[2])
                 else:
                     waves = (-high[2], dy, dx, 0.0, 0.0)
-                many = zeros(waves, low, last, stack, found)
+                many = write_zeros(waves, low, last, stack, found)
                 if count + many > out.shape[0]:
                     return -1
                 for k in range(many):
@@ -171,7 +182,7 @@ def tip_in_pocket(
                     if upright:
                         c, s = cos(found[k, 0]), sin(found[k, 0])
                         wx, wy = stood.pegs[LOCATOR, 0] - x, stood.pegs[LOCATOR, 1] - y
-                        if not on_piece(stood.rows[i], c * wx + s * wy + ox, c * wy - s * wx + oy, END):
+                        if not is_on_piece(stood.rows[i], c * wx + s * wy + ox, c * wy - s * wx + oy, END):
                             continue
                         row[CONTACTS], row[PEG], row[PIECE] = 4.0, LOCATOR, i
                     count += 1

@@ -39,7 +39,7 @@ from workhold.kernels.base.interval import (
     ishift,
     isin,
     isub,
-    outward,
+    widen_outward,
 )
 
 # Radians. Ranges narrower than the first are not halved; a root known less well than the second is in doubt.
@@ -51,27 +51,38 @@ NONE, HALVES, REST, ROOT, IN_DOUBT = range(5)
 
 
 @inner
-def meet(a: Interval, b: Interval) -> Interval:
-    """What two intervals share; its ends are in the wrong order where they share nothing."""
+def intersect(a: Interval, b: Interval) -> Interval:
+    """Return the intersection of two intervals; low > high where it is empty."""
     return (max(a[0], b[0]), min(a[1], b[1]))
 
 
 @inner
 def has_none(values: Interval) -> bool:
-    """Whether 0 is outside."""
+    """Return whether an interval does not contain 0."""
     return values[0] > 0.0 or values[1] < 0.0
 
 
 @inner
-def judged(turn: Interval, middle: float, value: Interval, slope: Interval) -> tuple[int, Interval]:
-    """The verdict on a range by a function's value in its middle and its slope, and what is left of it."""
+def judge_range(turn: Interval, middle: float, value: Interval, slope: Interval) -> tuple[int, Interval]:
+    """Return the verdict on a range by a function's value in its
+    middle and its slope, and what is left of the range.
+
+    NONE: no root; HALVES: halve the range; REST: go on with what is left; ROOT: one root, known to ``KNOWN``
+    radians; IN_DOUBT: too narrow or hardly steep.
+
+    Parameters
+    ----------
+    turn : the range in radians.
+    value : enclosure of the function at ``middle``.
+    slope : enclosure of its derivative over the range.
+    """
     reach = (turn[1] - turn[0]) / 2.0
     off = reach * max(-slope[0], slope[1])
     if value[0] > off or value[1] < -off:
         return (NONE, turn)
     if not has_none(slope):
         return (HALVES, turn)
-    rest = meet(turn, ishift(middle, ineg(idivide(value, slope))))
+    rest = intersect(turn, ishift(middle, ineg(idivide(value, slope))))
     if rest[0] > rest[1]:
         return (NONE, turn)
     if rest[1] - rest[0] < reach:
@@ -81,10 +92,11 @@ def judged(turn: Interval, middle: float, value: Interval, slope: Interval) -> t
 
 
 @inner
-def to_look_at(verdict: int, turn: Interval, looked: int, stack: Array, depth: int) -> int:
-    """Writes what is left of a range after others.
+def push_rest(verdict: int, turn: Interval, looked: int, stack: Array, depth: int) -> int:
+    """Push a range on the stack, as it is for the verdict REST, else as two halves; return the new depth.
 
-    Returns the new depth, or -1 where it is neither halved nor cut.
+    Return -1, with nothing pushed, when the range is too narrow to be halved, there is no room, or
+    ``looked``, the number of ranges examined, has reached ``MOST_RANGES``.
     """
     if verdict == REST:
         stack[depth, 0], stack[depth, 1] = turn
@@ -114,7 +126,11 @@ NOWHERE = (False, False, NOTHING, NOTHING, NOTHING, NOTHING)
 
 @inner
 def write_shape(row: Array, disc: Array, x: float, y: float, shape: Array) -> None:
-    """Writes a piece (10,), in a disc (3,), as seen from a point of the part."""
+    """Write a piece (10,) in a disc (3,) as seen from the point (x, y) of the part to ``shape`` (11,).
+
+    Lengths are in mm, angles in radians. See ``base.feature`` for the layout of ``row``, ``seating.turning``
+    for that of ``shape``.
+    """
     dx, dy = row[X] - x, row[Y] - y
     shape[DISC], shape[DISC_RADIUS] = hypot(disc[0] - x, disc[1] - y), disc[2] + END
     shape[DISC_ANGLE] = atan2(disc[1] - y, disc[0] - x)
@@ -130,16 +146,27 @@ def write_shape(row: Array, disc: Array, x: float, y: float, shape: Array) -> No
 
 
 @inner
-def contact(
+def compute_contact(
     shape: Array, turn: Interval, level: Interval, rise: Interval, bend: Interval, facing: float, within: bool
 ) -> Contact:
-    """The contact over a range of orientations.
+    """Return the contact of a peg on a level line with a piece, over a range of orientations of the part.
+
+    The part turns about a point; the line is k above it, k a function of theta. B is the coordinate of the
+    contact along the line from that point, nu the direction of the outward normal. See ``seating.turning``
+    for the layout of ``shape``.
 
     Parameters
     ----------
-    level, rise, bend : k, k' and k''.
-    facing : 1 where the normal's part along the line is above 0, -1 where it is below.
-    within : whether the piece ends where it ends, or goes on as a whole line or circle.
+    shape : (11,), see :func:`write_shape`, as seen from that point.
+    turn : range of theta in radians.
+    level, rise, bend : enclosures of k, k' and k''.
+    facing : 1 where the normal's component along the line is positive, -1 where it is negative.
+    within : whether only the piece itself counts, not its whole line or circle.
+
+    Returns
+    -------
+    (whether there may be a contact; whether the whole line or circle has one throughout; enclosures of B, B',
+        B'' and tan nu)
     """
     if within:
         middle = iscale(shape[DISC], isin(ishift(shape[DISC_ANGLE], turn)))
@@ -156,7 +183,7 @@ def contact(
         if sine[0] > 1.0 or sine[1] < -1.0:
             return NOWHERE
         smooth = sine[0] > -1.0 and sine[1] < 1.0
-        found = outward(asin(max(sine[0], -1.0)), asin(min(sine[1], 1.0)))
+        found = widen_outward(asin(max(sine[0], -1.0)), asin(min(sine[1], 1.0)))
         if facing < 0.0:
             found = isub((pi, pi), found)
         turns = floor((nu[0] + nu[1] - found[0] - found[1]) / (2.0 * TURN) + 0.5)
@@ -164,10 +191,10 @@ def contact(
         on_part = isub(found, turn)
         # Where both ranges are so wide that they meet all around, the piece's ends decide nothing.
         if within and 2.0 * shape[SPREAD] + (turn[1] - turn[0]) + (found[1] - found[0]) < TURN:
-            psi = meet(psi, on_part)
+            psi = intersect(psi, on_part)
             if psi[0] > psi[1]:
                 return NOWHERE
-            nu = meet(found, iadd(turn, psi))
+            nu = intersect(found, iadd(turn, psi))
         else:
             psi, nu = on_part, found
     cosine = iscale(facing, icos(nu))
@@ -179,9 +206,9 @@ def contact(
     off = ishift(shape[OFF], iscale(shape[AWAY], icos(from_center)))
     along = idivide(isub(level, imul(off, sine)), cosine)
     if is_arc:
-        along = meet(along, iscale(shape[AWAY], isin(from_center)))
+        along = intersect(along, iscale(shape[AWAY], isin(from_center)))
     elif within:
-        along = meet(along, (shape[FOOT] - shape[HALF], shape[FOOT] + shape[HALF]))
+        along = intersect(along, (shape[FOOT] - shape[HALF], shape[FOOT] + shape[HALF]))
     if along[0] > along[1]:
         return NOWHERE
     place = isub(imul(off, cosine), imul(along, sine))

@@ -45,7 +45,7 @@ from workhold.kernels.base.tables import (
     TAIL,
 )
 from workhold.kernels.chord.coincidences import NONE
-from workhold.kernels.chord.evaluation import chord_state
+from workhold.kernels.chord.evaluation import compute_chord_state
 from workhold.kernels.chord.stretches import PARTS, STRETCH_HIGH
 from workhold.kernels.chord.stretches import SPEED as STRETCH_SPEED
 from workhold.kernels.seating.columns import (
@@ -62,9 +62,14 @@ from workhold.kernels.seating.columns import (
     SPEED,
     TOP,
     VAGUE,
-    Given,
+    HeldPart,
 )
-from workhold.kernels.seating.obstacles import angle_from_middle, foot, length, on_piece
+from workhold.kernels.seating.obstacles import (
+    compute_angle_from_middle,
+    compute_length,
+    find_foot,
+    is_on_piece,
+)
 
 PairState = tuple[float, float, float, float, float, float, float, float, float, float]
 
@@ -77,9 +82,13 @@ ROUNDING = 1e-9
 
 
 @inner
-def pair_at(pair: Array, given: Given, psi: float) -> PairState:
-    """A pair at an orientation: place of its first peg on the part, outward normals, instant centre, and
-    place of its second peg."""
+def compute_pair_state(pair: Array, given: HeldPart, psi: float) -> PairState:
+    """Return a pair at an orientation psi, in the part's frame.
+
+    It consists of ten numbers: place of the first peg (2), outward normals at the first and the second
+    contact (4), instant centre (2), place of the second peg (2). In a pocket, normals are 0 and all places
+    are the pivot. See ``seating.columns`` for the layout of ``pair``.
+    """
     if pair[KIND] == 1.0:
         x, y = pair[PIVOT_X], pair[PIVOT_Y]
         return (x, y, 0.0, 0.0, 0.0, 0.0, x, y, x, y)
@@ -87,46 +96,63 @@ def pair_at(pair: Array, given: Given, psi: float) -> PairState:
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
     alpha, d = psi + pair[ANGLE], given.reals[k, LENGTH]
     cosine, sine = cos(alpha), sin(alpha)
-    s = chord_state(a, b, given.reals[k], alpha, cosine, sine)
+    s = compute_chord_state(a, b, given.reals[k], alpha, cosine, sine)
     normals = (a[SIGN] * s[2], a[SIGN] * s[3], b[SIGN] * s[4], b[SIGN] * s[5])
     return (s[0], s[1], *normals, s[6], s[7], s[0] + d * cosine, s[1] + d * sine)
 
 
 @inner
-def is_on_its_pieces(pair: Array, given: Given, psi: float, x: float, y: float) -> bool:
-    """Whether the contacts of a pair, the first at (x, y), lie on their pieces, past whose ends curves go."""
+def is_on_its_pieces(pair: Array, given: HeldPart, psi: float, x: float, y: float) -> bool:
+    """Return whether the contacts of a pair at psi, the first at
+    (x, y), lie on their pieces; curves go past the ends.
+
+    See ``seating.columns`` for the layout of ``pair``.
+    """
     if pair[KIND] == 1.0:
         return True
     k = int(pair[SOURCE])
     alpha, d = psi + pair[ANGLE], given.reals[k, LENGTH]
-    return on_piece(given.rows[given.curves[k, TAIL]], x, y, END) and on_piece(
+    return is_on_piece(given.rows[given.curves[k, TAIL]], x, y, END) and is_on_piece(
         given.rows[given.curves[k, HEAD]], x + d * cos(alpha), y + d * sin(alpha), END
     )
 
 
 @inner
-def height(pair: Array, given: Given, x: float, y: float, cosine: float, sine: float) -> float:
-    """The height of the first peg's place on the part less the peg's own, one for all pegs that hold a
-    part."""
+def compute_pair_height(
+    pair: Array, given: HeldPart, x: float, y: float, cosine: float, sine: float
+) -> float:
+    """Return the part's height as a pair fixes it: the height of the
+    first peg's place on the part minus the peg's own.
+
+    (x, y) is that place, ``cosine`` and ``sine`` are those of psi. Pairs that hold the part together have
+    equal heights. See ``seating.columns`` for the layout of ``pair``.
+    """
     return cosine * y - sine * x - given.pegs[int(pair[FIRST_PEG]), 1]
 
 
 @inner
-def write_cell(cell: Array, number: int, low: float, high: float, speed: float, given: Given) -> None:
-    """Writes the cell of a pair over [low, high], with bounds of its height h: h' = -x . P and h'' = -y . P -
-    x . P'."""
+def write_cell(cell: Array, number: int, low: float, high: float, speed: float, given: HeldPart) -> None:
+    """Write the cell (7,) of pair ``number`` over psi in [low, high],
+    shifted by whole turns so that LOW is in [0, 2 pi).
+
+    ``speed`` bounds that of P in mm per radian. Bounds of the height h follow from h' = -x . P and h'' = -y .
+    P - x . P'. See ``seating.columns`` for the layout of ``cell``. Symbols are those of
+    ``seating.two_contact_curves``.
+    """
     pair = given.pairs[number]
     middle, reach = (low + high) / 2.0, (high - low) / 2.0
     cosine, sine = cos(middle), sin(middle)
-    s = pair_at(pair, given, middle)
-    value = height(pair, given, s[0], s[1], cosine, sine)
+    s = compute_pair_state(pair, given, middle)
+    value = compute_pair_height(pair, given, s[0], s[1], cosine, sine)
     vague = not speed < inf
     if vague:
         # Too short a range, beside a tangency, for the height to leave its ends by more than they are apart.
         spread = 1e-6
         for end in (low, high):
-            t = pair_at(pair, given, end)
-            spread = max(spread, 2.0 * abs(height(pair, given, t[0], t[1], cos(end), sin(end)) - value))
+            t = compute_pair_state(pair, given, end)
+            spread = max(
+                spread, 2.0 * abs(compute_pair_height(pair, given, t[0], t[1], cos(end), sin(end)) - value)
+            )
     else:
         bend = hypot(s[6], s[7]) + speed * (1.0 + reach)
         spread = reach * (abs(cosine * s[6] + sine * s[7]) + reach * bend) + ROUNDING
@@ -137,8 +163,10 @@ def write_cell(cell: Array, number: int, low: float, high: float, speed: float, 
 
 
 @compiled
-def make_cells(given: Given, stretches: Matrix, cells: Matrix) -> int:
-    """Cuts all pairs into cells; returns how many, or -1 where they do not fit into ``cells``.
+def make_cells(given: HeldPart, stretches: Matrix, cells: Matrix) -> int:
+    """Cut all pairs into cells, written to ``cells`` (C, 7); return their number, -1 when there is no room.
+
+    See ``seating.columns`` for the layout of ``cells``.
 
     Parameters
     ----------
@@ -182,19 +210,23 @@ OF_DIRECTION, OF_BOUND = 1e-15, 1e-9
 
 
 @inner
-def ray_of(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: float) -> Ray:
-    """The ray over a range in whose middle the pair is ``s``, from 0 to inf where nothing is known.
+def make_ray(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: float) -> Ray:
+    """Return the ray of a pair over a range of psi, with distances from 0 to inf where nothing is known.
+
+    See ``Ray`` for its seven numbers. See ``base.tables`` for the layout of ``curve``, ``base.feature`` for
+    that of ``a`` and ``b``. Symbols are those of ``seating.two_contact_curves``.
 
     Parameters
     ----------
-    curve : row of the curve table.
+    curve : reals of the chord curve.
     a, b : rows of the pieces that are touched.
+    s : the pair in the middle of the range.
     speed : no less than that of P, in mm per radian.
     reach : half of the range in radians.
     """
     eta, kappa, d = curve[BACKWARD_ERROR], curve[KAPPA], curve[LENGTH]
     px, py, across = s[6] - s[0], s[7] - s[1], abs(s[2] * s[5] - s[3] * s[4])
-    size = length(px, py)
+    size = compute_length(px, py)
     is_known = curve[COINCIDENCE] == NONE and across * across > 64.0 * kappa * eta
     # How far off rounding puts the contacts, and P.
     off, move = 0.0, speed * reach
@@ -207,7 +239,7 @@ def ray_of(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: 
     if a[IS_ARC] != 0.0:
         turn_a += (size + move) * way / a[RADIUS]
     if b[IS_ARC] != 0.0:
-        turn_b += (length(s[8] - s[6], s[9] - s[7]) + move) * way / b[RADIUS]
+        turn_b += (compute_length(s[8] - s[6], s[9] - s[7]) + move) * way / b[RADIUS]
     if not is_known:
         return (0.0, inf, s[2], s[3], 0.0, turn_a, turn_b)
     lever, change = size * across, d * (reach + turn_b)
@@ -227,23 +259,30 @@ MIDDLE_LENGTH = 19
 
 
 @inner
-def ray_over(pair: Array, given: Given, s: PairState, speed: float, reach: float) -> Ray:
-    """The ray of a pair of two contacts; see ``ray_of``."""
+def make_ray_over(pair: Array, given: HeldPart, s: PairState, speed: float, reach: float) -> Ray:
+    """Return the ray of a pair of two contacts (not a pocket) over a range; see :func:`make_ray`.
+
+    See ``seating.columns`` for the layout of ``pair``.
+    """
     k = int(pair[SOURCE])
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-    return ray_of(given.reals[k], a, b, s, speed, reach)
+    return make_ray(given.reals[k], a, b, s, speed, reach)
 
 
 @compiled
-def write_middles(cells: Matrix, given: Given, out: Matrix) -> None:
-    """Writes the middles (C, 19) of cells (C, 7)."""
+def write_middles(cells: Matrix, given: HeldPart, out: Matrix) -> None:
+    """Write the middles of cells (C, 7) to ``out`` (C, 19): COSINE
+    and SINE of psi, the pair (10), and its ray (7).
+
+    See ``seating.columns`` for the layout of ``cells``.
+    """
     for number in range(cells.shape[0]):
         cell, row = cells[number], out[number]
         pair = given.pairs[int(cell[PAIR])]
         psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
-        s, ray = pair_at(pair, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+        s, ray = compute_pair_state(pair, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
         if pair[KIND] == 0.0 and cell[VAGUE] == 0.0:
-            ray = ray_over(pair, given, s, cell[SPEED], reach)
+            ray = make_ray_over(pair, given, s, cell[SPEED], reach)
         row[COSINE], row[SINE] = cos(psi), sin(psi)
         for k in range(10):
             row[HELD + k] = s[k]
@@ -252,21 +291,27 @@ def write_middles(cells: Matrix, given: Given, out: Matrix) -> None:
 
 
 @inner
-def pair_in(middle: Array) -> PairState:
-    """The pair in the middle of a cell."""
+def read_pair_state(middle: Array) -> PairState:
+    """Return the pair in the middle of a cell from its row (19,), in the form of :func:`compute_pair_state`.
+
+    See ``seating.two_contact_curves`` for the layout of ``middle``.
+    """
     h = middle[HELD:RAY]
     return (h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
 
 
 @inner
-def ray_in(middle: Array) -> Ray:
-    """The ray over a cell."""
+def read_ray(middle: Array) -> Ray:
+    """Return the ray over a cell from the row (19,) of its middle.
+
+    See ``seating.two_contact_curves`` for the layout of ``middle``.
+    """
     r = middle[RAY:]
     return (r[0], r[1], r[2], r[3], r[4], r[5], r[6])
 
 
 @inner
-def foot_is_off(
+def is_foot_off(
     piece: Array,
     side: float,
     push: float,
@@ -277,8 +322,21 @@ def foot_is_off(
     ray: Ray,
     reach: float,
 ) -> bool:
-    """Whether over a range the foot of P is off a piece or off the third peg's level, or a force there
-    cannot balance the other two."""
+    """Return whether, over a range, the ray shows that a third
+    contact at the foot of P cannot balance a pair.
+
+    That is, the foot is off the piece, off the third peg's level, or the force there cannot balance the other
+    two. See ``base.feature`` for the layout of ``piece``. Symbols are those of
+    ``seating.two_contact_curves``.
+
+    Parameters
+    ----------
+    side : of the foot, see ``obstacles.find_foot``.
+    push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
+    above : height of the third peg over the first, in mm.
+    s, cosine, sine : pair and orientation in the middle of the range.
+    reach : half of the range in radians.
+    """
     least, most, rx, ry, drift, turn_a, turn_b = ray
     if least <= 0.0:
         return False
@@ -313,7 +371,7 @@ def foot_is_off(
     if abs(cosine * fy - sine * fx - above) > play + reach * (abs(fx) + abs(fy) + play) + END:
         return True
     beyond = piece[HALF_EXTENT] + turn + END / piece[RADIUS]
-    return beyond < pi and abs(angle_from_middle(piece, ex, ey)) > beyond
+    return beyond < pi and abs(compute_angle_from_middle(piece, ex, ey)) > beyond
 
 
 MISS, APART, GAP = 0.0, 1.0, 2.0
@@ -322,16 +380,16 @@ AT_END = 1e-10
 MOST_HALVINGS = 80
 
 
-class Function(NamedTuple):
+class RootFunction(NamedTuple):
     """A function of the orientation whose roots are sought.
 
     Parameters
     ----------
     kind : MISS, APART or GAP.
-    one, two : pairs; the second is asked for APART only.
-    piece : row; asked for MISS and GAP.
-    first, second : for MISS the height of the third peg above the first, and the side of the foot. For GAP
-        the other peg's place in the closing frame, from the first.
+    one, two : pairs; ``two`` is read for APART only.
+    piece : row; read for MISS and GAP.
+    first, second : for MISS the height in mm of the third peg above the first, and the side of the foot. For
+        GAP x and y in mm of the other peg in the vise frame, from the first.
     """
 
     kind: float
@@ -340,49 +398,58 @@ class Function(NamedTuple):
     piece: Array
     first: float
     second: float
-    given: Given
+    given: HeldPart
 
 
 @inner
-def value(function: Function, psi: float) -> float:
-    """A function at an orientation."""
+def evaluate_root_function(function: RootFunction, psi: float) -> float:
+    """Return the value of a root function at psi, in mm."""
     kind, one, two, piece, first, second, given = function
-    s = pair_at(one, given, psi)
+    s = compute_pair_state(one, given, psi)
     cosine, sine = cos(psi), sin(psi)
     if kind == APART:
-        t = pair_at(two, given, psi)
-        return height(two, given, t[0], t[1], cosine, sine) - height(one, given, s[0], s[1], cosine, sine)
+        t = compute_pair_state(two, given, psi)
+        return compute_pair_height(two, given, t[0], t[1], cosine, sine) - compute_pair_height(
+            one, given, s[0], s[1], cosine, sine
+        )
     if kind == MISS:
-        f = foot(piece, s[6], s[7], second)
+        f = find_foot(piece, s[6], s[7], second)
         return cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - first
-    return gap(piece, s[0] + cosine * first - sine * second, s[1] + sine * first + cosine * second)
+    return measure_gap(piece, s[0] + cosine * first - sine * second, s[1] + sine * first + cosine * second)
 
 
 @inner
-def gap(piece: Array, x: float, y: float) -> float:
-    """Distance in mm of a point from a piece's carrier, negative on the part's side."""
+def measure_gap(piece: Array, x: float, y: float) -> float:
+    """Return the signed distance in mm of a point from a piece's line or circle, negative on the part's side.
+
+    See ``base.feature`` for the layout of ``piece``.
+    """
     dx, dy = x - piece[X], y - piece[Y]
     if piece[IS_ARC] == 0.0:
         return dx * piece[AXIS_Y] - dy * piece[AXIS_X]
-    return piece[SIGN] * (length(dx, dy) - piece[RADIUS])
+    return piece[SIGN] * (compute_length(dx, dy) - piece[RADIUS])
 
 
 @inner
 def have_no_root(f_low: float, f_high: float) -> bool:
-    """Whether a function's values at two orientations leave no root between them."""
+    """Return whether a function's values at two orientations have one
+    sign and neither is within ``AT_END`` of 0.
+    """
     return f_low * f_high > 0.0 and min(abs(f_low), abs(f_high)) > AT_END
 
 
 @inner
-def root_between(function: Function, low: float, high: float) -> tuple[bool, float]:
-    """Whether a function has different signs at two orientations, or is 0 at one, and a root between them."""
-    f_low = value(function, low)
-    f_high = value(function, high)
+def find_root_between(function: RootFunction, low: float, high: float) -> tuple[bool, float]:
+    """Return (found, psi): whether a function changes its sign over
+    [low, high] or is 0 at an end, and a root there.
+    """
+    f_low = evaluate_root_function(function, low)
+    f_high = evaluate_root_function(function, high)
     if f_low * f_high > 0.0:
         return (not have_no_root(f_low, f_high), low if abs(f_low) < abs(f_high) else high)
     psi = (low + high) / 2.0
     for step in range(MOST_HALVINGS):
-        f = value(function, psi)
+        f = evaluate_root_function(function, psi)
         if (f > 0.0) == (f_high > 0.0):
             high, f_high = psi, f
         else:
@@ -397,9 +464,13 @@ def root_between(function: Function, low: float, high: float) -> tuple[bool, flo
 
 
 @inner
-def is_level(function: Function, low: float, high: float, least: float) -> bool:
-    """Whether three values over a range too narrow to cut are far from 0 by more than they differ."""
-    f = value(function, (low + high) / 2.0)
-    f_low = value(function, low)
-    f_high = value(function, high)
+def is_level(function: RootFunction, low: float, high: float, least: float) -> bool:
+    """Return whether a function's value in the middle of a range is clearly not 0.
+
+    Its absolute value exceeds ``least`` and twice the differences from the values at both ends. It is meant
+    for ranges too narrow to cut.
+    """
+    f = evaluate_root_function(function, (low + high) / 2.0)
+    f_low = evaluate_root_function(function, low)
+    f_high = evaluate_root_function(function, high)
     return abs(f) > least and abs(f) > 2.0 * max(abs(f - f_low), abs(f - f_high))

@@ -32,10 +32,10 @@ from workhold.kernels.seating.turning import (
     NOTHING,
     ROOT,
     Contact,
-    contact,
+    compute_contact,
     has_none,
-    judged,
-    to_look_at,
+    judge_range,
+    push_rest,
     write_shape,
 )
 
@@ -48,18 +48,19 @@ Rate = tuple[bool, bool, Interval, Interval]
 NOWHERE = (False, False, NOTHING, NOTHING)
 
 
-class Stood(NamedTuple):
-    """A part on a wall.
+class StandingPart(NamedTuple):
+    """A part that stands on a wall, between a locator and a tip.
 
     Parameters
     ----------
     rows, discs : (N, 10) pieces of the boundary on which the pegs' centres lie, and (N, 3) discs around them.
-    parts : (2, 2) first and past-the-last number of the pieces that the locator, and the tip, touch.
+    parts : (2, 2) first and past-the-last number of the pieces that the locator (row 0) and the tip (row 1)
+        touch.
     hull : (H, 6) pieces of the hull, see ``kernels.seating.obstacles``.
-    runs : (M, 3) numbers of such a piece, and first and last orientation in which it is on the wall.
+    runs : (M, 3) number of a hull piece, and first and last orientation in which it is on the wall.
     pegs : (2, 2) of the locator, and of the tip at separation 0, in mm.
-    half_plane : (3,) unit vector from the wall to the part, along x or y, and how far in mm along it the wall
-        is.
+    half_plane : (3,) unit vector from the wall to the part, along x or y, and the wall's coordinate along it
+        in mm.
     """
 
     rows: Matrix
@@ -72,11 +73,12 @@ class Stood(NamedTuple):
 
 
 @inner
-def heights(stood: Stood, piece: int) -> tuple[float, float, float]:
-    """The heights of a hull piece's centre, the locator's line and the tip while the piece is on the wall.
+def compute_heights(stood: StandingPart, piece: int) -> tuple[float, float, float]:
+    """Return three heights in mm while a hull piece is on the wall: of its centre, the locator and the tip.
 
-    The first is square to the wall, the second is counted from there, and the third from the centre, or from
-    the locator where the wall is upright.
+    The centre's is its coordinate square to the wall. The locator's is relative to the centre, square to the
+    wall. The tip's is relative to the centre or, where the wall is upright, the tip's y relative to the
+    locator's.
     """
     ux, uy = stood.half_plane[0], stood.half_plane[1]
     center = (ux + uy) * (stood.half_plane[2] + stood.hull[piece, 2])
@@ -86,7 +88,7 @@ def heights(stood: Stood, piece: int) -> tuple[float, float, float]:
 
 
 @inner
-def both(
+def compute_both_contacts(
     locator: Array,
     tip: Array,
     high: tuple[float, float, float],
@@ -95,26 +97,37 @@ def both(
     way: float,
     within: bool,
 ) -> tuple[Contact, Contact]:
-    """The contacts of locator and tip over a range of orientations.
+    """Return the contacts of locator and tip over a range of orientations, see ``turning.compute_contact``.
 
-    The ``way`` is the locator's ``facing`` of ``contact``.
+    See ``seating.turning`` for the layout of ``locator`` and ``tip``.
+
+    Parameters
+    ----------
+    locator, tip : shapes of the pieces that they touch.
+    high : see :func:`compute_heights`.
+    upright : whether the wall is.
+    turn : range of theta in radians.
+    way : ``facing`` of the locator's contact.
+    within : whether only the pieces themselves count, not their whole lines or circles.
     """
     level = (high[1], high[1])
     if not upright:
-        one = contact(locator, turn, level, NOTHING, NOTHING, way, within)
-        return (one, contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
-    one = contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
+        one = compute_contact(locator, turn, level, NOTHING, NOTHING, way, within)
+        return (one, compute_contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
+    one = compute_contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
     # The part is higher as the locator's contact is lower; a quarter turn makes x of what was -y.
-    two = contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
+    two = compute_contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
     return (one, two if one[0] else one)
 
 
 @inner
-def rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
-    """How S changes, where wall, locator and tip may all press.
+def compute_rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
+    """Return (whether wall, locator and tip may all press, whether S
+    is smooth throughout, enclosures of S' and S'').
 
-    With b = (1, tan) of the tip, unit forces along x: the locator's is what that leaves along the wall, and
-    the wall's the rest.
+    ``one`` and ``two`` are the contacts of locator and tip, ``wall`` is the half plane (3,). With b =
+    (1, tan) of the tip, unit forces along x: the locator's force is what that leaves along the wall, and the
+    wall's is the rest. S is the jaw separation in mm.
     """
     if not (one[0] and two[0]):
         return NOWHERE
@@ -127,8 +140,8 @@ def rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
 
 
 @inner
-def balances(
-    stood: Stood,
+def write_balances(
+    stood: StandingPart,
     m: int,
     i: int,
     j: int,
@@ -139,27 +152,37 @@ def balances(
     out: Array,
     count: int,
 ) -> int:
-    """Writes the balances of a run with locator and tip on two pieces in a cell; the new count, or -1."""
-    upright, high = stood.half_plane[0] != 0.0, heights(stood, int(stood.runs[m, 0]))
+    """Append the candidates of run m with locator and tip on pieces i
+    and j, over a range of theta, to ``out`` (N, 24).
+
+    Return the new number of candidates, -1 when there is no room. ``way`` is ``facing`` of the locator's
+    contact, ``cell`` the range in radians, ``shapes`` are those of :func:`write_equilibria`. See
+    ``seating.turning`` for the layout of ``shapes``, ``seating.columns`` for that of candidates.
+    """
+    upright, high = stood.half_plane[0] != 0.0, compute_heights(stood, int(stood.runs[m, 0]))
     depth, looked = 1, 0
     stack[0, 0], stack[0, 1] = cell
     while depth > 0:
         depth -= 1
         looked += 1
         turn = (stack[depth, 0], stack[depth, 1])
-        one, two = both(shapes[i], shapes[j], high, upright, turn, way, True)
-        known = rate(one, two, stood.half_plane, way)
+        one, two = compute_both_contacts(shapes[i], shapes[j], high, upright, turn, way, True)
+        known = compute_rate(one, two, stood.half_plane, way)
         if not known[0] or has_none(known[2]):
             continue
         verdict, middle = HALVES, (turn[0] + turn[1]) / 2.0
-        one, two = both(shapes[i], shapes[j], high, upright, turn, way, False)
-        known = rate(one, two, stood.half_plane, way)
+        one, two = compute_both_contacts(shapes[i], shapes[j], high, upright, turn, way, False)
+        known = compute_rate(one, two, stood.half_plane, way)
         if known[1]:
-            one, two = both(shapes[i], shapes[j], high, upright, (middle, middle), way, False)
-            verdict, turn = judged(turn, middle, rate(one, two, stood.half_plane, way)[2], known[3])
+            one, two = compute_both_contacts(
+                shapes[i], shapes[j], high, upright, (middle, middle), way, False
+            )
+            verdict, turn = judge_range(
+                turn, middle, compute_rate(one, two, stood.half_plane, way)[2], known[3]
+            )
             if verdict == NONE:
                 continue
-        more = -1 if verdict >= ROOT else to_look_at(verdict, turn, looked, stack, depth)
+        more = -1 if verdict >= ROOT else push_rest(verdict, turn, looked, stack, depth)
         if more < 0:
             count = write_balance(stood, m, i, j, way, middle, verdict != ROOT, shapes, out, count)
             if count < 0:
@@ -170,7 +193,7 @@ def balances(
 
 @inner
 def write_balance(
-    stood: Stood,
+    stood: StandingPart,
     m: int,
     i: int,
     j: int,
@@ -181,13 +204,15 @@ def write_balance(
     out: Array,
     count: int,
 ) -> int:
-    """Writes the candidate of three contacts at an orientation, if they lie on their pieces.
+    """Append the candidate of three contacts at orientation
+    ``theta``, if these may lie on their pieces, to ``out``.
 
-    Returns the new count, -1 where it does not fit.
+    Return the new number of candidates, -1 when there is no room. See ``seating.turning`` for the layout of
+    ``shapes``.
     """
     piece, upright = int(stood.runs[m, 0]), stood.half_plane[0] != 0.0
-    high = heights(stood, piece)
-    one, two = both(shapes[i], shapes[j], high, upright, (theta, theta), way, True)
+    high = compute_heights(stood, piece)
+    one, two = compute_both_contacts(shapes[i], shapes[j], high, upright, (theta, theta), way, True)
     if not (one[0] and two[0]):
         return count
     if count >= out.shape[0]:
@@ -201,7 +226,7 @@ def write_balance(
         x, y, vx, vy = high[0], stood.pegs[LOCATOR, 1] + place, 0.0, speed
     else:
         x, y, vx, vy = stood.pegs[LOCATOR, 0] - place, high[0], -speed, 0.0
-    known, row = rate(one, two, stood.half_plane, way), out[count]
+    known, row = compute_rate(one, two, stood.half_plane, way), out[count]
     write_pose(row, theta, x - hx, y - hy, 3)
     row[SEPARATION] = x + (two[2][0] + two[2][1]) / 2.0 - stood.pegs[TIP, 0]
     row[SECOND], row[DOUBT] = (known[3][0] + known[3][1]) / 2.0, 1.0 if doubt else 0.0
@@ -212,10 +237,11 @@ def write_balance(
 
 
 @compiled
-def stationary(stood: Stood, shapes: Matrix, stack: Matrix, out: Matrix) -> int:
-    """Writes the candidates (N, 24) of all balances of wall, locator and tip on a piece of the hull.
+def write_equilibria(stood: StandingPart, shapes: Matrix, stack: Matrix, out: Matrix) -> int:
+    """Write the candidates of all balances of wall, locator and tip to ``out`` (N, 24).
 
-    Returns their number, or -1 where they do not fit.
+    Return their number, -1 when there is no room. See ``seating.turning`` for the layout of ``shapes``,
+    ``seating.columns`` for that of candidates.
 
     Parameters
     ----------
@@ -229,23 +255,34 @@ def stationary(stood: Stood, shapes: Matrix, stack: Matrix, out: Matrix) -> int:
         cells = int(ceil(width / CELL))
         for cell in range(cells):
             turn = (low + cell * width / cells, low + (cell + 1) * width / cells)
-            count = balances_of_cell(stood, m, turn, upright, shapes, stack, out, count)
+            count = write_balances_of_cell(stood, m, turn, upright, shapes, stack, out, count)
             if count < 0:
                 return -1
     return count
 
 
 @inner
-def balances_of_cell(
-    stood: Stood, m: int, turn: Interval, upright: bool, shapes: Array, stack: Array, out: Array, count: int
+def write_balances_of_cell(
+    stood: StandingPart,
+    m: int,
+    turn: Interval,
+    upright: bool,
+    shapes: Array,
+    stack: Array,
+    out: Array,
+    count: int,
 ) -> int:
-    """Writes the balances of a run in a cell with all pieces; the new count, or -1 where they do not fit."""
-    high = heights(stood, int(stood.runs[m, 0]))
+    """Append the candidates of run m over a range of theta, with all pairs of pieces, to ``out`` (N, 24).
+
+    Return the new number of candidates, -1 when there is no room. See ``seating.turning`` for the layout of
+    ``shapes``, ``seating.columns`` for that of candidates.
+    """
+    high = compute_heights(stood, int(stood.runs[m, 0]))
     for i in range(stood.parts[0, 0], stood.parts[0, 1]):
         # Along the wall the locator is pressed from the tip's side, upright from above or from below.
         for ways in range(1 + upright):
             way = 2.0 * ways - 1.0
-            seen = contact(
+            seen = compute_contact(
                 shapes[i],
                 ishift(pi / 2.0, turn) if upright else turn,
                 (high[1], high[1]),
@@ -264,7 +301,7 @@ def balances_of_cell(
                     and max(shapes[i, AWAY], shapes[j, AWAY]) <= SAME_CENTER
                 ):
                     continue
-                count = balances(stood, m, i, j, way, turn, shapes, stack, out, count)
+                count = write_balances(stood, m, i, j, way, turn, shapes, stack, out, count)
                 if count < 0:
                     return -1
     return count

@@ -27,8 +27,7 @@ from workhold.verification.ball_geometry import BallOutline, Point, Side, make_e
 from workhold.verification.contacts import BallContact, BallPose, compute_standoff, select_outline_for
 from workhold.verification.rules.travel import (
     WAYS,
-    Stroke,
-    clamp_place,
+    ClampStroke,
     find_clamp_line,
     find_direction,
     is_along_x,
@@ -36,9 +35,10 @@ from workhold.verification.rules.travel import (
     judge_opening,
     list_directions,
     measure_travel,
+    name_clamp_place,
 )
-from workhold.verification.rules.wall import Jaw, WallContact, flush_findings, make_wall_contacts
-from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
+from workhold.verification.rules.wall import EndedWall, WallContact, check_flush, make_wall_contacts
+from workhold.verification.tolerances import AGREEMENT, Finding, format_middle, judge_slack
 
 __all__ = ["ToolkitRules"]
 
@@ -60,6 +60,7 @@ class ToolkitRules:
 
     @classmethod
     def from_query(cls, query: Query) -> ToolkitRules:
+        """Return the rules of a query's toolkit."""
         return cls(query.toolkit, every=query.listing == "all")
 
     @cached_property
@@ -79,68 +80,71 @@ class ToolkitRules:
 
     @cached_property
     def walls(self) -> list[Carrier]:
-        """What the part lies flush on: a wall, or nothing."""
+        """The wall carrier that the part lies flush on, in a list; [] without one."""
         return [one for one in self.carriers.values() if one.contact is WALL_END]
 
     @cached_property
     def wall_noun(self) -> str:
-        """What the wall is called; empty where there is none."""
+        """The wall's name; "" without one."""
         return next((one.noun for one in self.walls), "")
 
     @cached_property
-    def jaw(self) -> Jaw | None:
-        """The wall where it has ends, in the middle of the columns beside it; None of an endless one."""
+    def jaw(self) -> EndedWall | None:
+        """The wall with ends, centred on the columns beside it; None for an endless wall or none."""
         for wall in self.walls:
             columns = self.lattices[0].columns
             if wall.width is not None and columns is not None:
-                return Jaw(wall.noun, wall.width, self.lattices[0].pitch[0], columns)
+                return EndedWall(wall.noun, wall.width, self.lattices[0].pitch[0], columns)
         return None
 
     def has_carriers(self, fixture: Fixture) -> bool:
-        """Return whether there is all that a fixture stands on: no clamp that moves in a direction not asked for."""
+        """Return whether the toolkit has every carrier on which the fixture's pegs stand."""
         return all(peg.carrier in self.carriers for peg in fixture.pegs)
 
     @property
     def half_turns(self) -> bool:
-        """Whether half a turn leaves the toolkit as it is.
-
-        With a wall nothing does, nor do jaws whose pegs have different heights.
+        """Whether half a turn leaves the toolkit unchanged: it has no wall, and
+        all lattices have the same heights.
         """
         return not self.walls and len({one.heights for one in self.lattices}) == 1
 
     @property
     def keeps_rows(self) -> bool:
-        """Whether rows count from a wall, beside which their lattice stands still."""
+        """Whether rows count from a wall, because the lattice beside the wall does not move."""
         return bool(self.walls) and self.lattices[0].travel is None
 
     @cached_property
     def groups(self) -> list[tuple[Carrier, int]]:
-        """What the pegs of a fixture stand on, and how many, of the arrangement that is first."""
+        """(carrier, number of pegs on it) for each carrier of the toolkit's
+        first arrangement, empty ones left out.
+        """
         counts = zip(self.carriers.values(), self.toolkit.arrangements[0].pegs, strict=True)
         return [(carrier, count) for carrier, count in counts if count]
 
     @cached_property
     def clamps(self) -> int:
-        """How many clamps hold the part."""
+        """The number of clamps that hold the part."""
         return sum(count for carrier, count in self.groups if carrier.on is not None)
 
     @cached_property
-    def stroke(self) -> Stroke:
-        """What each clamp has to keep; a travel of minus its stroke puts it at its hole."""
+    def stroke(self) -> ClampStroke:
+        """The rules of each clamp's stroke; a travel of minus the stroke puts the tip at its hole."""
         travel = next((tip.travel for tip in self.tips.values()), None)
         span = None if travel is None or travel.most is None else (-travel.most, -travel.least)
-        return Stroke(span, self.wall_noun)
+        return ClampStroke(span, self.wall_noun)
 
     @cached_property
     def from_lowest(self) -> tuple[str, ...]:
-        """Which of columns and rows count from the lowest in use; rows beside a wall count from the wall."""
+        """The nouns, of "column" and "row", that count from the lowest in use;
+        rows beside a wall count from the wall.
+        """
         if self.walls:
             return () if self.jaw is not None else ("column",)
         return ("column", "row") if self.tips else ()
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The pegs of a fixture, in their order, as messages call them."""
+        """The names of a fixture's pegs in messages, in the order of the pegs."""
         carriers = [carrier for carrier, count in self.groups for _ in range(count)]
         total, seen, out = Counter(carrier.peg for carrier in carriers), Counter[str](), list[str]()
         for carrier in carriers:
@@ -154,6 +158,7 @@ class ToolkitRules:
 
     @property
     def pegs_wanted(self) -> str:
+        """The pegs that a fixture must have, in words."""
         words = [
             f"the two ends of the {one.noun}"
             if one.is_wall
@@ -167,13 +172,13 @@ class ToolkitRules:
 
     @property
     def same_words(self) -> str:
-        """What is said of a fixture that an earlier one already is."""
+        """The words that call a fixture a repeat of an earlier one, before its number."""
         is_one = self.every or self.clamps < 2
         return "it is the same as" if is_one else "it has the seat and the directions of"
 
     @property
     def slack_words(self) -> str:
-        """What is wrong where the clamping force is none."""
+        """The words for a clamping force that is too small."""
         if self.clamps:
             return "the clamp does not push the part"
         moving = "closing" if self.toolkit.clamping > 0 else "opening"
@@ -181,7 +186,7 @@ class ToolkitRules:
 
     @property
     def wider_words(self) -> str:
-        """What queries there are that a listing also meets."""
+        """The words for wider queries that a listing also answers."""
         fewer = "fewer restrictions or more"
         if not self.clamps:
             return f"a smaller gap or contact margin, a larger opening, more rows, {fewer} types"
@@ -194,12 +199,14 @@ class ToolkitRules:
         return max(one.peg_radius for one in self.carriers.values())
 
     def list_placed(self, fixture: Fixture) -> list[tuple[str, Peg]]:
-        """Return the pegs and clamps of a fixture by name, without the ends of the contact with a wall."""
+        """Return (name, peg) of the pegs and clamps of a fixture, without the
+        ends of the contact with a wall.
+        """
         named = zip(self.names, fixture.pegs, strict=False)
         return [(name, peg) for name, peg in named if not peg.is_on_wall]
 
     def compute_travels(self, fixture: Fixture) -> dict[str, float]:
-        """Return how far in mm what moves has travelled, by what each travel is called."""
+        """Return the travels in mm of a fixture by name: one, or one for each of two clamps."""
         if not self.clamps:
             return {"opening": fixture.travel}
         if self.clamps == 1:
@@ -208,7 +215,9 @@ class ToolkitRules:
         return {f"place of the tip of {name} on its line": travel for name, travel in named}
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
-        """Return whether a fixture has the pegs of its type and directions, in order; jaws may come in either order."""
+        """Return whether a fixture has the pegs of its type and directions, in order;
+        pegs of two jaws may come in any order.
+        """
         directions, carriers = list_directions(fixture), self.carriers.values()
         pegs = next((one.pegs for one in self.toolkit.arrangements if one.name == fixture.type), ())
         still = [
@@ -219,8 +228,7 @@ class ToolkitRules:
         return len(directions) == self.clamps and order(there) == order(wanted)
 
     def complete_fixture(self, fixture: Fixture) -> Fixture:
-        """Return a fixture as it is read, with the travels that put the tips of clamps where they are
-        written.
+        """Return a fixture with the travels, in mm, that put its clamps' tips where they are written.
 
         Raises
         ------
@@ -243,25 +251,30 @@ class ToolkitRules:
         return evolve(fixture, travel=moved[0], pair=pair)
 
     def place(self, peg: Peg) -> Point:
-        """Centre of a peg's hole without any travel, in mm."""
+        """Return the centre of a peg's hole without any travel, in the toolkit's frame in mm."""
         carrier = self.carriers[peg.carrier]
         (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
         return x + arb(pitch_x) * peg.column, y + arb(pitch_y) * peg.row
 
     def find_way(self, peg: Peg) -> tuple[float, float]:
-        """Return the unit vector along which a peg moves as its travel grows; (0, 0) of one that stands still."""
+        """Return the unit vector along which a peg moves as its travel grows; (0, 0) for a fixed one."""
         travel = self.carriers[peg.carrier].travel
         return (0.0, 0.0) if travel is None else travel.unit
 
     def make_contact(self, peg: Peg, side: Side) -> BallContact:
-        """Return the contact of a peg or a tip, round or with a flat, which lies on lines, with a side."""
+        """Return the contact of a peg or clamp tip with a side; a flat lies on
+        lines, and elsewhere the peg is round.
+        """
         carrier = self.carriers[peg.carrier]
         body = None if carrier.flat is None else arb(carrier.peg_radius)
         radius = compute_standoff(side, carrier.peg_radius, carrier.flat)
         return BallContact(self.place(peg), make_exact_point(*self.find_way(peg)), side, radius, body=body)
 
     def make_contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
-        """Return the contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
+        """Return the contacts of all pegs of a fixture, in their order.
+
+        Of two clamps the first has travel 0 and the second travel 1.
+        """
         on_wall = [outline.faces[peg.face] for peg in fixture.pegs if peg.is_on_wall]
         written = BallPose.from_written(fixture.pose)
         ends = iter(
@@ -278,7 +291,9 @@ class ToolkitRules:
     def find_pressed_contacts(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> list[BallContact]:
-        """Return the contacts at a pose that take up the forces: on a jaw with ends those of the common stretch."""
+        """Return the contacts that take up the forces at a pose; on a jaw with
+        ends, those of the common stretch.
+        """
         if self.jaw is None:
             return [*contacts]
         ends = [contact for contact in contacts if isinstance(contact, WallContact)]
@@ -293,10 +308,11 @@ class ToolkitRules:
         outline: BallOutline,
         shares: Sequence[arb],
     ) -> Iterator[Finding]:
-        """Check whether a jaw with ends reaches the part where it is pressed, and the pegs' columns are the
-        best.
+        """Yield a finding where a jaw with ends does not reach its force, or other
+        columns would hold the part better.
 
-        Contacts and shares are those of an endless wall, and their null vector.
+        ``contacts`` and ``shares`` are those of an endless wall; yields nothing for a toolkit without such a
+        jaw.
         """
         if self.jaw is None:
             return
@@ -311,9 +327,9 @@ class ToolkitRules:
         yield from self.jaw.judge(columns, force_at, select_outline_for(outline, WALL), pose)
 
     def number_shared_faces(self, fixture: Fixture, contacts: Sequence[BallContact]) -> list[int]:
-        """Return the numbers of what the pegs touch: the same for those that an error of a face moves alike.
+        """Return a number for each contact; contacts with equal numbers share one error of a face.
 
-        A corner on a wall is off by itself.
+        It is the face's number, or a negative one for a corner on a wall, which has an error of its own.
         """
         out = [peg.face for peg in fixture.pegs]
         for place, contact in enumerate(contacts):
@@ -322,26 +338,28 @@ class ToolkitRules:
         return out
 
     def judge_holes(self, fixture: Fixture) -> Iterator[Finding]:
-        """Yield what is wrong with the pegs, their holes or lines, and the places x, y written for them."""
+        """Yield a finding for each fault of the pegs, their holes or lines, and their written x and y."""
         yield from self.judge_question(fixture)
-        yield from self.number_findings(fixture)
+        yield from self.judge_hole_numbers(fixture)
         moved = list(self.compute_travels(fixture).values())
         for k, (name, peg) in enumerate(zip(self.names, fixture.pegs, strict=False)):
             if peg.is_on_wall:
                 continue
             if find_direction(peg):
-                yield from self.clamp_place_findings(name, peg)
+                yield from self.judge_clamp_place(name, peg)
             travel = moved[1] if len(moved) > 1 and k == len(fixture.pegs) - 1 else moved[0]
             noun = "line" if find_direction(peg) else "hole"
             for axis, written, hole, way in zip(
                 "xy", (peg.x, peg.y), self.place(peg), self.find_way(peg), strict=True
             ):
                 off = abs(hole + arb(travel) * way - written)
-                words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
+                words = f"the {axis} of {name} is {format_middle(off)} mm from that of its {noun}"
                 yield from judge_slack(AGREEMENT - off, words)
 
     def judge_question(self, fixture: Fixture) -> Iterator[Finding]:
-        """Check whether a fixture has the pegs of its type in different holes, and directions as asked for."""
+        """Yield a finding where a fixture lacks the pegs of its type, two share a
+        hole, or directions are not asked for.
+        """
         directions, pegs = list_directions(fixture), fixture.pegs
         if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
             first = self.lattices[0]
@@ -367,8 +385,10 @@ class ToolkitRules:
             if len(set(holes)) < len(holes):
                 yield Finding(True, f"two {carrier.peg}s are in the same hole")
 
-    def number_findings(self, fixture: Fixture) -> Iterator[Finding]:
-        """Check whether there are the columns and rows in which the pegs stand, counted as they are to be."""
+    def judge_hole_numbers(self, fixture: Fixture) -> Iterator[Finding]:
+        """Yield a finding for each column or row that the carrier does not have, or
+        that is not counted from the lowest.
+        """
         standing = self.list_placed(fixture)
         for noun in ("column", "row"):
             numbers = []
@@ -387,13 +407,18 @@ class ToolkitRules:
                 yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
 
     def is_counted(self, peg: Peg, noun: str) -> bool:
-        """Return whether a peg's column or row is one of the lattice: without a hole a clamp has its line alone."""
+        """Return whether a peg's column or row (``noun``) is a number of the lattice.
+
+        An unbolted clamp has only its line: the row if it moves along x, else the column.
+        """
         return not find_direction(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
 
-    def clamp_place_findings(self, name: str, clamp: Peg) -> Iterator[Finding]:
-        """Check whether a clamp is named by its hole, or by its line where it is in none."""
+    def judge_clamp_place(self, name: str, clamp: Peg) -> Iterator[Finding]:
+        """Yield a finding where a clamp is not named by its hole, or if unbolted by its line."""
         is_bolted = self.stroke.span is not None
-        place = clamp_place(self.lattices[0].name, find_direction(clamp), clamp.column, clamp.row, is_bolted)
+        place = name_clamp_place(
+            self.lattices[0].name, find_direction(clamp), clamp.column, clamp.row, is_bolted
+        )
         if clamp.place != place:
             named_by = "hole in which it is bolted" if is_bolted else "line alone, since it has no travel"
             yield Finding(True, f"{name} is not named by the {named_by}")
@@ -403,7 +428,7 @@ class ToolkitRules:
     def judge_standing(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> Iterator[Finding]:
-        """Check whether everything can stand as it does at a proven pose."""
+        """Yield a finding where walls, jaws, locators or clamps cannot stand as they do at a pose."""
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
         if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
@@ -412,7 +437,7 @@ class ToolkitRules:
                 self.find_pressed_contacts(fixture, contacts, pose, outline),
             )
             written = [end for end in said if isinstance(end, WallContact)]
-            yield from flush_findings(self.wall_noun, ends, pose, met, written)
+            yield from check_flush(self.wall_noun, ends, pose, met, written)
         for jaw in self.lattices:
             if jaw.travel is not None:
                 yield from judge_opening(jaw, pose.travels[0])
@@ -436,12 +461,16 @@ class ToolkitRules:
                 )
 
     def fits(self, noun: str, numbers: Sequence[int]) -> bool:
-        """Return whether what stands still has columns or rows of such numbers, however it is shifted."""
+        """Return whether the fixed lattice has columns or rows (``noun``) of
+        these numbers, after any allowed shift.
+        """
         count, lowest = getattr(self.lattices[0], f"{noun}s"), min(numbers) if noun in self.from_lowest else 0
         return min(numbers) >= lowest and (count is None or max(numbers) - lowest < count)
 
     def find_crowding(self, fixture: Fixture) -> str:
-        """Return what stands in a blocked hole or overlaps as it is written, in one sentence without a full stop."""
+        """Return a sentence, without full stop, on the first peg in a blocked hole or
+        pair of bodies that overlap; else "".
+        """
         pegs = [(peg, self.carriers[peg.carrier]) for peg in fixture.pegs]
         for name, (peg, carrier) in zip(self.names, pegs, strict=True):
             blocked = [holes for holes in carrier.blocked if holes.column == peg.column]

@@ -37,13 +37,13 @@ from workhold.verification.ball_geometry import (
     make_line_side,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.tolerances import BODY_SLACK, HAIR, Finding, judge_slack, number
+from workhold.verification.tolerances import BODY_SLACK, HAIR, Finding, format_middle, judge_slack
 
 __all__ = [
     "OPPOSITE",
     "WAYS",
-    "Stroke",
-    "clamp_place",
+    "ClampStroke",
+    "name_clamp_place",
     "find_direction",
     "list_directions",
     "is_along_x",
@@ -58,32 +58,37 @@ __all__ = [
 
 
 def judge_opening(jaw: Carrier, separation: arb) -> Iterator[Finding]:
-    """Check whether a jaw can stand at a proven separation, in mm; met to a hair (see ``tolerances``)."""
+    """Yield a finding where a jaw's proven separation in mm is below its
+    smallest gap or above its largest opening.
+
+    Limits may be missed by ``HAIR``.
+    """
     assert jaw.travel is not None
     gap, limit = jaw.travel.least, jaw.travel.most
     yield from judge_slack(
         separation - gap + HAIR,
-        f"the opening of {number(separation)} mm is below the smallest gap of {gap:g} mm",
+        f"the opening of {format_middle(separation)} mm is below the smallest gap of {gap:g} mm",
         "the opening is exactly at the edge of the smallest gap",
     )
     if limit is not None:
         yield from judge_slack(
             limit - separation + HAIR,
-            f"the opening of {number(separation)} mm is above the largest opening of {limit:g} mm",
+            f"the opening of {format_middle(separation)} mm is above the largest opening of {limit:g} mm",
             "the opening is exactly at the edge of the largest opening",
         )
 
 
 def judge_nearest_rows(jaw: Carrier, lowest: int, separation: arb) -> Iterator[Finding]:
-    """Check whether a jaw that slides along its rows has its pegs in the nearest ones that the opening
-    allows.
+    """Yield a finding where a jaw that slides along its rows could have its pegs one row nearer.
 
     ``lowest`` is the first row in use. One row nearer, the jaw is one pitch farther from the wall.
     """
     assert jaw.travel is not None
     if lowest > 0:
         limit, wider = jaw.travel.most, separation + jaw.pitch[1]
-        words = f"its lowest row is {lowest}, and an opening of {number(wider)} mm would take one nearer"
+        words = (
+            f"its lowest row is {lowest}, and an opening of {format_middle(wider)} mm would take one nearer"
+        )
         if limit is None:
             yield Finding(True, words)
         else:
@@ -99,36 +104,44 @@ OPPOSITE = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 def list_directions(fixture: Fixture) -> tuple[str, ...]:
+    """Return the directions of a fixture's clamps, () where it has none."""
     return tuple((fixture.direction or "").split())
 
 
 def find_direction(clamp: Peg) -> str:
-    """Return the direction in which a clamp moves when it clamps; that of no clamp is empty."""
+    """Return the direction in which a clamp moves when it clamps ("-x" and the
+    like); "" for a peg that is no clamp.
+    """
     direction = clamp.carrier.rpartition(" ")[2]
     return direction if direction in WAYS else ""
 
 
 def is_along_x(clamp: Peg) -> bool:
+    """Return whether a clamp moves along x; False for one along y and for a peg that is no clamp."""
     return find_direction(clamp).endswith("x")
 
 
 def find_clamp_line(clamp: Peg) -> int:
-    """Return the number of the row or column along which a clamp moves."""
+    """Return the row of a clamp along x, or the column of a clamp along y, counted from 0."""
     return clamp.row if is_along_x(clamp) else clamp.column
 
 
 def count_quarter_turns(direction: str) -> int:
-    """Return how many quarter turns, counter-clockwise, make -x of the plate the direction of a clamp."""
+    """Return the number, 0 to 3, of counter-clockwise quarter turns from -x to a clamp's direction."""
     return ("-x", "-y", "+x", "+y").index(direction)
 
 
 def turn_hole_back(turns: int, column: int, row: int) -> tuple[int, int]:
-    """Return column and row of a hole on the plate turned back by ``turns`` quarter turns."""
+    """Return column and row of a hole after the plate is turned clockwise by
+    ``turns`` (0 to 3) quarter turns.
+    """
     return ((column, row), (row, -column), (-column, -row), (-row, column))[turns]
 
 
-def clamp_place(on: str, direction: str, column: int, row: int, is_bolted: bool) -> str:
-    """Return what the place of a clamp on a carrier is called: by its hole, or by its line where it is in none."""
+def name_clamp_place(on: str, direction: str, column: int, row: int, is_bolted: bool) -> str:
+    """Return the name of a clamp's place: its hole on the carrier ``on`` if bolted, else its row or
+    column.
+    """
     if is_bolted:
         return f"clamp {make_hole_name(on, column, row)}"
     return (
@@ -144,13 +157,13 @@ def measure_travel(peg: Peg, carrier: Carrier) -> float:
 
 
 @frozen
-class Stroke:
-    """What a clamp has to keep, whose tip moves along a line.
+class ClampStroke:
+    """The rules of a clamp whose tip moves along a line of holes.
 
     Parameters
     ----------
-    span : least and most in mm from its hole to its tip; None of one that is its tip alone.
-    wall : what the wall is called that it keeps clear of; empty where there is none.
+    span : least and most in mm from its hole to its tip; None for a clamp that is its tip alone.
+    wall : name of the wall that it keeps clear of; empty where there is none.
     """
 
     span: tuple[float, float] | None
@@ -164,11 +177,15 @@ class Stroke:
         pose: BallPose,
         outline: BallOutline,
     ) -> Iterator[Finding]:
-        """Check whether a clamp, bolted in its hole, reaches its place and clears wall, locators and part."""
+        """Yield a finding where a clamp's stroke is out of range, or the clamp
+        enters the wall, a locator or the part.
+
+        ``locators`` are contacts by name; ``name`` is the clamp's in messages.
+        """
         tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
         if self.wall:
             above = tip[1] - clamp.radius
-            words = f"{name} enters the {self.wall} by {number(-above)} mm"
+            words = f"{name} enters the {self.wall} by {format_middle(-above)} mm"
             at = f"{name} touches the {self.wall} exactly at the edge of what is allowed"
             yield from judge_slack(above + HAIR, words, at)
         hole = tip if self.span is None else clamp.hole
@@ -180,7 +197,7 @@ class Stroke:
             )
             yield from judge_slack(
                 apart + HAIR,
-                f"{name} meets {other}: they overlap by {number(-apart)} mm",
+                f"{name} meets {other}: they overlap by {format_middle(-apart)} mm",
                 f"{name} touches {other} exactly at the edge of what is allowed",
             )
         if self.span is None:
@@ -188,13 +205,13 @@ class Stroke:
         least, most = self.span
         yield from judge_slack(
             stroke - least + HAIR,
-            f"{name} is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its "
+            f"{name} is bolted {format_middle(stroke)} mm behind its tip, nearer than the {least:g} mm of its "
             "stroke",
             f"{name} is bolted exactly at the edge of the least of its stroke",
         )
         yield from judge_slack(
             most - stroke + HAIR,
-            f"{name} is bolted {number(stroke)} mm behind its tip, beyond the {most:g} mm of its stroke",
+            f"{name} is bolted {format_middle(stroke)} mm behind its tip, beyond the {most:g} mm of its stroke",
             f"{name} is bolted exactly at the edge of the most of its stroke",
         )
         if stroke > 0:
@@ -205,36 +222,38 @@ class Stroke:
             clear = compute_capsule_clearance(start, end, clamp.radius, outline.segments, enough=1.0)
             yield from judge_slack(
                 clear + BODY_SLACK,
-                f"{name} enters the workpiece between its hole and its tip by {number(-clear)} mm",
+                f"{name} enters the workpiece between its hole and its tip by {format_middle(-clear)} mm",
                 f"{name} touches the workpiece between its hole and its tip exactly at the edge of what is "
                 "allowed",
             )
 
     def judge_nearest_hole(self, name: str, stroke: arb, pitch: float) -> Iterator[Finding]:
-        """Check whether a clamp is bolted in the nearest hole, where there is one nearer by a pitch in mm."""
+        """Yield a finding where a clamp could be bolted one hole nearer: ``stroke``
+        less ``pitch`` mm is still in range.
+        """
         assert self.span is not None
         yield from judge_slack(
             self.span[0] - HAIR - (stroke - pitch),
-            f"{name} could be bolted one hole nearer, {number(stroke - pitch)} mm behind its tip",
+            f"{name} could be bolted one hole nearer, {format_middle(stroke - pitch)} mm behind its tip",
             f"one hole nearer {name} would be bolted exactly at the edge of the least of its stroke",
         )
 
     def judge_clearance_between(
         self, one: BallContact, other: BallContact, pose: BallPose
     ) -> Iterator[Finding]:
-        """Check whether two clamps, from their holes to their tips, keep clear of each other."""
+        """Yield a finding where two clamps, each from hole to tip with its radius, overlap."""
         tips = one.place(pose), other.place(pose)
         holes = tips if self.span is None else (one.hole, other.hole)
         apart = measure_piece_distance(*zip(tips, holes, strict=True)) - one.radius - other.radius
         yield from judge_slack(
             apart + HAIR,
-            f"the clamps meet: they overlap by {number(-apart)} mm",
+            f"the clamps meet: they overlap by {format_middle(-apart)} mm",
             "the clamps touch exactly at the edge of what is allowed",
         )
 
 
 def measure_piece_distance(one: tuple[Point, Point], other: tuple[Point, Point]) -> arb:
-    """Return the distance in mm of two straight pieces, each along x or y."""
+    """Return the distance in mm between two straight segments (start, end), each parallel to x or y."""
     beyond = []
     for a, b, c, d in zip(*one, *other, strict=True):
         beyond.append(arb(0).max(a.min(b) - c.max(d)).max(c.min(d) - a.max(b)))
@@ -244,10 +263,10 @@ def measure_piece_distance(one: tuple[Point, Point], other: tuple[Point, Point])
 def compute_capsule_clearance(
     start: Point, end: Point, radius: arb, sides: Iterable[Side], enough: float
 ) -> arb:
-    """Return the distance in mm from a capsule to the nearest of some sides, negative inside, at most
-    ``enough``.
+    """Return the distance in mm from a capsule to the nearest of some sides,
+    negative inside, at most ``enough``.
 
-    The ends of the capsule's middle line are apart.
+    The capsule's axis runs from start to end, which must differ.
     """
     piece = make_line_side(start, end)
     middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
@@ -260,7 +279,7 @@ def compute_capsule_clearance(
 
 
 def compute_piece_distance(piece: LineSide, side: Side) -> arb:
-    """Return the distance in mm between a straight piece and a side."""
+    """Return the distance in mm between a straight segment and a side."""
     nearest = side.compute_distance(piece.start).min(side.compute_distance(piece.end))
     nearest = nearest.min(piece.compute_distance(side.start)).min(piece.compute_distance(side.end))
     for place, distance in find_nearest_places(piece, side):
@@ -272,9 +291,14 @@ def compute_piece_distance(piece: LineSide, side: Side) -> arb:
 
 
 def find_nearest_places(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
-    """Yield the places in mm along a piece's line where it may be nearest to a side, with the distance there."""
+    """Yield (place, distance) where a segment's line may be nearest to a side:
+    mm from the segment's start, and mm.
+
+    Places may lie beyond the segment's ends. These are crossings with a line; of an arc also the foot from
+    its centre.
+    """
     if isinstance(side, ArcSide):
-        ray = side.from_center(piece.start)
+        ray = side.measure_from_center(piece.start)
         foot, off = -compute_dot_product(ray, piece.tangent), cross(ray, piece.tangent)
         square = side.radius * side.radius - off * off
         half = arb(0) if square < 0 else compute_square_root(square)
@@ -288,4 +312,5 @@ def find_nearest_places(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]
 
 
 def find_point_along(piece: LineSide, place: arb) -> Point:
+    """Return the point ``place`` mm from the segment's start along its line."""
     return piece.start[0] + place * piece.tangent[0], piece.start[1] + place * piece.tangent[1]

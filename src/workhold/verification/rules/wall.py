@@ -38,15 +38,15 @@ from workhold.verification.tolerances import (
     SAME,
     SPARE,
     Finding,
+    format_middle,
     judge_slack,
-    number,
 )
 
-__all__ = ["Jaw", "WallContact", "flush_findings", "make_wall_contacts"]
+__all__ = ["EndedWall", "WallContact", "check_flush", "make_wall_contacts"]
 
 
 @frozen(eq=False)
-class Support:
+class WallSupport:
     """A joint or a convex arc of an outline that may touch a wall.
 
     Parameters
@@ -78,36 +78,40 @@ class WallContact(BallContact):
 
     is_flush: ClassVar[bool] = True
 
-    piece: Support
+    piece: WallSupport
     faces: tuple[int, ...]
     length: arb
 
     @property
     def size(self) -> arb:
-        """How long the part lies on the wall."""
+        """The length in mm of the part's contact with the wall."""
         return self.length
 
     def compute_outward_normal(self, pose: BallPose) -> Point:
-        """Return the direction down, as the workpiece sees it."""
+        """Return the unit vector toward the wall (-y of the toolkit) in the part's frame."""
         return -pose.sine, -pose.cosine
 
     def compute_center_in_part(self, pose: BallPose) -> Point:
-        """Return the point that touches, in the workpiece's frame."""
+        """Return the point that touches the wall, in the part's frame in mm."""
         (x, y), (across, down) = self.piece.center, self.compute_outward_normal(pose)
         return x + self.piece.bow * across, y + self.piece.bow * down
 
     def place(self, pose: BallPose) -> Point:
-        """Return the point that touches, in the toolkit's frame."""
+        """Return the point that touches the wall, in the toolkit's frame in mm."""
         return self.piece.find_lowest_point(pose)
 
     def evaluate_equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
-        """Return how high its lowest point is, and the derivatives of that by theta, x, y and travel."""
+        """Return the y in mm of the lowest point, and its four derivatives by theta, x, y and travel."""
         x, y = self.piece.find_lowest_point(pose)
         return y, [x - pose.x, arb(0), arb(1), arb(0)]
 
 
 def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
-    """Return the two ends of the contact with a wall at a pose, from left to right, each on a side."""
+    """Return the left and the right end of the part's contact with a wall at a
+    pose; ``sides`` are those they are given.
+
+    Where nothing lies on the wall, the two lowest points are taken.
+    """
     lows = [
         (float(y.mid()), float(x.mid()), piece)
         for piece in list_supports(outline, pose)
@@ -115,7 +119,7 @@ def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPo
     ]
     lows.sort(key=lambda low: low[0])
     flat = [low for low in lows if abs(low[0]) <= 10 * AGREEMENT] or lows[:2]
-    left, right = (end_at([(sign * x, piece) for _, x, piece in flat]) for sign in (1, -1))
+    left, right = (find_end([(sign * x, piece) for _, x, piece in flat]) for sign in (1, -1))
     # A common tangent of two circles, or of joints.
     far = compute_norm((right.center[0] - left.center[0], right.center[1] - left.center[1]))
     square = far * far - (left.bow - right.bow) * (left.bow - right.bow)
@@ -126,28 +130,34 @@ def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPo
     ]
 
 
-def list_supports(outline: BallOutline, pose: BallPose) -> Iterator[Support]:
-    """Yield the joints of an outline, and convex arcs that run along x at their lowest point."""
+def list_supports(outline: BallOutline, pose: BallPose) -> Iterator[WallSupport]:
+    """Yield all convex arcs that have a horizontal tangent at their lowest
+    point, then all joints of an outline.
+    """
     down = -pose.sine, -pose.cosine
     for face, side in outline.faces.items():
         if isinstance(side, ArcSide) and side.sign > 0 and (side.whole or not side.measure_within(down) < 0):
-            yield Support(side.center, side.radius, (face,))
+            yield WallSupport(side.center, side.radius, (face,))
     before = {(float(side.end[0]), float(side.end[1])): face for face, side in outline.faces.items()}
     for face, side in outline.faces.items():
         if not (isinstance(side, ArcSide) and side.whole):
             x, y = side.start
-            yield Support(side.start, arb(0), tuple(sorted((before[float(x), float(y)], face))))
+            yield WallSupport(side.start, arb(0), tuple(sorted((before[float(x), float(y)], face))))
 
 
-def end_at(flat: Sequence[tuple[float, Support]]) -> Support:
-    """Return the piece at the least of some places: of an arc and the joint that it ends in the joint."""
+def find_end(flat: Sequence[tuple[float, WallSupport]]) -> WallSupport:
+    """Return the support with the least place of (place in mm, support); among
+    equal ones a joint rather than an arc.
+    """
     least = min(place for place, _ in flat)
     near = [low for low in flat if low[0] <= least + AGREEMENT]
     return min(near, key=lambda low: (float(low[1].bow.mid()), low[0]))[1]
 
 
-def find_touching_numbers(end: Support, outline: BallOutline, pose: BallPose) -> tuple[int, ...]:
-    """Return the numbers of what touches: of a joint the face that lies along the wall, where one does."""
+def find_touching_numbers(end: WallSupport, outline: BallOutline, pose: BallPose) -> tuple[int, ...]:
+    """Return the face of a joint that lies along the wall; without one, the
+    numbers of all faces of the support.
+    """
     for face in end.faces:
         side = outline.faces[face]
         if isinstance(side, LineSide):
@@ -160,13 +170,13 @@ def find_touching_numbers(end: Support, outline: BallOutline, pose: BallPose) ->
 
 
 @frozen(eq=False)
-class Stretch:
-    """What a part and a jaw have in common.
+class SharedStretch:
+    """The common stretch of a part and a jaw.
 
     Parameters
     ----------
     left, right : x of its ends in mm.
-    faces : numbers of what touches at each.
+    faces : numbers of the faces that touch at each end.
     """
 
     left: arb
@@ -180,7 +190,7 @@ class Stretch:
 
 
 @frozen(eq=False)
-class Jaw:
+class EndedWall:
     """A wall that has ends, beside a lattice of holes whose middle column is over its middle.
 
     Parameters
@@ -201,8 +211,10 @@ class Jaw:
         """x of its middle in mm."""
         return arb(self.columns - 1) * self.pitch / 2
 
-    def find_common_stretch(self, outline: BallOutline, pose: BallPose, shift: arb) -> Stretch | None:
-        """Return what a part has in common with the jaw once it is shifted along x in mm; None for nothing."""
+    def find_common_stretch(self, outline: BallOutline, pose: BallPose, shift: arb) -> SharedStretch | None:
+        """Return the common stretch once the part is shifted by ``shift`` mm along
+        x; None where part and jaw share none.
+        """
         first, last = self.middle - arb(self.width) / 2 - shift, self.middle + arb(self.width) / 2 - shift
         lefts: list[tuple[arb, int, tuple[int, ...]]] = []
         rights: list[tuple[arb, int, tuple[int, ...]]] = []
@@ -222,30 +234,33 @@ class Jaw:
             min((e for e in ends if abs(float((e[0] - at[0]).mid())) <= SAME), key=lambda end: end[1])[2]
             for ends, at in ((lefts, left), (rights, right))
         )
-        return Stretch(left[0] + shift, right[0] + shift, (first_faces, last_faces))
+        return SharedStretch(left[0] + shift, right[0] + shift, (first_faces, last_faces))
 
     def limit_contacts(
         self, ends: Sequence[WallContact], outline: BallOutline, pose: BallPose
     ) -> list[WallContact]:
-        """Return the ends of the common stretch at a pose instead of those of the whole contact; these if none."""
+        """Return the ends of the common stretch as contacts, or the given
+        ``ends`` where part and jaw share none.
+        """
         found = self.find_common_stretch(outline, pose, arb(0))
         if found is None:
             return [*ends]
         out = []
         for end, x, faces in zip(ends, (found.left, found.right), found.faces, strict=True):
             point = turn_vector((x - pose.x, -pose.y), pose.cosine, -pose.sine)
-            piece = Support(point, arb(0), faces)
+            piece = WallSupport(point, arb(0), faces)
             out.append(evolve(end, piece=piece, faces=faces, length=found.length))
         return out
 
     def judge(
         self, columns: Sequence[int], force_at: arb, outline: BallOutline, pose: BallPose
     ) -> Iterator[Finding]:
-        """Check whether the jaw holds the part where its force acts, and no other columns do so better.
+        """Yield a finding where the jaw does not reach the wall's force, or other
+        columns would hold the part better.
 
         The pegs stand in ``columns``, and the force of the wall acts at ``force_at``, x in mm.
         """
-        first, found = min(columns), dict[int, tuple[Stretch, arb]]()
+        first, found = min(columns), dict[int, tuple[SharedStretch, arb]]()
         for column in range(self.columns - (max(columns) - first)):
             shift = arb(column - first) * self.pitch
             stretch = self.find_common_stretch(outline, pose, shift)
@@ -259,7 +274,7 @@ class Jaw:
         if not -SPARE < inside - SAME < SPARE:
             yield from judge_slack(
                 inside - SAME,
-                f"the force of the {self.noun} acts {number(-inside)} mm beyond where both touch",
+                f"the force of the {self.noun} acts {format_middle(-inside)} mm beyond where both touch",
             )
         # What is this near to holding, or to being as long, may count or not.
         held = {k: stretch for k, (stretch, inside) in found.items() if inside > SAME + SPARE or k == first}
@@ -287,7 +302,9 @@ class Jaw:
 def find_stretches_on_line(
     outline: BallOutline, pose: BallPose
 ) -> Iterator[tuple[arb, arb, tuple[int, ...]]]:
-    """Yield the x in mm between which a part touches the line of a wall, and the numbers of what touches."""
+    """Yield (least x, greatest x, face numbers) in mm for each line, joint or
+    arc that touches a wall at a pose.
+    """
     for face, side in outline.faces.items():
         if isinstance(side, LineSide):
             ends = [turn_vector(point, pose.cosine, pose.sine) for point in (side.start, side.end)]
@@ -300,24 +317,25 @@ def find_stretches_on_line(
             yield x, x, piece.faces
 
 
-def flush_findings(
+def check_flush(
     noun: str,
     ends: Sequence[tuple[str, Peg, WallContact]],
     pose: BallPose,
     outline: BallOutline,
     stated: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
-    """Check whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
+    """Yield a finding where the part does not lie flush on a wall, or its two
+    ends are not where they are written.
 
-    ``ends`` are those of the whole contact, ``stated`` those that the file says: the ends of what the wall
-    reaches of it, the same if None.
+    ``ends`` are those of the whole contact, ``stated`` those that the file states: the ends of what the wall
+    reaches of it; None means the same. ``noun`` names the wall in messages.
     """
     (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
     yield from judge_slack(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
     for piece in list_supports(outline, pose):
         (x, low), face = piece.find_lowest_point(pose), piece.faces[0]
         yield from judge_slack(
-            low + 2 * FLUSH, f"the part enters the {noun} at face {face} by {number(-low)} mm"
+            low + 2 * FLUSH, f"the part enters the {noun} at face {face} by {format_middle(-low)} mm"
         )
         beyond = (left - x).max(x - right) - 2 * FLUSH
         if not (low > FLUSH / 2 or beyond < 0):
@@ -331,5 +349,5 @@ def flush_findings(
         for axis, written, derived in zip("xy", (peg.x, peg.y), place, strict=True):
             off = abs(derived - written)
             if not isnan(written) and not off < AGREEMENT:
-                words = f"the {axis} of {name} is {number(off)} mm from where the part touches"
+                words = f"the {axis} of {name} is {format_middle(off)} mm from where the part touches"
                 yield from judge_slack(AGREEMENT - off, words)
