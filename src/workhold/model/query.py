@@ -253,7 +253,7 @@ class Query(SearchQuestion):
             raise InputError("how thick the part is decides what straps hold: give its thickness.")
         if self.program is not None and self.part_height is None:
             raise InputError(
-                "how thick the part is decides what straps have in the way of: give its thickness."
+                "how thick the part is decides at which heights tools pass the straps: give its thickness."
             )
         not_done = {
             "a jaw force": (self.jaw_force is not None, "the force that each strap needs is told for loads"),
