@@ -74,7 +74,7 @@ def make_task_name(*content: Any) -> str:
     """Return the name of a task:
     a hash of this program and of bytes and plain data, in order, as 32 hexadecimal digits.
 
-    >>> name_of(b"part", {"best": 3}) == name_of(b"part", {"best": 3}), len(name_of())
+    >>> make_task_name(b"part", {"best": 3}) == make_task_name(b"part", {"best": 3}), len(make_task_name())
     (True, 32)
     """
     digest = sha256(identify_program().encode())

@@ -452,7 +452,7 @@ def read(row: ToolkitField, word: str, unit: Unit) -> Any:
 def make_entry_name(row: ToolkitField, word: str) -> str:
     """Return what an entry of a field's list adds to the name of a toolkit.
 
-    >>> name_of(COLUMNS, "1"), name_of(PEG_RADIUS, "2.5"), name_of(PITCH, "8")
+    >>> make_entry_name(COLUMNS, "1"), make_entry_name(PEG_RADIUS, "2.5"), make_entry_name(PITCH, "8")
     ('1 column', 'radius 2.5', 'pitch 8')
     """
     if row.form == "count":

@@ -161,7 +161,7 @@ Attributes = dict[str, str]
 def format_number(value: float) -> str:
     """Return a page coordinate as text with at most three decimals, without trailing zeros or negative zero.
 
-    >>> number(2.0), number(-0.0001), number(1.23456)
+    >>> format_number(2.0), format_number(-0.0001), format_number(1.23456)
     ('2', '0', '1.235')
     """
     text = f"{value:.3f}".rstrip("0").rstrip(".")
@@ -412,7 +412,7 @@ class LengthUnit:
     --------
     >>> from workhold.units import INCH
     >>> mm, inch = LengthUnit.in_mm(), LengthUnit.from_typical_length(INCH, 10.0)
-    >>> mm.format_length(24.125), inch.format_length(-25.4), mm.number(-0.0)
+    >>> mm.format_length(24.125), inch.format_length(-25.4), mm.format_number(-0.0)
     ('24.125 mm', '−1.0000 in', '0.000')
     """
 

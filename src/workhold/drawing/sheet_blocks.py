@@ -441,7 +441,7 @@ def write_quality(column: TextColumn, sheet: SetupSheet) -> None:
 def describe_load(load: Load, lengths: LengthUnit) -> str:
     """Return a load in words: force, place and direction in the part's frame, and moment.
 
-    >>> load_words(Load(((10, 5),), 200, (30, 30), -500), LengthUnit.in_mm(1))
+    >>> describe_load(Load(((10, 5),), 200, (30, 30), -500), LengthUnit.in_mm(1))
     '200 N at x 10.0, y 5.0 mm, towards 30°; moment −0.5 N m'
     """
     unit, words = lengths.unit, []

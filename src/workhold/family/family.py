@@ -190,7 +190,7 @@ def make_family(
     >>> def triangle(width, height):
     ...     return Workpiece.from_loops("", [[[0, 0, 0], [width, 0, 0], [width / 3, height, 0]]])
     >>> sizes = (40, 35), (50, 40), (62, 31)
-    >>> parts = [Asked(str(size), Query(triangle(*size), vise, rank_by=by)) for size in sizes]
+    >>> parts = [MemberRequest(str(size), Query(triangle(*size), vise, rank_by=by)) for size in sizes]
     >>> [(point.setups, round(point.loss, 2)) for point in make_family(parts).points]
     [(1, 1.06), (2, 1.03), (3, 1.0)]
     """

@@ -93,7 +93,7 @@ def read_number_or_name(part: int | str | None) -> int | str | None:
 
     Examples
     --------
-    >>> number_or_name("2"), number_or_name("base plate"), number_or_name(None)
+    >>> read_number_or_name("2"), read_number_or_name("base plate"), read_number_or_name(None)
     (2, 'base plate', None)
     """
     text = part.strip() if isinstance(part, str) else ""

@@ -110,7 +110,7 @@ def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> HoleSelect
     Examples
     --------
     >>> parse_hole_name("R-A3", ("left", "right"), "jaw")
-    Holes(carrier='right', column=0, row=2)
+    HoleSelection(carrier='right', column=0, row=2)
     """
     match = NAME.fullmatch(name.strip().upper())
     carrier = (
@@ -344,7 +344,7 @@ class Carrier:
 
         >>> from workhold import Plate
         >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
-        >>> clamp.place_name(0, 2)
+        >>> clamp.name_place(0, 2)
         'clamp row 3'
         """
         if self.is_wall:

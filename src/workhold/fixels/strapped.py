@@ -65,7 +65,7 @@ class StrapPlate(Toolkit):
     --------
     >>> from workhold import StrapPlate
     >>> plate = StrapPlate(pitch=20, peg_radius=3, columns=8, rows=6, bolt_pitch=20, bolt_offset=10)
-    >>> plate.strap_set.bolts.columns, plate.strap_set.bolts.place(0, 0)
+    >>> plate.strap_set.bolts.columns, plate.strap_set.bolts.compute_hole_center(0, 0)
     (7, (10.0, 10.0))
     """
 

@@ -214,7 +214,7 @@ def find_hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = 
     >>> from workhold.geometry.segment import Line
     >>> points = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
     >>> outline = [Line(a, b) for a, b in zip(points, points[1:] + points[:1])]
-    >>> [(edge.start.faces, edge.end.faces) for edge in hull_edges(outline)]
+    >>> [(edge.start.faces, edge.end.faces) for edge in find_hull_edges(outline)]
     [((0,), (0,)), ((1,), (1,)), ((1, 2), (3, 4)), ((4,), (4,)), ((5,), (5,))]
     """
     pieces = HullPieces.from_segments(segments, counts)
@@ -268,7 +268,7 @@ def find_touches_along(
     >>> from workhold.geometry.segment import Line
     >>> points = [(0, 0), (2, 0), (3, 1), (5, 1), (6, 0), (9, 0), (9, 4), (0, 4)]
     >>> outline = [Line(a, b) for a, b in zip(points, points[1:] + points[:1])]
-    >>> [(one.low, one.high, one.faces) for one in find_touches_along(hull_edges(outline)[0], outline)][:2]
+    >>> [(one.low, one.high, one.faces) for one in find_touches_along(find_hull_edges(outline)[0], outline)][:2]
     [(0.0, 2.0, (0,)), (6.0, 9.0, (4,))]
     """
     (x, y), (tx, ty), length = edge.start.point, edge.tangent, edge.length

@@ -397,7 +397,7 @@ def compute_inner_arc(side: Line, share: float) -> tuple[float, float]:
 
     Examples
     --------
-    >>> inner_arc(Line((0, 0), (1, 0)), 0.0) == (pi / 2, pi / 2)
+    >>> compute_inner_arc(Line((0, 0), (1, 0)), 0.0) == (pi / 2, pi / 2)
     True
     """
     nx, ny = -side.tangent[1], side.tangent[0]

@@ -53,7 +53,7 @@ def compute_force_ratios(reactions: Array) -> tuple[Array, Array]:
 
     Examples
     --------
-    >>> low, high = ratios(np.array([[[1.0, 0.0], [-0.5, 1.0], [0.5, 0.0]]]))
+    >>> low, high = compute_force_ratios(np.array([[[1.0, 0.0], [-0.5, 1.0], [0.5, 0.0]]]))
     >>> float(low[0]), float(high[0])
     (0.5, inf)
     """
@@ -237,7 +237,7 @@ def describe_tightening_order(fixture: Fixture) -> str:
     >>> tips = [Peg(f"clamp {d}", 4, 1, 66.0, 20.0, 2, 0.5, f"clamp {hole}") for d, hole in where]
     >>> def words(low, high):
     ...     pair = ClampPair((0, 0), (low, high), (), 1)
-    ...     return order_words(Fixture("clamp2", tuple(tips), Pose(0, 0, 0), 0, {}, "-x -y", pair))
+    ...     return describe_tightening_order(Fixture("clamp2", tuple(tips), Pose(0, 0, 0), 0, {}, "-x -y", pair))
     >>> words(0.0, float("inf"))
     'Tighten either clamp first, each as hard as it needs: neither lifts the part off a locator.'
     >>> words(0.0, 2.468).split(": ")  # doctest: +NORMALIZE_WHITESPACE

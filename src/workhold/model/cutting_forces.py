@@ -394,7 +394,7 @@ def compute_engaged_tooth_sum(teeth: int, engaged: float, exponent: float) -> fl
     Examples
     --------
     >>> from math import pi
-    >>> teeth_together(2, pi, 0.8), teeth_together(1, pi / 6, 1.0)
+    >>> compute_engaged_tooth_sum(2, pi, 0.8), compute_engaged_tooth_sum(1, pi / 6, 1.0)
     (1.0, 0.5)
     """
     pitch = 2 * pi / teeth

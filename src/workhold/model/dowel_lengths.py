@@ -57,7 +57,7 @@ def list_sold_dowels() -> tuple[DowelLengths, ...]:
 def find_dowel_lengths(diameter: float) -> DowelLengths | None:
     """Return the lengths in which dowels of a diameter (mm) are sold; None where the diameter is not sold.
 
-    >>> lengths_of(6.0).lengths[:4], lengths_of(6.35).standard, lengths_of(7.0)
+    >>> find_dowel_lengths(6.0).lengths[:4], find_dowel_lengths(6.35).standard, find_dowel_lengths(7.0)
     ((14.0, 16.0, 18.0, 20.0), 'ASME B18.8.2', None)
     """
     return next((one for one in list_sold_dowels() if abs(one.diameter - diameter) < SAME_SIZE), None)
@@ -69,7 +69,7 @@ def list_standouts(diameter: float) -> tuple[float, ...]:
 
     The result is empty for a diameter that is not sold.
 
-    >>> standouts(6.0)[:4]
+    >>> list_standouts(6.0)[:4]
     (5.0, 7.0, 9.0, 11.0)
     """
     known = find_dowel_lengths(diameter)

@@ -120,11 +120,11 @@ def describe_turn(before: str, now: str) -> str:
 
     Examples
     --------
-    >>> turn_words("z", "-z")
+    >>> describe_turn("z", "-z")
     'turned over about the y axis of the first drawing, by half a turn'
-    >>> turn_words("z", "z")
+    >>> describe_turn("z", "z")
     'the same side up'
-    >>> turn_words("z", "x")
+    >>> describe_turn("z", "x")
     'turned by 120° about the line x = y = z of the first drawing'
     """
     turn = compute_standing_rotation(now) @ compute_standing_rotation(before).T

@@ -73,7 +73,7 @@ def to_coefficients(value: Any) -> Coefficients | None:
 
     Examples
     --------
-    >>> coefficients_of({"plate": 0.2, "jaw": 0.15})
+    >>> to_coefficients({"plate": 0.2, "jaw": 0.15})
     (('jaw', 0.15), ('plate', 0.2))
     """
     if value is None:

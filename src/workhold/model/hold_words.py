@@ -62,7 +62,7 @@ def format_set_force(force: float, unit: Unit) -> str:
     """Return a jaw force in N as text in the unit, first rounded up to two significant digits of newtons.
 
     >>> from workhold.units import MILLIMETRE
-    >>> force_words(3432.8, MILLIMETRE)
+    >>> format_set_force(3432.8, MILLIMETRE)
     '3500 N'
     """
     return unit.format_force(round_force_up(force))

@@ -63,7 +63,7 @@ def choose_hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
 
     Return the usual order, :data:`HOLD_RANKING`, for None and for an order of fixtures with pegs.
 
-    >>> hold_ranking(["clamp-needed", "grip"])
+    >>> choose_hold_ranking(["clamp-needed", "grip"])
     ('clamp_needed', 'grip')
     """
     keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or HOLD_RANKING]

@@ -74,7 +74,7 @@ def choose_part_zero(
     Examples
     --------
     >>> far = Workpiece.from_loops("plate", [[[2000, 0, 0], [2040, 0, 0], [2040, 20, 0], [2000, 20, 0]]])
-    >>> [part_zero(far, asked).point for asked in (None, "centre", "2010,5")]
+    >>> [choose_part_zero(far, asked).point for asked in (None, "centre", "2010,5")]
     [(2000.0, 0.0), (2020.0, 10.0), (2010.0, 5.0)]
     """
     x0, y0, x1, y1 = workpiece.bounds

@@ -115,7 +115,7 @@ def is_run(rows: Sequence[Sequence[float]]) -> bool:
 def interpolate_run(rows: RunRows, share: float) -> Band:
     """Return the lower and upper height in mm of a run at a share of its segment; the run is not empty.
 
-    >>> run_at(((0.0, 0.0, 6.0), (1 / 3, 0.0, 7.0), (2 / 3, 0.0, 8.0), (1.0, 0.0, 9.0)), 0.5)
+    >>> interpolate_run(((0.0, 0.0, 6.0), (1 / 3, 0.0, 7.0), (2 / 3, 0.0, 8.0), (1.0, 0.0, 9.0)), 0.5)
     (0.0, 7.5)
     """
     last = next((k for k in range(3, len(rows) - 1, 3) if rows[k][0] >= share), len(rows) - 1)

@@ -81,7 +81,7 @@ def read_jaw_stiffness(jaw: str | float) -> float:
 
     Examples
     --------
-    >>> jaw_stiffness("screw"), jaw_stiffness("constant"), jaw_stiffness("2.5")
+    >>> read_jaw_stiffness("screw"), read_jaw_stiffness("constant"), read_jaw_stiffness("2.5")
     (inf, 0.0, 2.5)
     """
     if isinstance(jaw, str):

@@ -74,7 +74,7 @@ def compute_stresses(force: Any, height: Any, diameter: Any) -> Any:
     """Return the largest bending stresses in MPa of
     cantilevers; parameters as of :func:`compute_deflections`.
 
-    >>> round(stresses(500.0, 38.0, 6.0))
+    >>> round(compute_stresses(500.0, 38.0, 6.0))
     896
     """
     return 32 * force * height / (pi * diameter**3)

@@ -129,7 +129,7 @@ class ToolClearance:
 def rename_element(element: str, before: Sequence[str], after: Sequence[str]) -> str:
     """Return the name of an element, such as "peg L-A1", with its hole renamed if it is among those before.
 
-    >>> renamed("peg B2", ["A1", "B2"], ["C1", "D2"]), renamed("clamp A1", ["clamp A1"], ["clamp C1"])
+    >>> rename_element("peg B2", ["A1", "B2"], ["C1", "D2"]), rename_element("clamp A1", ["clamp A1"], ["clamp C1"])
     ('peg D2', 'clamp C1')
     """
     names = dict(zip(before, after, strict=True))

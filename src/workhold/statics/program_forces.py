@@ -92,7 +92,7 @@ def format_length(value: float, unit: Unit) -> str:
     """Return a length in mm as text in the given unit, without trailing zeros, as programs write it.
 
     >>> from workhold.units import INCH, MILLIMETRE
-    >>> short(20.0, MILLIMETRE), short(-0.00001, MILLIMETRE), short(25.4, INCH)
+    >>> format_length(20.0, MILLIMETRE), format_length(-0.00001, MILLIMETRE), format_length(25.4, INCH)
     ('20', '0', '1')
     """
     return f"{round(value / unit.millimetres, 2 if unit.millimetres == 1 else 3) + 0.0:.10g}"

@@ -25,7 +25,7 @@ def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     --------
     >>> import workhold
     >>> part = workhold.Workpiece.from_loops("block", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
-    >>> why_first(workhold.design(part, workhold.Plate(pitch=20, peg_radius=3, clamps=2), best=5))
+    >>> explain_why_first(workhold.design(part, workhold.Plate(pitch=20, peg_radius=3, clamps=2), best=5))
     'First: no warning; location error 0.0392 mm, within a tenth of the least; as drawn.'
     """
 

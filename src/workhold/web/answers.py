@@ -55,7 +55,7 @@ PLACE = re.compile(r"\((-?\d[\d.eE+-]*), (-?\d[\d.eE+-]*)\)")
 def find_first_place(sentence: str) -> dict[str, float] | None:
     """Return the first "(x, y)" that a sentence names as {"x": x, "y": y}; None where it names none.
 
-    >>> place_in("loop 0 crosses itself at (1.5, -2): mend it.")
+    >>> find_first_place("loop 0 crosses itself at (1.5, -2): mend it.")
     {'x': 1.5, 'y': -2.0}
     """
     match = PLACE.search(sentence)
