@@ -120,7 +120,7 @@ HOMES = {
 def import_object(name: str, home: str) -> Any:
     """Import and return an object.
 
-    ``home`` is its module, as "module" when the object is called ``name`` there, or "module:other_name".
+    ``home`` is its module; or "module:other_name", if the object is called other than ``name`` there.
     """
     module, _, known_as = home.partition(":")
     return getattr(import_module(module), known_as or name)

@@ -20,7 +20,7 @@ def open_closed_streams() -> None:
 
 
 def run() -> NoReturn:
-    """Run the command line and exit; Ctrl-C while modules are being imported exits like a later one."""
+    """Run the command line and exit; Ctrl-C exits in the same way during imports as during the command."""
     open_closed_streams()
     try:
         end_on_signals()

@@ -82,7 +82,7 @@ class ArchiveMember:
 
     Parameters
     ----------
-    name : of the member.
+    name : name of the member.
     start : byte of the file at which its local header begins.
     size : bytes of its content.
     checksum : CRC-32 of the content written so far.
@@ -132,8 +132,8 @@ class ArchiveWriter:
     ----------
     stream : an empty file opened for writing that can seek.
     columns : formats of the columns by name, in the order in which :meth:`add` takes them.
-    rows : most rows that will be added. Space in the file is reserved for so many; what is not used stays
-        empty.
+    rows : upper limit of the number of rows that will be added. Space for all of them is reserved in the
+        file; unused space stays empty.
     """
 
     stream: BinaryIO
@@ -171,7 +171,8 @@ class ArchiveWriter:
         self.done += len(block[0])
 
     def shorten(self) -> None:
-        """Set the row count of every column, in its header and here, to the number of rows that were added.
+        """Set the row count of every column to the number of rows that were added, in the columns' headers
+        and in the writer's own state.
 
         The column's data stay in place: the header's length does not depend on the row count.
         """
@@ -189,7 +190,7 @@ class ArchiveWriter:
 
         Parameters
         ----------
-        name : of the text's member.
+        name : name of the member that is the text.
         text : written as UTF-8; lone surrogates become ``\udXXX`` escapes.
         mark : written as the comment of the ZIP file, which are its last bytes.
         """
@@ -219,8 +220,8 @@ def extend_checksum_difference(difference: int, size: int) -> int:
     """Return the XOR of the CRC-32s of two byte strings
     after both have been extended by ``size`` equal bytes.
 
-    ``difference`` is the XOR of their CRC-32s before. Each bit that follows multiplies the difference by x,
-    modulo the polynomial.
+    ``difference`` is the XOR of the CRC-32s before that. Each bit that is appended multiplies the difference
+    by x, modulo the polynomial of CRC-32.
 
     Reference: M. Adler, zlib, ``crc32_combine``.
     """
@@ -265,7 +266,8 @@ class DirectoryCheckedFile(io.FileIO):
     """A file for ``zipfile`` whose reads are limited to ``MOST_DIRECTORY`` bytes."""
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """Read ``size`` bytes, or for None or a negative size those to the end, at most ``MOST_DIRECTORY``.
+        """Return up to ``size`` bytes; for None or a negative size the bytes up to the
+        end of the file, but at most ``MOST_DIRECTORY``.
 
         Raises
         ------
@@ -283,14 +285,14 @@ def map_archive(
     """Return the text of an archive and its columns by name, read-only arrays that are mapped into memory.
 
     Bytes of a column are read from the disk when they are accessed. Nothing in the file is trusted: members
-    must be stored uncompressed, inside the file and without overlap, and an array's header must give just as
-    many rows as there are bytes for.
+    must be stored uncompressed, inside the file and without overlap, and the number of rows in an array's
+    header must agree with the number of its bytes.
 
     Parameters
     ----------
-    columns : formats by name of the columns to return, or a function that derives them from the text; further
-        members are ignored.
-    name : of the text's member.
+    columns : formats by name of the columns to return, or a function that derives these formats from the
+        text; other members are ignored.
+    name : name of the member that is the text.
     whole : read the columns once and compare their checksums; the text's is always compared.
 
     Raises
@@ -338,7 +340,7 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
 
     Parameters
     ----------
-    members : with names among ``names``.
+    members : members of the archive whose names are in ``names``.
     spans : byte ranges (first, end) of members in the file, in any order.
     """
     found = [info.filename for info in members]
@@ -353,8 +355,8 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
 def find_member_span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
     """Return the byte range (first, end) of a member's content in the file; ``end`` is excluded.
 
-    Raises BadZipFile for a compressed or encrypted member and for one that does not lie inside the file, and
-    struct.error when its local header does not.
+    Raises BadZipFile for a compressed or encrypted member, and for a member whose content reaches beyond the
+    end of the file; struct.error when even its local header does.
     """
     if info.compress_type != ZIP_STORED or info.flag_bits & 1 or info.compress_size != info.file_size:
         raise BadZipFile(f"{info.filename} is packed, so it cannot be mapped into memory")
@@ -380,8 +382,8 @@ def map_column(content: mmap.mmap, first: int, end: int, name: str, column: Colu
     """Return the column (N, ...) whose ``.npy`` file takes
     the bytes ``first`` to ``end``, as a read-only view.
 
-    N is the number of rows for which there are bytes. Raises BadZipFile when the header does not give the
-    column's type and row shape and N rows, and struct.error when there are too few bytes for a header.
+    N follows from the number of bytes after the header. Raises BadZipFile when the header does not state the
+    type and row shape of ``column`` and N rows, and struct.error when there are too few bytes for a header.
     """
     (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
     rows, rest = divmod(end - first - 10 - length, column.row_bytes)

@@ -51,10 +51,12 @@ def verify(
     Parameters
     ----------
     source : the result, or the path of its file.
-    complete : also answer the query again, and compare which fixtures there are, how many, and the account of
-        the search.
-    threads, cancel : of that search, see :func:`workhold.answer`; when it is cancelled, nothing is compared.
-    progress : called as ``progress(fraction done, count)``: of fixtures not proven, then of fixtures found.
+    complete : also answer the query again, and compare the fixtures, their number, and the account of the
+        search.
+    threads, cancel : for this second search, see :func:`workhold.answer`; when it is cancelled, nothing is
+        compared.
+    progress : called as ``progress(fraction done, count)``. The count is that of fixtures not proven, and
+        during the second search that of fixtures found.
 
     Raises
     ------
@@ -115,7 +117,7 @@ def find_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
     """Yield the differences between a listing and a new search
     of its query, one sentence each, without a full stop.
 
-    For a listing that says it is incomplete, only surplus fixtures and too large counts are differences.
+    In a listing that says it is incomplete, missing fixtures and too small counts are no differences.
     """
     if listing.query.toolkit.strap_set is not None:
         yield from find_seat_differences(listing, result)
@@ -172,7 +174,7 @@ def find_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
 
 
 def find_hold_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
-    """Yield the differences, as :func:`find_differences`, for fixtures of flat jaws.
+    """Yield the differences that :func:`find_differences` yields, for fixtures of flat jaws.
 
     Two such fixtures are the same when angle, parallels and stop agree.
     """
@@ -194,10 +196,10 @@ def find_hold_differences(listing: WrittenListing, result: Result) -> Iterator[s
 
 
 def find_seat_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
-    """Yield the differences, as :func:`find_differences`, for seats under strap clamps.
+    """Yield the differences that :func:`find_differences` yields, for seats under strap clamps.
 
-    Seats are matched by :func:`seat_key`. Also compared is the clamping force that the best straps of each
-    need.
+    Seats are matched by :func:`make_seat_key`. The clamping force that the best straps of each seat need is
+    compared, too.
     """
     plate = listing.query.toolkit.plates[0]
     mine, theirs = ({make_seat_key(one, plate): one for one in some} for some in (result, listing.fixtures))
@@ -224,11 +226,12 @@ def find_seat_differences(listing: WrittenListing, result: Result) -> Iterator[s
 
 
 def make_seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, ...], float, float]:
-    """Return a key that is equal for two seats when one is the other, moved along its plate by whole pitches.
+    """Return a key that is equal for two seats that differ only by a
+    movement along the plate by whole pitches.
 
-    The key is the angle in degrees in [0, 360), the peg holes as (column, row) flattened and counted from the
-    least column and row used, and x and y in mm of the part's pose from the centre of the hole at that column
-    and row.
+    The key has the angle in degrees in [0, 360); the holes of the pegs as (column, row), flattened into one
+    tuple; and x and y in mm of the part's pose. Columns and rows count from the least column and the least
+    row used, x and y from the centre of the hole there.
     """
     column, row = (min(getattr(peg, name) for peg in fixture.pegs) for name in ("column", "row"))
     holes = sorted((peg.column - column, peg.row - row) for peg in fixture.pegs)
@@ -238,9 +241,11 @@ def make_seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, .
 
 
 def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
-    """Return the index of each flat-jaw fixture by its key: angle in degrees, parallels in mm, stop.
+    """Return the index of each flat-jaw fixture in ``fixtures`` by its key
+    (angle in degrees, parallels in mm, stop).
 
-    Of fixtures with the same key the last one's index is kept. Fixtures with other holds are skipped.
+    If several fixtures have the same key, the index is that of the last one. Fixtures with other holds are
+    skipped, but counted in the index.
     """
     return {
         (round(one.pose.theta_deg, 4) % 360, round(one.hold.parallels, 6), one.hold.stop): place
@@ -250,14 +255,14 @@ def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, 
 
 
 def find_first_difference(written: Any, derived: Any, key: str = "") -> str:
-    """Return the key under which the first value differs;
-    "" where all values of ``derived`` are in ``written``.
+    """Return the outermost key under which a value of ``derived`` differs from that of ``written``, or is
+    missing there; "" for no difference.
 
     Parameters
     ----------
     written, derived : nested dicts and lists of values; numbers that differ by at most ``SAME_SEATING``
         agree, and keys that only ``written`` has are ignored.
-    key : of these values in what contains them; inside a dict the outermost key is returned.
+    key : key under which these values were found, for recursive calls; "" at the outermost level.
     """
     if isinstance(derived, dict):
         pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
@@ -282,8 +287,8 @@ def format_count(number: int) -> str:
 
 
 def describe_fixture(fixture: Fixture) -> str:
-    """Return the type, the direction, the holes and the angle
-    of a fixture in words, to follow "the first of them".
+    """Return the type, the direction, the holes and the angle of a fixture in
+    words that can follow "the first of them".
     """
     holes = ", ".join(peg.hole for peg in fixture.pegs)
     direction = "" if fixture.direction is None else f" {fixture.direction}"
@@ -291,7 +296,7 @@ def describe_fixture(fixture: Fixture) -> str:
 
 
 def list_proof_numbers(proof: ProofReport) -> dict[str, int]:
-    """Return the numbers of a proof report by field name: all its fields but ``undecided``."""
+    """Return the numbers of a proof report by field name: all fields except ``undecided``."""
     names = (attribute.name for attribute in fields(ProofReport) if attribute.name != "undecided")
     return {name: getattr(proof, name) for name in names}
 
@@ -307,15 +312,15 @@ def find_other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
 
 
 def find_other_entries(written: ProofReport, derived: ProofReport) -> Iterator[str]:
-    """Yield one sentence when the undecided candidates of two proofs differ, else nothing.
+    """Yield one sentence if the undecided candidates of two proofs differ, otherwise nothing.
 
-    Candidates are the same when all but their last field agree, and their orientations to
-    ``SAME_ORIENTATION``.
+    Two candidates are the same when all fields except the last agree; orientations agree if they differ by
+    less than about ``SAME_ORIENTATION``.
     """
 
     def key(entry: UndecidedCandidate) -> tuple[Any, ...]:
-        """Return all fields of an entry but its last, with
-        the orientation in steps of ``SAME_ORIENTATION``.
+        """Return all fields of an entry except the last, with the orientation as a whole number of steps of
+        ``SAME_ORIENTATION``.
         """
         *whole, theta, reason, _ = astuple(entry)
         return *whole, round(theta / SAME_ORIENTATION) % round(360 / SAME_ORIENTATION), reason

@@ -121,7 +121,8 @@ def list_causes(error: BaseException | None, *, or_context: bool = False) -> Ite
 
     Parameters
     ----------
-    or_context : follow ``__context__``, the error that was being handled, where there is no ``__cause__``.
+    or_context : whether to follow ``__context__`` (the error that was being handled) where there is no
+        ``__cause__``.
     """
     # An error that was raised from itself is its own cause.
     passed: list[BaseException] = []
@@ -134,7 +135,8 @@ def list_causes(error: BaseException | None, *, or_context: bool = False) -> Ite
 def lacks_memory(error: BaseException | None) -> bool:
     """Return whether an error, or one of its causes, says that memory was lacking.
 
-    That is a MemoryError, the error number ENOMEM, or one of the texts in ``NO_MEMORY``.
+    That is so for a MemoryError, for the error number ENOMEM, and for a message with one of the texts in
+    ``NO_MEMORY``.
     """
     return any(
         isinstance(one, MemoryError)
@@ -147,7 +149,7 @@ def lacks_memory(error: BaseException | None) -> bool:
 def quote_value(value: object) -> str:
     """Return a value as shown in a message: numbers as written, all else as its ``repr``.
 
-    Longer texts are cut in the middle to ``LONGEST_VALUE`` characters.
+    Texts longer than ``LONGEST_VALUE`` characters are shortened to that length in the middle.
 
     >>> quote_value("12"), quote_value(2.5)
     ("'12'", '2.5')
@@ -157,12 +159,12 @@ def quote_value(value: object) -> str:
 
 
 def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
-    """Raise an error unless a value is an instance of a type.
+    """Raise InputError unless a value is an instance of the type ``kind``.
 
     Parameters
     ----------
-    name : of the value, for the beginning of the error message.
-    remedy : what to give instead, for its end.
+    name : name of the value, for the beginning of the error message.
+    remedy : advice on what to give instead, for the end of the error message.
 
     Raises
     ------

@@ -49,12 +49,12 @@ __all__ = [
 def convert_real(value: Any, name: str = "a number") -> float:
     """Return a number as a float; inf or -inf for a whole number too large for a float.
 
-    Anything with ``__float__`` and no dimensions counts as a number, also NumPy scalars, NaN and inf. Not a
-    number: text, also of digits, bytes, bool, None and arrays that have a dimension.
+    Anything with ``__float__`` and no dimensions counts as a number, also NumPy scalars, NaN and inf. These
+    are no numbers: text (also of digits), bytes, bool, None, and arrays that have a dimension.
 
     Parameters
     ----------
-    name : of the value, for the beginning of the error message.
+    name : name of the value, for the beginning of the error message.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def convert_real(value: Any, name: str = "a number") -> float:
 
 
 def name_number_fields(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
-    """Return an attrs class's fields, with errors of :func:`convert_real` naming the field.
+    """Return the fields of an attrs class, changed so that errors of :func:`convert_real` name the field.
 
     For the argument ``field_transformer`` of ``attrs.define``. Fields with another converter stay as they
     are.
@@ -121,7 +121,7 @@ def make_real_array(values: Any, name: str) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    name : of a value, for the beginning of an error message.
+    name : name of a value, for the beginning of an error message.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def check_count(name: str, value: Any) -> int | None:
 
     Parameters
     ----------
-    name : of what is counted, for the beginning of the error message.
+    name : name of what is counted, for the beginning of the error message.
 
     Raises
     ------
@@ -204,16 +204,16 @@ THREAD_SPACE = 8 << 20
 
 
 def refuse_little_space(needed: int, what: str, remedy: str) -> None:
-    """Raise an error when this process is limited to less address space than some work needs.
+    """Raise InputError when this process is limited to less address space than some work needs.
 
-    Libraries would end the process without a message. Without a limit, or where the system has none, nothing
-    is refused.
+    Otherwise libraries would end the process without a message. Without a limit, or where the system has
+    none, nothing is refused.
 
     Parameters
     ----------
     needed : bytes.
     what : the work, for the beginning of the error message.
-    remedy : what to do instead, for its end.
+    remedy : advice on what to do instead, for the end of the error message.
 
     Raises
     ------
@@ -234,13 +234,14 @@ def refuse_little_space(needed: int, what: str, remedy: str) -> None:
 
 
 def refuse_long(name: str, value: float) -> None:
-    """Raise InputError when a length in mm is above ``MOST_LENGTH`` in size; NaN passes."""
+    """Raise InputError when a length in mm is greater in absolute value than ``MOST_LENGTH``; NaN passes."""
     if abs(value) > MOST_LENGTH:
         raise InputError(f"{name} {value:g} is beyond {MOST_LENGTH:g} mm: check the number and its unit.")
 
 
 def refuse_strong(name: str, value: float, unit: str = "N") -> None:
-    """Raise InputError when a force in N or a moment in N·mm is above ``MOST_FORCE`` in size; NaN passes.
+    """Raise InputError when a force in N or a moment in N·mm is greater in
+    absolute value than ``MOST_FORCE``; NaN passes.
 
     ``unit`` is only shown in the message; the value is not converted.
     """
@@ -251,14 +252,15 @@ def refuse_strong(name: str, value: float, unit: str = "N") -> None:
 def refuse_many_steps(
     pitch: tuple[float, float], columns: int | None, rows: int | None, diameter: float, features: int
 ) -> None:
-    """Raise an error when two pegs can stand on a lattice in too many ways.
+    """Raise InputError when a pair of pegs can stand on a lattice in too many ways.
 
     The ways are counted as lattice steps from one peg to the other, at most ``diameter`` in each axis. The
-    limit is ``MOST_STEPS``, or ``MOST_CHORDS`` divided by the number of features.
+    limit is ``MOST_STEPS`` or, if that is less, ``MOST_CHORDS`` divided by the number of features.
 
     Parameters
     ----------
-    pitch, columns, rows : of the lattice, see ``fixels.toolkit.Carrier``; None columns or rows are unbounded.
+    pitch, columns, rows : pitch in mm (x, y) and size of the lattice, see ``fixels.toolkit.Carrier``; None
+        for an unbounded number of columns or rows.
     diameter : largest distance in mm between two pegs that touch the part.
     features : number of features they can touch, 1 or more.
 
@@ -282,7 +284,7 @@ def refuse_many_steps(
 
 
 def choose_thread_count(threads: int | None) -> int:
-    """Return ``threads`` when it is given, else the number of processors that this process may use.
+    """Return ``threads``, or for None the number of processors that this process may use.
 
     Raises
     ------
@@ -302,13 +304,13 @@ def choose_thread_count(threads: int | None) -> int:
 def refuse_much_work(
     ways: float, extent: tuple[float, float], pitch: tuple[float, float], ways_at: Callable[[float], float]
 ) -> None:
-    """Raise an error when a search for two clamps on a lattice would take hours and too much memory.
+    """Raise InputError when a search for two clamps on a lattice would take hours and too much memory.
 
     Parameters
     ----------
-    ways : number of ways in which two pairs of contacts may go together, limited to ``MOST_WAYS``.
+    ways : number of ways to combine two pairs of contacts; above ``MOST_WAYS`` the error is raised.
     extent : width and height of the part in mm.
-    pitch : of the lattice in mm, along x and y.
+    pitch : pitch of the lattice in mm, along x and y.
     ways_at : function that returns ``ways`` for another pitch in mm, the same along x and y.
 
     Raises

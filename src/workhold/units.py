@@ -36,9 +36,10 @@ class Unit:
     name : the unit's name, as users write it.
     abbreviation : text that follows a number.
     millimetres : millimetres in one unit.
-    decimals : number of decimals of a length that somebody has to set: a micrometre, or a ten-thousandth of
-        an inch (2.5 µm).
-    force, newtons : abbreviation of the unit of force that goes with this unit of length, and N in one of it.
+    decimals : number of decimals with which a length that has to be set is written: down to 1 µm, or 0.0001
+        inch (2.5 µm).
+    force, newtons : abbreviation of the unit of force that goes with this unit of length, and the number of
+        newtons in one of that unit of force.
     """
 
     name: str
@@ -49,7 +50,7 @@ class Unit:
     newtons: float = 1.0
 
     def to_mm(self, number: float) -> float:
-        """Return a length given in this unit in mm, rounded to 1e-12 mm.
+        """Return a length, given as a number in this unit, in mm; it is rounded to 1e-12 mm.
 
         Thus 1.5 inch is the 38.1 mm that a metric drawing says, not its neighbour in floating point, and
         coincidences of part and vise stay exact.
@@ -65,7 +66,7 @@ class Unit:
         Parameters
         ----------
         length : in mm.
-        decimals : the unit's own if None.
+        decimals : number of decimals; ``self.decimals`` if None.
 
         Examples
         --------
@@ -76,9 +77,9 @@ class Unit:
         return text.removeprefix("-") if float(text) == 0 else text
 
     def format_length(self, length: float, decimals: int | None = None) -> str:
-        """Return a length in mm as a number in this unit, followed by the unit.
+        """Return a length in mm as text with this unit's abbreviation, such as "24.125 mm".
 
-        ``decimals`` are the unit's own if None.
+        ``decimals`` is the number of decimals; ``self.decimals`` if None.
 
         >>> INCH.format_length(12.7), MILLIMETRE.format_length(24.125)
         ('0.5000 in', '24.125 mm')
@@ -104,7 +105,7 @@ class Unit:
         return f"{value:.0f}" if abs(value) >= 10 else f"{value:.1f}" if abs(value) >= 1 else f"{value:.2g}"
 
     def format_small_length(self, length: float) -> str:
-        """Return a length in mm as a number in the small unit (µm or thou), followed by that unit.
+        """Return a length in mm as text with the small unit (µm or thou), such as "8.1 µm".
 
         >>> MILLIMETRE.format_small_length(0.0081), INCH.format_small_length(0.0254)
         ('8.1 µm', '1.0 thou')
@@ -114,7 +115,7 @@ class Unit:
     def format_short_length(self, length: float, decimals: int | None = None) -> str:
         """Return a length in mm as a number in this unit, without trailing zeros and without the unit.
 
-        ``decimals`` are the most, the unit's own if None.
+        ``decimals`` is the largest number of decimals; ``self.decimals`` if None.
 
         >>> INCH.format_short_length(12.7), MILLIMETRE.format_short_length(20.0)
         ('0.5', '20')
@@ -123,8 +124,8 @@ class Unit:
         return text.rstrip("0").rstrip(".") if "." in text else text
 
     def format_force(self, force: float) -> str:
-        """Return a force in N in the unit of force, followed by
-        that unit, and by newtons in brackets if it is another.
+        """Return a force in N as text in the unit of force, such as "225 lbf (1000 N)"; newtons follow in
+        brackets if that unit is another.
 
         Forces from 100 units and 0 are whole numbers, smaller ones have three significant figures.
 
@@ -135,7 +136,7 @@ class Unit:
         return words if self.newtons == 1 else f"{words} ({MILLIMETRE.format_force_alone(force)})"
 
     def format_force_alone(self, force: float) -> str:
-        """Return a force in N as :meth:`format_force` does, but without the newtons in brackets.
+        """Return a force in N as text in the unit of force, such as "225 lbf", without newtons in brackets.
 
         >>> INCH.format_force_alone(1000.0)
         '225 lbf'
@@ -153,8 +154,9 @@ class Unit:
         return text.removeprefix("-") if float(text) == 0 else text
 
     def format_moment(self, moment: float) -> str:
-        """Return a moment in N·mm as text in N m, or in ft lbf
-        followed by N m in brackets; with a typographic minus.
+        """Return a moment in N·mm as text in N m; for inches in ft lbf, followed by N m in brackets.
+
+        A negative moment has a typographic minus.
 
         >>> MILLIMETRE.format_moment(1234.5), INCH.format_moment(1000.0)
         ('1.23 N m', '0.738 ft lbf (1 N m)')
@@ -245,8 +247,8 @@ def find_pixels_per_inch(name: str | None) -> float | None:
 
 
 def find_drawing_unit(name: str) -> Unit:
-    """Return the unit of a drawing by its name: one of
-    :func:`find_unit`, or pixels such as "px96" (96 per inch).
+    """Return the unit of a drawing by its name: a name that :func:`find_unit` takes, or pixels such as "px96"
+    (96 per inch).
 
     Raises
     ------

@@ -63,8 +63,8 @@ def find_sector(psi: Array) -> IntArray:
 
 
 def are_facing_sectors(rows: Array, spread: float) -> BoolArray:
-    """Return whether features (F, 10) have an outward normal within
-    ``spread`` radians of a sector's middle, (F, SECTORS).
+    """Return a mask (F, SECTORS): whether a feature of (F, 10) has an outward normal within ``spread``
+    radians of the middle of a sector.
 
     See ``kernels.base.feature`` for the layout of rows.
     """
@@ -162,7 +162,8 @@ def find_wedge_sectors(
     of the first feature, (P, SECTORS) of bool.
 
     See sections 3.3 and 3.4. The step from the first peg to the second has a length (``distance``) in mm and
-    a direction in radians. Return None where no wedge holds its length.
+    a direction in radians. Return None where no annulus wedge between two pieces holds a vector of this
+    length.
     """
     between = two.middle[None, :] - one.middle[:, None]
     spread = one.radius[:, None] + two.radius[None, :] + WEDGE_SLACK
@@ -185,7 +186,8 @@ def bound_first_peg(one: FeaturePieces, tails: BoolArray) -> tuple[Array, Array]
     """Return lower and upper bounds, (SECTORS, 2) each, of the first
     peg's x and y in mm in the frame of the pegs.
 
-    ``tails`` (P, SECTORS) says on which pieces it can be; inf and -inf at orientations without any.
+    ``tails`` (P, SECTORS) tells on which pieces the peg can be; bounds are inf and -inf at orientations
+    without such a piece.
     """
     seen = one.middle[:, None] * np.exp(-1j * CENTERS)
     slack = (one.radius + np.abs(one.middle) * HALF_SECTOR + WEDGE_SLACK)[:, None]
@@ -299,8 +301,8 @@ def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
 
 
 def rank_peg_pairs(pairs: PegPairs, rows: Array) -> IntArray:
-    """Return a rank (N,) of each peg pair, higher with more arcs;
-    exchanging a pair's features does not change it.
+    """Return a rank (N,) of each peg pair, higher with more arcs; exchanging a pair's features does not
+    change its rank.
 
     Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to examine
     quartets whose left pair ranks at least as high as the right one.
@@ -320,7 +322,7 @@ def list_type_one_systems(pairs: PegPairs, rows: Array, frame: SearchFrame) -> I
     """Yield the systems with two pegs on each jaw, except those with
     parallel lines on one jaw (section 3.5.1).
 
-    A system and that after half a turn, with the jaws exchanged, are listed once.
+    Two systems that a half turn, which exchanges the jaws, maps to each other are listed once.
     """
     facings = FacingDirections.from_features(rows, frame.toolkit.clamping)
     generic = np.flatnonzero(~are_parallel(rows, pairs.tail, pairs.head))
@@ -344,10 +346,10 @@ def list_type_one_systems(pairs: PegPairs, rows: Array, frame: SearchFrame) -> I
 def pair_with_rows(
     pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame: SearchFrame
 ) -> Iterator[EquationSystems]:
-    """Yield the systems of left pair ``one`` with right pairs
-    ``two``, for each row of the right jaw that wedges allow.
+    """Yield the systems of the left pair ``one`` with the right pairs ``two``, row by row of the right jaw.
 
-    ``shared`` (len(two), SECTORS) are the orientations that both pairs allow.
+    For each row, the right pairs are those that may have their first peg in it, as bounds of the pegs'
+    heights allow. ``shared`` (len(two), SECTORS) are the orientations that both pairs allow.
     """
     pitch, offset = frame.lattice.pitch_y, frame.lattice.row_offset
     low = np.where(shared, (pairs.low[two, :, 1] - pairs.high[one, :, 1] - offset) / pitch, np.inf)

@@ -1,8 +1,8 @@
 """The test of simultaneous contacts: ends of features, gap rule, force closure, clamping (section 3).
 
-The conditions are those of the model, each met as far as a contact may be off; so nothing is excluded that
-the closing steps would not exclude. What passes is written as records, in the layout of the compiled kernels,
-for those steps, which both engines share and which decide.
+The conditions are those of the model, widened by how far a contact may be off, so nothing is excluded that
+the later proofs would not exclude. Contacts that pass are written as records, in the layout of the compiled
+kernels. The proofs, which both engines share, decide them.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class SimultaneousContacts(ArrayTable):
     standing : how many pegs, the first ones, are on the jaw that stands still.
     feature, column, row : (N, 4), or (N, 3) before the fourth peg is found, see ``EquationSystems``.
     psi : (N,) orientation of the pegs in radians.
-    reach : (N,) how far psi may be off in radians, and the centres as a fraction of the part's size.
+    reach : (N,) error bound of psi in radians, and of the centres as a fraction of the part's size.
     center : (N, 4) or (N, 3) peg centres in the workpiece's frame as complex numbers.
     """
 
@@ -67,8 +67,8 @@ def are_within_ends(rows: Array, center: Complex, margin: float, radius: Array) 
     """Return whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
 
     This is not ``contact.features.measure_end_distances``: the algebra is a second opinion and evaluates the
-    rules on its own. ``rows`` (..., 12) end with how far in mm a contact may lie past the low and the high
-    end. Peg centres ``center`` (...) may be off by ``radius`` mm.
+    rules on its own. The last two columns of ``rows`` (..., 12) are how far in mm a contact may lie past the
+    low and the high end. Peg centres ``center`` (...) may be off by ``radius`` mm.
     """
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
     straight = rows[..., IS_ARC] == 0.0
@@ -124,7 +124,8 @@ def may_close(
 ) -> BoolArray:
     """Return whether the forces may close and clamp (model: conditions 4 and 5), (N,).
 
-    Normals on arcs of radius R are off by at most radius / R, and every minor by ``contact.rules.bound_minor_error``.
+    Normals on arcs of radius R are off by at most radius / R, and every minor by
+    ``contact.rules.bound_minor_error``.
 
     Parameters
     ----------
@@ -157,8 +158,8 @@ def compute_wrench_minors(points: Array, normals: Array, length: float) -> Array
     """Return null vectors (N, 4) of wrenches (n, (q - c) x n / L),
     not scaled: signed 3x3 minors (Cramer's rule).
 
-    This is not ``kernels.contact.rules.minors``: the algebra is a second opinion and tests closure on its
-    own. ``points`` (N, 4, 2) are peg centres about c in mm, ``normals`` (N, 4, 2) outward unit normals,
+    This is not ``kernels.contact.rules.write_minors``: the algebra is a second opinion and tests closure on
+    its own. ``points`` (N, 4, 2) are peg centres about c in mm, ``normals`` (N, 4, 2) outward unit normals,
     ``length`` is L in mm, by which moments are divided.
     """
     moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
@@ -206,8 +207,8 @@ def find_row_points(row: Array, psi: Array, height: Array) -> tuple[IntArray, Co
 def find_fourth_pegs(
     triples: SimultaneousContacts, rows: Array, frame: SearchFrame, margin: float, length: float
 ) -> SimultaneousContacts:
-    """Return triples of left pegs completed by each fourth peg, on a
-    row that meets a feature (Type II, section 3.5).
+    """Return every completion of triples of left pegs by a right peg in a row of holes that meets a feature
+    (Type II, section 3.5).
 
     ``triples`` have three pegs each. Other parameters are those of :func:`make_records`.
     """

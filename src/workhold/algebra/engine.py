@@ -107,9 +107,8 @@ class ResultantSolver:
     undecided: list[EquationSystems] = field(factory=list)
 
     def compute_peg_offsets(self, systems: EquationSystems) -> NDArray[np.complex128]:
-        """Return the pegs' places (N, K) from the first peg in mm, as
-        complex numbers; for right pegs without the separation.
-        """
+        """Return the places (N, K) of K pegs from the first peg in mm, as complex numbers; the separation is
+        not added for right pegs."""
         right = (np.arange(systems.feature.shape[1]) >= 2) * (systems.feature.shape[1] == 4)
         height = systems.row * self.frame.lattice.pitch_y + right * self.frame.lattice.row_offset
         return np.asarray(systems.column * self.frame.lattice.pitch_x + 1j * height)
@@ -149,7 +148,7 @@ class ResultantSolver:
     def solve_orientations(
         self, contacts: ContactSystems, case: Case, systems: EquationSystems
     ) -> tuple[IntArray, Array]:
-        """Return the indices of systems and, for each, an orientation in radians at which it may be solved.
+        """Return (indices (M,) of systems, orientations (M,) in radians at which each may be solved).
 
         Undecided systems are added to ``undecided``.
         """
@@ -179,10 +178,9 @@ class ResultantSolver:
 
 
 def order_arcs_first(systems: EquationSystems, rows: Array) -> EquationSystems:
-    """Return the systems with the pegs of each jaw reordered, arcs
-    before lines; the first peg is the characteristic point.
+    """Return the systems with the pegs of each jaw reordered so that arcs come before lines.
 
-    Columns and rows are counted from the new first pegs.
+    The new first peg is the characteristic point; columns and rows are counted from the new first pegs.
     """
     line = (rows[systems.feature, 0] == 0.0).astype(np.int64)
     jaw = (np.arange(line.shape[1]) >= 2) * (line.shape[1] == 4)
@@ -219,10 +217,10 @@ def select_generic_systems(systems: EquationSystems, rows: Array) -> EquationSys
 
 
 def batch_by_case(stream: Iterable[EquationSystems], rows: Array) -> Iterator[tuple[EquationSystems, Case]]:
-    """Yield (systems, case) in batches of about ``BATCH`` or fewer
-    systems of one case each, without those never closing.
+    """Yield (systems, case) in batches of about ``BATCH`` or fewer systems of one case each, without those
+    that cannot close.
 
-    See :func:`generic` for what is dropped, ``ResultantSolver.solve`` for the case.
+    See :func:`select_generic_systems` for the systems dropped, ``ResultantSolver.solve`` for the case.
     """
     waiting: dict[Case, list[EquationSystems]] = {}
     for systems in stream:
@@ -280,7 +278,7 @@ def find_fixtures_by_algebra(
 
     Parameters
     ----------
-    query : what is asked, without its seating, see ``search.seated``; all fixtures are found also where only
+    query : the query; its seating is ignored, see ``search.seated``. All fixtures are found even where only
         the best are wanted.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.

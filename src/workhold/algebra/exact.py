@@ -93,7 +93,7 @@ class ExactSystem:
     middle : a point of each line, or the centre of each circle.
     normal : unit normals of lines; without meaning for circles.
     radius : 0 for lines.
-    point : pegs from the first peg, right pegs without the separation.
+    point : places of the pegs from the first peg; for right pegs without the separation.
     sliding : pairs of contact numbers on one jaw that are sliding pairs of arcs.
     """
 
@@ -106,7 +106,7 @@ class ExactSystem:
 
     @classmethod
     def from_contact_systems(cls, contacts: ContactSystems) -> ExactSystem:
-        """Return the one system of a set that contains only one."""
+        """Return the system of ``contacts``, which must hold exactly one."""
         count = contacts.rows.shape[1]
         pairs = [(0, 1), (2, 3)] if count == 4 else [(0, 1), (0, 2)]
         return cls(
@@ -119,8 +119,8 @@ class ExactSystem:
         )
 
     def form_offset(self, k: int) -> tuple[LaurentPolynomial, LaurentPolynomial]:
-        """Return E and its conjugate E*: the vector from feature k to peg k, the first peg being in the
-        characteristic circle's middle.
+        """Return E, the vector from feature k to peg k when the first peg is in the middle of the
+        characteristic circle, and its conjugate E*.
 
         Symbols are those of ``algebra.resultants``.
         """
@@ -129,7 +129,8 @@ class ExactSystem:
         return e, make_binomial(self.point[k].conjugate(), -1, between.conjugate(), 0)
 
     def form_offset_difference(self, k: int, m: int) -> tuple[LaurentPolynomial, LaurentPolynomial]:
-        """Return E of m minus E of k, and the conjugate; both divided by z - z0 where the two arcs slide.
+        """Return E of peg m minus E of peg k, and its conjugate; both divided by z - z0 where the two arcs
+        slide.
 
         Symbols are those of ``algebra.resultants``.
         """
@@ -145,7 +146,7 @@ class ExactSystem:
         )
 
     def form_line_equation(self, k: int) -> tuple[LaurentPolynomial, LaurentTriple]:
-        """Return the constraint h or h_sigma of peg k on a line: the factor of the separation, and the rest.
+        """Return the constraint h or h_sigma of peg k on a line, as (factor of the separation, other terms).
 
         Symbols are those of ``algebra.resultants``.
         """
@@ -157,8 +158,8 @@ class ExactSystem:
         return factor, (make_constant(n.conjugate() * first), middle, make_constant(n * first))
 
     def form_circle_equation(self, k: int) -> tuple[LaurentTriple, LaurentTriple]:
-        """Return the constraint g or g_sigma of peg k on a circle: the
-        factor of the separation, and the rest.
+        """Return the constraint g or g_sigma of peg k on a circle, as (factor of the separation, other
+        terms).
 
         Symbols are those of ``algebra.resultants``.
         """
@@ -183,7 +184,7 @@ class ExactSystem:
         return radius * e_bar, self.form_offset(k)[0] * e_bar, radius * e
 
     def form_circle_difference(self, k: int, m: int) -> tuple[LaurentPolynomial, LaurentTriple]:
-        """Return g_sigma of m minus that of k: the factor of the separation, and the rest.
+        """Return g_sigma of peg m minus g_sigma of peg k, as (factor of the separation, other terms).
 
         Both are divided by z - z0 where the arcs slide. Symbols are those of ``algebra.resultants``.
         """
@@ -199,7 +200,7 @@ class ExactSystem:
 
 
 def compute_resultant_of_rings(one: LaurentTriple, two: LaurentTriple) -> LaurentPolynomial:
-    """Return the resultant in w of two trigonometric polynomials in phi."""
+    """Return the resultant in w = exp(i phi) of two trigonometric polynomials in phi."""
     (a, b, c), (d, e, f) = one, two
     across = a * f - c * d
     return across * across - (a * e - b * d) * (b * f - c * e)
@@ -214,9 +215,10 @@ def multiply_trig_polynomials(one: LaurentTriple, two: LaurentTriple) -> list[La
 def eliminate_separation(
     factor: LaurentPolynomial, rest: LaurentTriple, linear: LaurentTriple, last: LaurentTriple
 ) -> list[LaurentPolynomial]:
-    """Return rest^2 - factor rest linear + factor^2 last: the coefficients of w^2, w, 1, 1 / w, w^-2.
+    """Return the resultant in the separation s of factor s + rest and s^2 + linear s + last.
 
-    It is the resultant in the separation, see ``resultants.eliminate_separation``.
+    It is rest^2 - factor rest linear + factor^2 last, returned as its coefficients of w^2, w, 1, 1 / w, w^-2;
+    see ``resultants.eliminate_separation``.
     """
     squares, mixed = multiply_trig_polynomials(rest, rest), multiply_trig_polynomials(rest, linear)
     out = [square - factor * other for square, other in zip(squares, mixed, strict=True)]
@@ -277,14 +279,14 @@ def compute_exact_resultant(
 
 
 def trim_coefficients(polynomial: acb_poly, precision: int) -> acb_poly:
-    """Return a polynomial without vanishing outermost coefficients,
-    with later binary digits of the others changed.
+    """Return a polynomial without vanishing outermost coefficients; the last binary digits of the others are
+    changed.
 
     Return an empty polynomial when all coefficients may vanish.
 
     Symmetric parts have poses in pairs at one orientation: double roots, which no precision isolates.
-    Coefficients changed by a part 2^(-precision / 2) of the largest have single roots, and even eightfold
-    ones move by no more than some 2^-32.
+    Coefficients are changed by a part 2^(-precision / 2) of the largest. Then all roots are single, and even
+    eightfold roots move by no more than some 2^-32.
     """
     values = list(polynomial.coeffs())
     if not any(value.abs_lower() > 0 for value in values):

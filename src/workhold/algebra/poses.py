@@ -68,17 +68,17 @@ PRECISIONS = (64, 128, 256, 512)
 
 
 def find_sectors_with_roots(values: Complex, size: Array) -> tuple[BoolArray, BoolArray]:
-    r"""Return the sectors that may have roots, and the sectors where
-    rounding may hide roots, (N, SECTORS) of bool each.
+    r"""Return (sectors that may have roots, sectors where rounding may hide roots), (N, SECTORS) of bool
+    each.
 
     By Taylor's theorem \|f(c + h) - f(c) - h f'(c)\| <= h^2 / 2 max \|f''\|, and max \|f''\| is at most the
-    sum of the sizes of its coefficients. Far more than rounding is allowed for. Where the polynomial and its
-    first derivatives are tiny, roots are crowded, and rounding moves them far.
+    sum of the sizes of its coefficients. Errors far larger than rounding are allowed for. Where the
+    polynomial and its first derivatives are tiny, roots are crowded, and rounding moves them far.
 
     Parameters
     ----------
     values : (N, 2 d + 1) coefficients of z^-d ... z^d.
-    size : (N,) size of the terms they were summed from.
+    size : (N,) size of the terms that the coefficients were summed from.
     """
     bound = values.shape[1] // 2
     exponents = np.arange(-bound, bound + 1)
@@ -104,9 +104,8 @@ def isolate_roots_in_balls(values: Complex) -> Complex:
 
 
 def find_companion_roots(values: Complex) -> Complex:
-    """Return the roots (N, 2 d) of N polynomials with coefficients
-    (N, 2 d + 1), well-conditioned at both ends.
-    """
+    """Return the roots (N, 2 d) of N polynomials with coefficients (N, 2 d + 1), of which the first and the
+    last must not be small."""
     degree = values.shape[1] - 1
     matrix = np.zeros((len(values), degree, degree), np.complex128)
     matrix[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
@@ -115,10 +114,11 @@ def find_companion_roots(values: Complex) -> Complex:
 
 
 def count_vanishing_ends(values: Complex, largest: Array) -> IntArray:
-    """Return how many coefficients vanish at both ends of each
-    polynomial (N, 2 d + 1): the number to cut off at either end.
+    """Return, for each polynomial (N, 2 d + 1), how many coefficients to cut off at either end because they
+    vanish.
 
-    ``largest`` (N,) is the size of the largest coefficient.
+    The number counts coefficients that are negligible at both ends alike. ``largest`` (N,) is the size of the
+    largest coefficient.
     """
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
@@ -126,10 +126,11 @@ def count_vanishing_ends(values: Complex, largest: Array) -> IntArray:
 
 
 def find_hard_roots(contacts: ContactSystems, case: tuple[int, int], values: Complex) -> Complex | None:
-    """Return the roots z of one system's resultant in ball arithmetic; None if they are not isolated.
+    """Return the roots z of one system's resultant, computed in ball arithmetic; None if they cannot be
+    isolated.
 
-    ``contacts`` holds only this system, ``values`` are its coefficients; see ``resultants.compute_resultant`` for the
-    case.
+    ``contacts`` holds only this system, ``values`` are its coefficients; see ``resultants.compute_resultant``
+    for the case.
     """
     if case[0] == 0:
         kept = np.flatnonzero(np.abs(values) > VANISHING * np.abs(values).max())
@@ -149,8 +150,8 @@ def are_nearly_sliding(contacts: ContactSystems) -> BoolArray:
 def find_candidate_orientations(
     contacts: ContactSystems, case: tuple[int, int], sectors: BoolArray
 ) -> tuple[IntArray, Array, IntArray]:
-    """Return candidates for the orientations of N systems of one case
-    in the sectors that are wanted, (N, SECTORS).
+    """Return candidates for the orientations that solve N systems of one case, in the wanted ``sectors`` (N,
+    SECTORS).
 
     Return (indices (M,) of systems, orientations (M,) in radians, indices of systems that their resultants
     leave undecided). For systems and case see ``resultants.compute_resultant``.
@@ -209,7 +210,7 @@ class Poses(ArrayTable):
     place : (N,) the first peg in the workpiece's frame, a complex number; lengths are fractions of the part's
         size.
     separation : (N,) x distance from the first left to the first right peg (0 for three left pegs).
-    reach : (N,) how far off the others may be, in radians and as a fraction of the part's size.
+    reach : (N,) error bound of psi in radians, and of place and separation as fractions of the part's size.
     """
 
     owner: IntArray
@@ -276,9 +277,8 @@ def linearize_contacts(contacts: ContactSystems, poses: Poses) -> tuple[Array, A
 
 
 def find_unit_circle_roots(ring: TrigPolynomial) -> tuple[Complex, Complex]:
-    """Return two points w of the unit circle where trigonometric
-    polynomials vanish, or the nearest to vanishing.
-    """
+    """Return two points w of the unit circle, for each polynomial, where it vanishes or, if nowhere, comes
+    nearest to 0."""
     size = 2.0 * np.abs(ring.first)
     cosine = -ring.middle / np.where(size == 0.0, 1.0, size)
     spread = np.arccos(np.clip(cosine, -1.0, 1.0))

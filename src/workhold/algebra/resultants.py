@@ -113,8 +113,8 @@ class ContactSystems(ArrayTable):
     Parameters
     ----------
     rows : (N, K, 10) feature rows.
-    point : (N, K) pegs as complex numbers from the first peg, right pegs without the separation, in the rows'
-        unit of length.
+    point : (N, K) places of the pegs from the first peg as complex numbers, in the rows' unit of length; the
+        separation is not added for right pegs.
     """
 
     rows: Array
@@ -157,7 +157,8 @@ class ContactSystems(ArrayTable):
         return np.asarray(self.compute_arc_misfit(k, m) <= COINCIDENT)
 
     def compute_center_difference(self, k: int, m: int, psi: Array) -> tuple[Array, Complex]:
-        """Return z x + D of pegs k and m as a length and a direction, (N, M) each, whose product it is.
+        """Return z x + D for pegs k and m as (length, direction), (N, M) each, so that z x + D is their
+        product.
 
         x is the step from k to m, D the vector from centre m to centre k. Where the arcs do not slide, the
         length is 1.
@@ -178,10 +179,11 @@ class ContactSystems(ArrayTable):
 
 
 def compute_line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tuple[Array, TrigPolynomial]:
-    """Return h (equation 2) or h_sigma (equation 4) of peg k on a line, at orientations (N, M) in radians.
+    """Return (factor (N, M) of the separation, other terms) of the constraint of peg k on a line, at
+    orientations (N, M).
 
-    The factor (N, M) of the separation comes first, then the rest. Symbols are those of
-    ``algebra.resultants``.
+    The constraint is h (equation 2) for a left peg, h_sigma (equation 4) for a right one; psi is in radians.
+    Symbols are those of ``algebra.resultants``.
     """
     z, normal = np.exp(1j * psi), contacts.normal[:, k, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
@@ -194,10 +196,11 @@ def compute_line_constraint(contacts: ContactSystems, k: int, psi: Array) -> tup
 def compute_circle_constraint(
     contacts: ContactSystems, k: int, psi: Array
 ) -> tuple[TrigPolynomial, TrigPolynomial]:
-    """Return g (equation 3) or g_sigma (5) of peg k on a circle, at orientations (N, M) in radians.
+    """Return (factor of the separation, other terms) of the constraint of peg k on a circle, at orientations
+    (N, M).
 
-    They are the factor of the separation, and the rest; the separation's square has the factor 1. Symbols are
-    those of ``algebra.resultants``.
+    The constraint is g (equation 3) for a left peg, g_sigma (equation 5) for a right one, in which the
+    separation's square has the factor 1; psi is in radians. Symbols are those of ``algebra.resultants``.
     """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
     start = (contacts.middle[:, 0] - contacts.middle[:, k])[:, None] + z * contacts.point[:, k, None]
@@ -225,10 +228,9 @@ def compute_pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> Tri
 
 
 def subtract_circles(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
-    """Return g_sigma of peg m minus that of peg k, linear in the
-    separation like h_sigma, as its square cancels.
+    """Return (factor (N, M) of the separation, other terms) of g_sigma of peg m minus g_sigma of peg k.
 
-    The factor (N, M) of the separation comes first, then the rest, with z - z0 divided out where the arcs
+    The difference is linear in the separation, as its square cancels. It is divided by z - z0 where the arcs
     slide. Symbols are those of ``algebra.resultants``.
     """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
@@ -262,8 +264,8 @@ GRID_START = 0.1234
 
 
 def compute_resultant_of_rings(one: TrigPolynomial, two: TrigPolynomial) -> tuple[Array, Array]:
-    """Return the resultant in w of two trigonometric polynomials, and
-    the sum of the sizes of its terms, (N, M) each.
+    """Return (resultant in w of two trigonometric polynomials, sum of the absolute values of its terms), (N,
+    M) each.
 
     For a w + b + a* / w and c w + d + c* / w it is |a d - c b|^2 - 4 Im(a c*)^2. Symbols are those of
     ``algebra.resultants``.
@@ -307,8 +309,8 @@ def eliminate_separation(
 def compute_resultant_with_square(
     ring: TrigPolynomial, double: tuple[Array, Complex, Complex]
 ) -> tuple[Array, Array]:
-    """Return the resultant in w of ``ring`` and c0 + 2
-    Re(c1 w + c2 w^2), and the sum of the sizes of its terms.
+    """Return (1) the resultant in w of ``ring`` and c0 + 2 Re(c1 w + c2 w^2), and (2) the sum of the absolute
+    values of its terms.
 
     ``double`` is (c0, c1, c2). The resultant is |a|^4 times the product of the second polynomial over the two
     roots of the first, a w + b + a* / w, without division. The roots' product is a* / a, and a^n times the
@@ -340,8 +342,7 @@ def compute_resultant_with_square(
 
 
 def compute_straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Array, Array]:
-    """Return the determinant of the equations of contacts with lines
-    alone, and the size of its terms, (N, M) each.
+    """Return (determinant of the equations of contacts with lines only, size of its terms), (N, M) each.
 
     The equations are linear in the place and the separation. Rows of the matrix: normal, factor of the
     separation on the right jaw, rest; three rows without that factor for Type II.
@@ -358,8 +359,8 @@ def compute_straight_line_form(contacts: ContactSystems, psi: Array) -> tuple[Ar
 
 
 def compute_resultant(contacts: ContactSystems, case: tuple[int, int], psi: Array) -> tuple[Array, Array]:
-    """Return the resultant of N systems of one case at (N, M)
-    orientations in radians, and the size of its terms.
+    """Return (resultants of N systems of one case at (N, M) orientations in radians, size of their terms),
+    (N, M) each.
 
     Contacts have arcs before lines on each jaw, and the left jaw no fewer arcs than the right one. The case
     is (arcs on the left, arcs on the right), or (arcs on the left, -1) for the three left pegs of Type II.
@@ -388,10 +389,11 @@ def compute_resultant(contacts: ContactSystems, case: tuple[int, int], psi: Arra
 def compute_triple_resultant(
     contacts: ContactSystems, second: TrigPolynomial, psi: Array
 ) -> tuple[Array, Array]:
-    """Return the resultant of three left pegs, and the size of its
-    terms; ``second`` is the second peg's constraint.
+    """Return (resultant of three left pegs, size of its terms), (N, M) each; ``second`` is the second peg's
+    constraint.
 
-    Where the second and third arc slide, that factor is divided out.
+    Where the arcs of the second and the third peg slide, both are divided by the square of the length that
+    ``ContactSystems.compute_center_difference`` returns.
     """
     value, size = compute_resultant_of_rings(second, compute_pair_constraint(contacts, 2, psi))
     sliding_pairs = contacts.find_sliding_pairs(1, 2)[:, None]
@@ -422,7 +424,8 @@ def have_no_separation(contacts: ContactSystems) -> NDArray[np.bool_]:
 def compute_resultant_coefficients(
     contacts: ContactSystems, case: tuple[int, int], bound: int | None = None
 ) -> tuple[Complex, Array]:
-    """Return the coefficients of the resultants, (N, 2 d + 1) of z^-d ... z^d, and their terms' sizes (N,).
+    """Return (coefficients (N, 2 d + 1) of z^-d ... z^d of the resultants, sizes (N,) of the terms they are
+    sums of).
 
     ``bound`` is d; if None, it is half the largest degree in t of the case's resultant.
     """

@@ -1,4 +1,5 @@
-r"""Peg pairs at which the resultant says nothing: the orientation is fixed and the part slides.
+r"""Peg pairs that fix the orientation while the part slides, so that the resultant tells nothing about the
+other pegs.
 
 Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs,
 fix the orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs
@@ -65,7 +66,7 @@ class SlidingPair:
     ----------
     pair : its index among the peg pairs.
     psi : the orientation in radians.
-    error : by how much in mm its two contacts may be off from sliding together.
+    error : by how much in mm the two contacts may miss the exact condition for sliding together.
     """
 
     pair: int
@@ -117,7 +118,8 @@ def bound_orientation_error(
     row : feature of the first peg.
     point : (N,) places of the first peg as complex numbers.
     step : from the first peg to the second, turned by the orientation, in mm.
-    slope : how much farther the contacts move than the pegs turn, see ``conditions.find_row_points``.
+    slope : (N,) factors on the error: bounds of how far the place of the first peg moves when the curves that
+        determine it move by 1.
     """
     normal = (
         row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
@@ -129,10 +131,11 @@ def bound_orientation_error(
 
 
 def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
-    """Return the points of feature a's line or circle that, shifted
-    by ``shift``, are on feature b's line or circle.
+    """Return the points of the line or circle of feature ``a`` that, moved by ``shift``, are on that of
+    feature ``b``.
 
-    Each of up to two points comes with a bound of how far it moves when either line or circle moves by 1.
+    There are up to two. Each is a pair (point as a complex number, bound of how far the point moves when
+    either line or circle moves by 1).
     """
     one, two = complex(a[X], a[Y]), complex(b[X], b[Y]) - shift
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -159,8 +162,11 @@ def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
 
 
 def bound_steepness(size: float, across: float) -> float:
-    """Return a bound of how much a meeting point moves per motion of
-    the curves that meet there, at most ``STEEPEST``.
+    """Return a bound of how far a meeting point of two curves moves when the curves move by 1, at most
+    ``STEEPEST``.
+
+    The bound is 3 ``size`` / ``across``: ``across`` is small against ``size`` where the curves meet at a
+    small angle.
     """
     return min(3.0 * size / max(across, size / STEEPEST), STEEPEST)
 
@@ -168,10 +174,11 @@ def bound_steepness(size: float, across: float) -> float:
 def intersect_line_with_circle(
     point: complex, tangent: complex, center: complex, radius: float
 ) -> list[tuple[complex, float]]:
-    """Return the two points where a line meets a circle, in the form
-    of :func:`meets`; none for a tangent or a miss.
+    """Return the two points where a line meets a circle, in the form of :func:`meets`; an empty list for a
+    tangent or a miss.
 
-    The line goes through ``point`` with the unit direction ``tangent``. A tangent carries no force.
+    The line goes through ``point`` with the unit direction ``tangent``. (At a tangency the contacts carry no
+    force that holds.)
     """
     off = (point - center) * tangent.conjugate()
     if abs(off.imag) >= radius:
@@ -186,7 +193,7 @@ def find_two_and_two_contacts(
 ) -> list[SimultaneousContacts]:
     """Return the simultaneous contacts of a left pair that slides and a right pair that stops it.
 
-    Sliding right pairs are these after a half turn.
+    Contacts with a sliding right pair need no search of their own: they are these after a half turn.
     """
     found = []
     sectors = pairs.sectors
@@ -256,7 +263,7 @@ def find_three_and_one_contacts(
 ) -> list[SimultaneousContacts]:
     """Return the simultaneous contacts of a left pair that slides and a third left peg that stops it.
 
-    The third peg may be anywhere in the order of pegs.
+    The third peg may come before, between or after the two pegs of the pair in the order of pegs.
     """
     found = []
     most = frame.standing.column_count - 1
@@ -304,9 +311,8 @@ def list_third_pegs(pairs: PegPairs, tail: int) -> list[tuple[int, int, int]]:
 
 
 def are_alike_on_both_jaws(contacts: ContactSystems) -> NDArray[np.bool_]:
-    """Return, for each system, whether both jaws have the same lines
-    or circles and the same step, at one level, (N,).
-    """
+    """Return, for each system, whether both jaws touch the same lines or circles with the same step at one
+    level, (N,)."""
     rows, point = contacts.rows, contacts.point
     same = np.abs(point[:, 2]) + np.abs(point[:, 3] - point[:, 1]) <= COINCIDENT
     for k in range(2):
@@ -322,12 +328,13 @@ def are_alike_on_both_jaws(contacts: ContactSystems) -> NDArray[np.bool_]:
 
 
 def find_level_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
-    """Return the orientations at which the two places of systems that are :func:`alike` are level.
+    """Return the orientations at which both places that two pegs can have on their features are level.
 
-    Return (indices of systems, psi in radians). The places are mirror images in the line (second peg) or in
-    the line through the circles' centres (pegs brought together). So either the line is level, Re(n* z) = 0,
-    or that line of centres is upright, Re(x + D / z) = 0. There x is the step, and D the vector from the
-    second centre to the first. Lines alone have one place, and so no fixture.
+    The systems are those for which :func:`are_alike_on_both_jaws` is True. Return (indices of systems, psi in
+    radians). The places are mirror images in the line (of the second peg) or in the line through the circles'
+    centres (with the pegs brought together). So either the line is level, Re(n* z) = 0, or that line of
+    centres is upright, Re(x + D / z) = 0. There x is the step, and D the vector from the second centre to the
+    first. Lines alone have one place, and so no fixture.
     """
     first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]

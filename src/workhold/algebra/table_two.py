@@ -1,10 +1,10 @@
 """The paper's Table 2: degrees of the resultants, found on random data, and the least possible.
 
-The degree in t = tan(psi / 2) is read off the coefficients themselves, which are taken over a longer span
-than the formulas can fill. A resultant whose degree equals the number of complex solutions of a general
-system has no spurious root: no elimination can be of lower degree. Those numbers
-(``resultants.TRUE_DEGREES``) are known from Groebner bases over finite fields. Every complex root is isolated
-in ball arithmetic, and every real one must lead to one pose.
+The degree in t = tan(psi / 2) is read off the coefficients, of which more are computed than the formulas
+allow to differ from 0. A resultant whose degree equals the number of complex solutions of a general system
+has no spurious root: no elimination can be of lower degree. Those numbers (``resultants.TRUE_DEGREES``) are
+known from Groebner bases over finite fields. Every complex root is isolated in ball arithmetic, and every
+real one must lead to one pose.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class CaseRow:
     paper : the paper's degree.
     ours : the largest degree found.
     general : number of complex solutions of general systems.
-    systems : how many random systems were looked at; in all of them together there are
+    systems : number of random systems; the next three numbers are sums over all of them.
     roots : isolated complex roots of the resultants,
     real : real roots among them,
     poses : poses that the real roots lead to.
@@ -74,8 +74,10 @@ class CaseRow:
 
 
 def make_random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
-    """Return ``count`` random systems of a case (see ``resultants.compute_resultant``),
-    arcs first on each jaw; each has a real pose.
+    """Return ``count`` random systems of a case, each of which has a real pose; ``seed`` is that of the
+    random numbers.
+
+    The case is described at ``resultants.compute_resultant``; on each jaw arcs come before lines.
     """
     random = np.random.default_rng(seed)
     left, right = case

@@ -1,9 +1,10 @@
-"""What a field of a question to the program is to all who ask it: declared once, beside its value.
+"""Declarations of a question's fields: each field is declared once, for commands, requests, files and the
+page.
 
-A question is an attrs class, such as a query or what stands on a setup sheet. A field that is made by
-:func:`declare` says what its values look like, what they must be and what they mean. From that come the checks
-of the constructor, the option of the command, the forms of requests, agents and files, their schemas, and what
-the page shows.
+A question is an attrs class, such as a query or the contents of a setup sheet. A field that is made by
+:func:`declare` says what its values look like, what they must be and what they mean. From that come the
+checks of the constructor, the option of the command, the forms of requests, agents and files, their schemas,
+and what the page shows.
 """
 
 from __future__ import annotations
@@ -91,12 +92,12 @@ class PageLabel:
 
     Parameters
     ----------
-    label : what the page calls it.
-    hint : what stands in it while it is empty, which it may be then; None where it must be filled in.
-    is_usual : whether it is seen without being asked for.
+    label : the field's name on the page.
+    hint : placeholder while the field is empty, where it may be empty; None where it must be filled in.
+    is_usual : whether the page shows the field at once, not among further options.
     several : whether more than one of the choices may be taken.
-    choices : the values to choose among; none where a value is typed.
-    when : values of other fields with which the page shows it.
+    choices : the values to choose among; empty where a value is typed.
+    when : values of other fields under which the page shows this one.
     """
 
     label: str
@@ -113,23 +114,24 @@ class Declaration:
 
     Parameters
     ----------
-    name : the key in files and requests, and the constructor's argument.
-    form : what its values look like; see ``Form``.
-    help : what it means, in a sentence or two.
-    labels : what the page shows of it, more than once where that depends on another field; none where the page
-        has another way.
-    default : of the constructor, in requests and in files; ``REQUIRED`` where it must be given.
-    least : what a number must be.
-    most : the largest count that a server takes; None for no limit of its own.
-    choices : the words that there are.
-    section : of the command's help.
-    called : its name in sentences, where that is not the field's own.
-    word : its name as an option, where that is not the field's own.
-    spelled : the whole option, where that is another still.
-    needs : the field without which it is not asked.
-    typed : the help of the option, where that is another than ``help``.
-    typed_default : of the option, as it would be typed, where it follows from no default; "" otherwise.
-    metavar : what stands for its value in the help, where that does not follow from the form.
+    name : key in files and requests, and argument of the constructor.
+    form : kind of its values; see ``Form``.
+    help : meaning of the field, in a sentence or two.
+    labels : labels on the page, more than one where they depend on another field; empty where the page asks
+        in another way.
+    default : default in the constructor, in requests and in files; ``REQUIRED`` where a value must be given.
+    least : least number allowed.
+    most : largest count that a server accepts; None for no limit of its own.
+    choices : words allowed.
+    section : section of the command's help.
+    called : name in sentences, where it is not the field's name.
+    word : name as an option, where it is not the field's name.
+    spelled : the whole option as typed, where it does not follow from ``word`` or the name.
+    needs : name of the field without which this one has no meaning.
+    typed : help of the option, where it is not ``help``.
+    typed_default : default of the option as it would be typed, where it does not follow from ``default``; ""
+        otherwise.
+    metavar : placeholder for the value in the help, where it does not follow from the form.
     """
 
     name: str
@@ -175,10 +177,10 @@ class Declaration:
         return self.default is REQUIRED
 
     def check_value(self, value: Any) -> Any:
-        """Return a constructor's value, converted by its form;
-        raise InputError for a value that the field cannot have.
+        """Return a value given to the constructor, converted by the field's form.
 
-        None is returned as it is where it is the default. Forms without a check return the value unchanged.
+        Raises InputError for a value that the field cannot have. None is returned as it is where it is the
+        default. Forms without a check return the value unchanged.
         """
         if value is None and self.default is None:
             return None
@@ -203,7 +205,8 @@ class Declaration:
     def convert_number(self, value: Any, wrong: str, unit: str) -> float:
         """Return a finite float of at least ``least``; raise InputError for anything else.
 
-        ``wrong`` says in the message what is wrong with the number, and ``unit`` in what to give it.
+        In the message, ``wrong`` says what is wrong with the number, and ``unit`` names the unit to give it
+        in.
         """
         number = convert_real(value, self.words)
         is_low = number <= 0 if self.least == "above 0" else number < 0 and self.least == "0"
@@ -215,14 +218,15 @@ class Declaration:
 def declare(
     form: Form, help: str, *labels: PageLabel, default: Any = None, converter: Any = None, **more: Any
 ) -> Any:
-    """Return an attrs field that carries a :class:`Declaration`;
-    the class needs :func:`check_fields` as its transformer.
+    """Return an attrs field that carries a :class:`Declaration`.
+
+    The class of the field needs :func:`check_fields` as its field transformer.
 
     Parameters
     ----------
     form, help, labels : as in :class:`Declaration`.
-    default : of the field; None where none is given.
-    converter : of its values, in place of :meth:`Declaration.check_value`.
+    default : default of the field; None where none is given.
+    converter : converter of its values, used instead of :meth:`Declaration.check_value`.
     more : further parameters of :class:`Declaration`.
     """
     said = Declaration("", form, help, labels, default=default, **more)
@@ -230,10 +234,10 @@ def declare(
 
 
 def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[Any]]:
-    """Return the attributes of a question, each declared one
-    without a converter given :meth:`Declaration.check_value`.
+    """Return the attributes of a question, with :meth:`Declaration.check_value` as the converter of declared
+    ones.
 
-    This is a field transformer of attrs.
+    A declared attribute that has a converter keeps it. This is a field transformer of attrs.
     """
     return [
         one.evolve(converter=partial(Declaration.check_value, find_declaration(one)))
@@ -252,8 +256,9 @@ def find_declaration(one: Attribute[Any]) -> Declaration:
 def list_declarations(
     question: type, sections: Iterable[str | None] | None = None
 ) -> tuple[Declaration, ...]:
-    """Return the declarations of a question's fields in their order,
-    those of the named sections, or all for None.
+    """Return the declarations of a question's fields, in order.
+
+    Only those whose section is in ``sections`` are returned, or all for None.
 
     Examples
     --------

@@ -27,23 +27,24 @@ class SheetQuestion:
     Parameters
     ----------
     paper : "a4" or "letter".
-    part_name : written instead of the workpiece's own name.
-    day : the date on the sheet; None is today.
+    part_name : name of the part on the sheet, instead of the workpiece's own.
+    day : date on the sheet; None is today.
     zero : part zero: "corner", "centre", "hole 2", or x and y of the drawing in the unit of the sheet.
     at : the hole in which the lowest column and the lowest row of the set-up meet, such as "D4".
-    machine_position : (x, y) of the hole that places are measured from, in the machine's own coordinates.
-    thickness : of the part.
-    peg_length, peg_height : of the pegs, and how far they stand out of the jaws.
-    dowel : what the pegs are and how they fit their holes, in words.
-    material : what the part is of, to show how far clamping bends it; None where the sheet does not show it.
-    bend : beyond which the sheet warns of a part that bends or gives.
-    clearance : how far the cutter is to keep off the pegs.
+    machine_position : (x, y), in the machine's coordinates, of the hole from which places are measured.
+    thickness : thickness of the part.
+    peg_length, peg_height : length of the pegs, and how far they stand out of the jaws.
+    dowel : words on the pegs and how they fit their holes.
+    material : material of the part, with which the sheet shows how far clamping bends it; None to leave that
+        out.
+    bend : length above which the sheet warns that the part bends or gives.
+    clearance : distance that the cutter keeps from the pegs.
     plate_thickness : of the plates that pegs stand through.
     support_height : of supports under the part.
-    seating : whether the sheet shows where else the pegs can hold the part; None shows it where it is known.
-    jaw_force : with which the vise or the clamps are closed.
+    seating : whether the sheet shows where else the pegs can hold the part; None for yes where that is known.
+    jaw_force : force with which the vise or the clamps are closed.
     jaw : "screw", "constant", or how many times as stiff as a contact the closed jaw is.
-    friction : coefficient, to report what friction could add.
+    friction : coefficient of friction, to show what friction could add.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """A queue on a cluster of Dask: a scheduler hands tasks to workers on any number of machines.
 
 Workers need this program and nothing else: a task is sent whole, and its record comes back, or goes where it
-is kept. What a lost worker had in hand goes to another one, as far as there are any; when the scheduler is
-lost, the run ends with what there is.
+is kept. The tasks of a lost worker go to other workers, if there are any; when the scheduler is lost, the run
+ends with the outcomes that it has.
 
 M. Rocklin, "Dask: Parallel Computation with Blocked algorithms and Task Scheduling", SciPy 2015.
 """
@@ -46,11 +46,11 @@ class ClusterWorkers:
 
     Parameters
     ----------
-    watcher : is notified of what happens.
-    address : of a scheduler, such as ``tcp://10.0.0.5:8786``; None starts a cluster on this machine.
-    count : of worker processes of a cluster on this machine.
-    store : where workers put records themselves; None lets them come back.
-    gone : why the scheduler is no more, in a sentence; empty while it is there.
+    watcher : observer that is notified of events.
+    address : address of a scheduler, such as ``tcp://10.0.0.5:8786``; None starts a cluster on this machine.
+    count : number of worker processes of a cluster on this machine.
+    store : store that workers write records to; None where records come back with the outcomes.
+    gone : sentence on why the scheduler was lost; empty while it is there.
     """
 
     watcher: TaskObserver
@@ -102,8 +102,9 @@ class ClusterWorkers:
             self.stack.close()
 
     def note_worker_event(self, event: tuple[float, Any]) -> None:
-        """Notify the watcher of a worker that the scheduler reports as lost;
-        runs in a thread of the client's.
+        """Notify the watcher where an event of the scheduler says that a worker is lost.
+
+        Runs in a thread of the Dask client.
         """
         report = event[1]
         if isinstance(report, dict) and report.get("action") == "remove-worker":
@@ -169,7 +170,10 @@ class ClusterWorkers:
             self.client.cancel([future for future, _ in pending.values()])
 
     def submit(self, task: Task, key: str, finished: SimpleQueue[Any]) -> Any:
-        """Return the future of a task under this key; it is put into ``finished`` when it is done."""
+        """Return the future of a task, sent to the cluster under ``key``.
+
+        The future is put into ``finished`` when it is done.
+        """
         future = self.client.submit(run_on_worker, task, self.store, key=key, pure=False)
         future.add_done_callback(finished.put)
         return future
@@ -202,8 +206,9 @@ class ClusterWorkers:
         return self.threads
 
     def get_outcome(self, future: Any, task: Task) -> Outcome | None:
-        """Return the outcome of a task whose future is done;
-        None, with ``gone`` set, where the scheduler has lost it.
+        """Return the outcome of a task whose future is done.
+
+        Return None, and set ``gone``, where the scheduler has lost the task.
 
         Raises
         ------
@@ -270,8 +275,9 @@ def check_address(address: str) -> str:
 
 
 def run_on_worker(task: Task, store: RecordStore | None) -> Outcome:
-    """Return the outcome of a task, done here;
-    its record is written to the store, if any, instead of being returned.
+    """Run a task in this process and return its outcome.
+
+    Where there is a store, the record is written to it instead of being returned.
     """
     from distributed import get_worker
 

@@ -1,11 +1,11 @@
-"""How long tasks take: estimated before, so that the longest come first, and measured afterwards.
+"""Durations of tasks: estimated before, so that the longest come first, and measured afterwards.
 
 The estimate is a power law. A search grows with the number of faces and with the number of steps that the
 lattice offers between two pegs on a part of that size. Constants and exponents come from a fit to measured
 runs (``benchmarks/batch_estimate.py``); docs/benchmarks.md says how near it comes. Only the order and the
-shares count: how fast a machine is shows while it runs.
+proportions of estimates count; the speed of a machine is found while it runs.
 
-What tasks took is a file of lines beside the records, which does not say whether a task is done.
+Durations are kept in a file of lines beside the records; this file does not say whether a task is done.
 Records are the same bytes wherever and however fast they came to be, so this is kept apart from them. Each
 line is appended at once, so that two runs can write one file; a line cut short by the end of a run is passed
 over.
@@ -51,10 +51,9 @@ def predict_reading_seconds(ending: str, size: int) -> float:
 
 
 def compute_measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
-    """Return the law for a toolkit (a key of :data:`LAWS`),
-    log of the number of faces, and log of the lattice steps.
+    """Return (law, log of the number of faces, log of the number of lattice steps) to estimate a search.
 
-    ``size`` is width and height of the part in mm.
+    ``law`` is a key of :data:`LAWS` for the toolkit, ``size`` the width and height of the part in mm.
     """
     if not toolkit.plates:
         return toolkit.law, log(faces), 0.0
@@ -80,8 +79,8 @@ class TaskDurations:
 
     Parameters
     ----------
-    path : of the file, in a folder that is there when the first line is added.
-    known : what it held, and what was added.
+    path : path of the file; its folder must exist when the first line is added.
+    known : by name of the task, the durations read from the file and those added since.
 
     Raises
     ------

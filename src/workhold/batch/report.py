@@ -1,6 +1,4 @@
-"""What a batch leaves for people and other programs: a report, two tables, and setup sheets.
-
-Sheets are drawn where they are asked for.
+"""Output of a batch for people and other programs: a report, two tables and, if asked for, setup sheets.
 
 The report is one page of plain HTML that needs nothing else, with what failed and why, and a table to sort.
 Records and sheets are linked where they stand beside the page; all else, pictures too, is in it.
@@ -106,9 +104,9 @@ class Summary:
 
     Parameters
     ----------
-    headline : what was asked.
+    headline : headline that says what was asked.
     sentences : how it went.
-    events : what happened on the way, such as the death of a worker.
+    events : events on the way, such as the death of a worker, one sentence each.
     """
 
     headline: str
@@ -122,12 +120,12 @@ class Report:
 
     Parameters
     ----------
-    folder : of the page; what lies in it is linked.
-    store : of the records.
-    rows : HTML of each row on the page.
-    bad : what failed, a part and why, with the toolkits for which it holds.
-    states : how many jobs came out how.
-    left_out : how many rows there was no room for.
+    folder : folder of the page; files in it are linked.
+    store : store of the records.
+    rows : HTML of each row of the page's table.
+    bad : failures: part and reason, with the toolkits that each holds for.
+    states : number of jobs in each state.
+    left_out : number of rows left out for want of room.
     """
 
     folder: Path
@@ -139,8 +137,8 @@ class Report:
     left_out: int = field(default=0, init=False)
 
     def add(self, job: JobRow, sheet: Path | None = None) -> None:
-        """Add a job's row; ``sheet`` is the path of the setup
-        sheet of its first choice, None where there is none.
+        """Add a job's row to the page; ``sheet`` is the setup sheet of its first choice, None where there is
+        none.
 
         Every job is counted, but only the first :data:`MOST_ROWS` have a row on the page.
         """
@@ -191,8 +189,9 @@ class Report:
         return f"<tr>{''.join(cells)}</tr>\n"
 
     def make_links(self, row: Row, sheet: Path | None) -> str:
-        """Return HTML with links to a job's record and to its setup sheet,
-        or the command that makes the sheet; "" if not held.
+        """Return HTML with links to a job's record and setup sheet; "" where the part is not held.
+
+        Without a sheet, the command that makes it is shown.
         """
         if row["state"] != "held":
             return ""
@@ -273,8 +272,9 @@ def escape_html(words: Any) -> str:
 
 
 def make_cell(content: str, *, key: str | None = None, name: str = "", bad: bool = False) -> str:
-    """Return a table cell of HTML; ``key`` is what it is sorted by,
-    if not its text, and ``name`` its CSS class.
+    """Return a table cell of HTML.
+
+    ``key`` is the value to sort by, the text if None; ``name`` is the CSS class.
     """
     classes = " ".join(filter(None, (name, "bad" if bad else "")))
     attributes = (f' class="{classes}"' if classes else "") + ("" if key is None else f' data-key="{key}"')
@@ -301,7 +301,8 @@ def write_results(
     summary: Summary,
     sheets: Path | None,
 ) -> Report:
-    """Write tables and report of all jobs into a folder, and sheets of first choices; return the report.
+    """Write the tables and the report of all jobs into a folder, and sheets of first choices; return the
+    report.
 
     Parameters
     ----------
@@ -317,8 +318,9 @@ def write_results(
 
 
 def write_first_sheet(row: JobRow, store: RecordStore, folder: Path) -> Path | None:
-    """Return the path of the setup sheet of a job's first choice,
-    written unless it is there; None without a fixture.
+    """Return the path of the setup sheet of a job's first choice; None where it has no fixture.
+
+    The sheet is written unless the file exists.
     """
     if row.row["state"] != "held":
         return None

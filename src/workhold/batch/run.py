@@ -1,9 +1,8 @@
 """A batch from the first drawing to the last answer: its jobs, and how they are done.
 
-A job is a part and what it shall be held in.
-
-What is done is passed over, what is not is given out, longest first. Records alone say what is done.
-A run that ends, in whatever way, leaves whole records, and the next one goes on.
+A job is a part and a toolkit to hold it in. Jobs that have a record are done and skipped; the others are
+handed out, longest first. A run that ends, in whatever way, leaves complete records, so that the next run
+continues.
 """
 
 from __future__ import annotations
@@ -44,12 +43,13 @@ ANY_PART = Workpiece.from_loops("any", [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0,
 
 @frozen(eq=False, slots=False)
 class ToolkitQuery:
-    """A toolkit, and what is asked of the fixtures in it.
+    """A toolkit, and the query for fixtures in it.
 
     Parameters
     ----------
-    name : what the toolkit is called.
-    query : of :data:`ANY_PART`, whose place the part takes; or why nothing can be asked.
+    name : name of the toolkit.
+    query : query for :data:`ANY_PART`, a placeholder that each part replaces; or the error that says why
+        nothing can be asked.
     """
 
     name: str
@@ -71,13 +71,13 @@ class ToolkitQuery:
 
 @frozen(eq=False)
 class PartRequest:
-    """A part, and all that it shall be held in.
+    """A part, and the toolkits to hold it in.
 
     Parameters
     ----------
-    listed : the part.
-    options : of reading it, see ``files.part.load.read_workpiece``.
-    held_in : the toolkits; most parts share them.
+    listed : the part as listed by the user.
+    options : options of reading it, see ``files.part.load.read_workpiece``.
+    held_in : toolkits with their queries; many parts share one tuple.
     """
 
     listed: ListedPart
@@ -91,12 +91,12 @@ class BatchPart:
 
     Parameters
     ----------
-    request : what is asked of it.
-    name : of the task that reads it; empty where its file cannot be opened.
+    request : the request for this part.
+    name : name of the task that reads it; empty where its file cannot be opened.
     refusal : why it cannot be read; empty where it can.
-    content : hash of what was read; empty before.
-    faces, size : how many faces it has, and its width and height in mm.
-    remarks : what to say about the drawing.
+    content : hash of the part as read; empty before it is read.
+    faces, size : number of its faces, and its width and height in mm.
+    remarks : remarks on the drawing.
     """
 
     request: PartRequest
@@ -109,8 +109,9 @@ class BatchPart:
 
     @classmethod
     def from_request(cls, request: PartRequest) -> BatchPart:
-        """Return the part of a request, with the name of the task that reads it,
-        or the refusal where its file cannot be opened.
+        """Return the part of a request before it is read, with the name of the task that reads it.
+
+        Where its file cannot be opened, the part has a refusal instead.
         """
         try:
             return cls(request, make_reading(request).name)
@@ -140,15 +141,15 @@ def make_reading(request: PartRequest) -> DrawingTask:
 
 @define(eq=False)
 class BatchJob:
-    """A part with something it shall be held in.
+    """A part together with a toolkit to hold it in.
 
     Parameters
     ----------
-    part, held_in : these.
-    name : of its task; empty where there is none.
-    refusal : why there is none: the part cannot be read, or this cannot be asked; empty otherwise.
+    part, held_in : the part, and the toolkit with its query.
+    name : name of the job's task; empty where there is none.
+    refusal : why there is no task: the part cannot be read, or the query cannot be asked; empty otherwise.
     estimate : predicted seconds of its task.
-    failure : why its task has failed, though it might not do so again; empty otherwise.
+    failure : why the task has failed in a way that may not occur again; empty otherwise.
     """
 
     part: BatchPart
@@ -164,8 +165,9 @@ class BatchJob:
         return f"{self.part.request.listed.name} in {self.held_in.name}"
 
     def make_answering(self, record: bytes, best: int) -> QueryTask:
-        """Return the task that answers the job;
-        ``record`` is that of the part, ``best`` the number of fixtures to keep.
+        """Return the task that answers the job.
+
+        ``record`` is the record of the part's drawing, ``best`` the number of fixtures to keep.
         """
         assert isinstance(self.held_in.query, Query)
         return QueryTask(self.name, self.title, record, self.held_in.query, best)
@@ -191,8 +193,9 @@ class BatchState:
     Parameters
     ----------
     parts, jobs : all of them, in the order asked for.
-    fresh, kept : how many jobs were answered now, and how many were before; equal ones count once.
-    is_complete : whether it came to its end.
+    fresh, kept : numbers of jobs answered now, and of jobs answered by earlier runs; jobs with the same task
+        count once.
+    is_complete : whether the run came to its end.
     """
 
     parts: list[BatchPart]
@@ -208,10 +211,10 @@ class BatchRunner:
 
     Parameters
     ----------
-    store : where records are kept.
-    queue : which has the workers.
-    measured : what tasks took.
-    counting : is notified of progress.
+    store : store that keeps the records.
+    queue : queue that runs tasks on workers.
+    measured : durations of tasks.
+    counting : observer that is notified of progress.
     stop : when set, the run ends soon.
     """
 
@@ -224,10 +227,11 @@ class BatchRunner:
     def do(
         self, doing: str, items: Sequence[T], seconds: Callable[[T], float], task_of: Callable[[T], Task]
     ) -> tuple[dict[str, Outcome], int]:
-        """Do the tasks of items without a record, longest first; items with the same name share one task.
+        """Run the tasks of those items that have no record, longest first; items with the same name share one
+        task.
 
-        Return the outcomes of the tasks done now, by name, and the number that were done before. Raises
-        InputError when a record cannot be kept.
+        Return (outcomes by name of the task, number of tasks that had a record before). Raises InputError
+        when a record cannot be kept.
 
         Parameters
         ----------
@@ -244,7 +248,7 @@ class BatchRunner:
         outcomes: dict[str, Outcome] = {}
 
         def tasks() -> Iterator[Task]:
-            """Yield the tasks, longest first, that no other run has done meanwhile."""
+            """Yield the tasks, longest first, skipping those that another run has done meanwhile."""
             for name in sorted(reckoned, key=reckoned.__getitem__, reverse=True):
                 if self.store.has(name):
                     # Another run has done it meanwhile.
@@ -272,8 +276,9 @@ class BatchRunner:
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
-        """Keep what a task took, and its record unless its worker has kept that;
-        raise InputError where there is no room.
+        """Keep the duration of a task, and its record unless the worker has kept it already.
+
+        Raises InputError where there is no room.
         """
         try:
             self.measured.add(outcome)
@@ -287,13 +292,13 @@ GO_ON = "The answers so far are kept: make room, and start the same command agai
 
 
 def run_batch(requests: Iterable[PartRequest], best: int, work: BatchRunner) -> BatchState:
-    """Return the state of a batch after reading all parts and answering all jobs that are not done already.
+    """Return the state of a batch after reading all parts and answering all jobs without a record.
 
     The state is incomplete where ``work.stop`` was set.
 
     Parameters
     ----------
-    best : how many fixtures of each job, the best, to keep.
+    best : number of fixtures to keep for each job, the best ones.
 
     Raises
     ------
@@ -341,7 +346,10 @@ def read_parts(batch: BatchState, work: BatchRunner) -> None:
 
 
 def list_jobs(part: BatchPart, best: int) -> Iterator[BatchJob]:
-    """Yield a job for each toolkit of a part; a job that cannot be asked has a refusal and no name."""
+    """Yield a job for each toolkit of a part.
+
+    A job whose query cannot be asked, or whose part cannot be read, has a refusal and no name.
+    """
     for held_in in part.request.held_in:
         if part.refusal or not part.content:
             yield BatchJob(part, held_in, refusal=part.refusal)

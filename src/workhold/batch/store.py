@@ -1,13 +1,14 @@
-"""Records, the bytes that are kept of what came of a task, and where they are kept.
+"""Records of the outcomes of tasks, as bytes, and the stores that keep them.
 
 The record of an answer is a result file (``files.result.writer``) of the best fixtures, which every command
 that takes one can open. That of a drawing holds the part in the form that ``files.part.data`` reads, and what
-is to be said about it. What cannot be read or asked is a record too: it would be refused again.
+is to be said about it. A refusal, for what cannot be read or asked, is a record too, since it would be
+refused again.
 
 A folder keeps each record in a file under its task's name, written whole or not at all. Beside it stands the
-checksum of its name and its bytes, which is written first: a record that has been changed, cut or swapped
-since is none. Two runs may use one folder at a time: a record that both write has the same bytes, and takes
-its name at once. An object store or another machine keeps them wherever fsspec can write:
+checksum of its name and its bytes, which is written first: a record that was changed, cut short or swapped
+afterwards does not count. Two runs may use one folder at a time: a record that both write has the same bytes,
+and gets its name in one step. An object store or another machine keeps them wherever fsspec can write:
 ``s3://bucket/folder``, ``sftp://host/folder``. Workers of a cluster write there themselves, so that no record
 passes through the machine that asks.
 """
@@ -78,13 +79,14 @@ def make_part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
 
 
 def make_refusal_record(sentence: str) -> bytes:
-    """Return the record of something that cannot be read or asked, with the sentence that says why."""
+    """Return the record of a part or query that was refused, with the sentence that says why."""
     return encode_record({"format": REFUSAL, "refusal": [sentence]})
 
 
 def encode_record(content: dict[str, Any]) -> bytes:
-    """Return a record as a line of JSON;
-    the last entry must be a list, so that it ends as every record does.
+    """Return a record as one line of JSON.
+
+    The last entry of ``content`` must be a list, so that the line ends as every record does.
     """
     return json.dumps(content).encode() + b"\n"
 
@@ -95,8 +97,9 @@ def make_checksum_line(name: str, content: bytes) -> bytes:
 
 
 def is_whole(name: str, content: bytes, line: bytes) -> bool:
-    """Return whether bytes are the record of a task:
-    they begin and end as a record does, and fit its checksum line.
+    """Return whether ``content`` is the complete record of the task ``name``.
+
+    It must begin and end as a record does, and match its checksum ``line``.
 
     >>> record = make_refusal_record("no")
     >>> line = make_checksum_line("a", record)
@@ -143,11 +146,11 @@ class RecordStore(Protocol):
     __slots__ = ()
 
     def has(self, name: str) -> bool:
-        """Return whether a whole record of a task is there, that is whether the task is done."""
+        """Return whether a complete record of a task is there, which means that the task is done."""
         return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is none, or it is not whole."""
+        """Return the record of a task; None where there is no complete one."""
 
     def write(self, name: str, record: bytes) -> None:
         """Keep the record of a task.
@@ -162,8 +165,9 @@ class RecordStore(Protocol):
         """Return the path or URL at which the record of a task is, or would be."""
 
     def open_record(self, name: str) -> AbstractContextManager[Path]:
-        """Yield the path of a file with the record of a task that is done;
-        it need not exist after the block.
+        """Yield the path of a file with the record of a task that is done.
+
+        The file may be gone after the block.
         """
 
 
@@ -173,7 +177,7 @@ class FolderStore(RecordStore):
 
     Parameters
     ----------
-    folder : is made with the first record.
+    folder : the folder, created with the first record.
     """
 
     folder: Path
@@ -187,7 +191,7 @@ class FolderStore(RecordStore):
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is none, or it is not whole."""
+        """Return the record of a task; None where there is no complete one."""
         path = self.make_record_path(name)
         try:
             content, line = (read_limited(file, RECORD) for file in (path, path.with_suffix(CHECKSUM)))
@@ -232,7 +236,7 @@ class UrlStore(RecordStore):
         return system, path
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is none, or it is not whole."""
+        """Return the record of a task; None where there is no complete one."""
         system, path = self.locate_record(name)
         try:
             content: bytes = system.cat_file(path)
@@ -264,7 +268,7 @@ class UrlStore(RecordStore):
 
 
 def open_store(url: str) -> RecordStore:
-    """Return the store at a URL, or in a folder, which all workers must see.
+    """Return the store at a URL or in a folder; all workers must be able to reach it.
 
     Raises
     ------

@@ -89,8 +89,10 @@ class JobRow:
 
 
 def list_job_rows(jobs: Sequence[BatchJob], store: RecordStore, measured: TaskDurations) -> Iterator[JobRow]:
-    """Yield each job in order with its row of results and the
-    rows of its best fixtures, from its record if it has one.
+    """Yield each job in order with its row of results and the rows of its best fixtures.
+
+    The values come from the job's record; without one, the row has none of the record's values and there are
+    no fixtures.
     """
     for job in jobs:
         part, query = job.part, job.held_in.query
@@ -118,8 +120,9 @@ def list_job_rows(jobs: Sequence[BatchJob], store: RecordStore, measured: TaskDu
 
 
 def take_record(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob) -> list[Row]:
-    """Fill a job's row from its record, in place,
-    and return the rows of its best fixtures; [] for a refusal.
+    """Fill a job's row from its record, in place, and return the rows of its best fixtures; [] for a refusal.
+
+    ``named`` has the cells that every row of the job begins with.
     """
     if record["refusal"]:
         row |= {"state": "refused", "reason": record["refusal"]}
@@ -147,9 +150,10 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob) 
 
 
 def is_held_by_friction(fixture: Mapping[str, Any]) -> bool | None:
-    """Return whether flat jaws press all over what they touch, and neither touches a corner alone.
+    """Return whether friction holds a fixture, given as an entry of a result file.
 
-    Under straps it is whether a hand seats the part and all that acts on it is held; None where nobody looked.
+    Between flat jaws: True where both jaws press all over their contacts and neither touches corners only.
+    Under straps: True where a push by hand seats the part and all loads are held; None where nobody looked.
     """
     if is_strapped(fixture):
         needs = [
@@ -221,8 +225,9 @@ def list_table_names() -> tuple[str, str]:
 
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
-    """Yield the rows unchanged while writing them to both tables in a folder;
-    the files are there once all are taken.
+    """Yield the rows unchanged while writing them to both tables in a folder.
+
+    The files appear once all rows are taken.
     """
     table = write_parquet_table if has_parquet() else write_csv_table
     with ExitStack() as files:
@@ -233,7 +238,7 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
         waiting: list[JobRow] = []
 
         def add_waiting() -> None:
-            """Write the rows that wait."""
+            """Write the rows that are collected and not written yet."""
             add_results([one.row for one in waiting])
             add_best([row for one in waiting for row in one.best])
             waiting.clear()
@@ -247,9 +252,7 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
 
 
 def convert_cell(value: Any) -> Any:
-    """Return a value as it stands in CSV: "true" or "false",
-    a number with 12 digits, or text that can be encoded.
-    """
+    """Return a value as a cell of CSV: "true" or "false", a number with 12 digits, or encodable text."""
     if isinstance(value, str):
         return make_encodable(value)
     if isinstance(value, bool):

@@ -1,12 +1,10 @@
-"""Tasks: what a worker does, under which name, and what a queue of workers is.
+"""Tasks for workers, their names and outcomes, and the interface of a queue of workers.
 
-A task comes in, its record goes out.
-
-A worker needs nothing but the task and this program. Outcomes depend on nothing but the task, to the byte;
-only what they took is kept beside them. A name is the hash of what decides an outcome: version, number of
-answers (``version.ANSWERS``), forms of records, conventions, part, toolkit and what is asked. So the same
-work has the same name wherever it is done. A queue takes tasks, gives them to workers, and hands over
-what came of them.
+A worker turns a task into its record, and needs nothing but the task and this program. Records depend on
+nothing but the task, to the byte; durations are kept elsewhere. A name is the hash of all that decides a
+record: version, number of answers (``version.ANSWERS``), forms of records, conventions, part, toolkit and
+what is asked. So the same work has the same name wherever it is done. A queue takes tasks, gives them to
+workers, and yields their outcomes.
 """
 
 from __future__ import annotations
@@ -62,8 +60,8 @@ LETTERS = 32
 
 @cache
 def identify_program() -> str:
-    """Return the version of the program and a hash of all in it that decides outcomes;
-    equal on every machine.
+    """Return the program's version and a hash of everything in it that decides outcomes; equal on every
+    machine.
     """
     numbers = sorted((name, value) for name, value in vars(conventions).items() if name.isupper())
     content = repr((ANSWERS, FORMAT, PART, REFUSAL, numbers))
@@ -71,8 +69,9 @@ def identify_program() -> str:
 
 
 def make_task_name(*content: Any) -> str:
-    """Return the name of a task:
-    a hash of this program and of bytes and plain data, in order, as 32 hexadecimal digits.
+    """Return the name of a task: 32 hexadecimal digits of a hash of this program and ``content``.
+
+    ``content`` are bytes and plain data; their order counts.
 
     >>> make_task_name(b"part", {"best": 3}) == make_task_name(b"part", {"best": 3}), len(make_task_name())
     (True, 32)
@@ -91,9 +90,9 @@ class Task:
 
     Parameters
     ----------
-    name : see ``batch.tasks``.
-    title : what it is called where people see it.
-    program : of the sender; a worker with another one would give other outcomes.
+    name : hash of all that decides the record, see ``batch.tasks``.
+    title : name of the task for people.
+    program : identity of the sender's program; a worker with another one would give other outcomes.
     """
 
     name: str
@@ -102,7 +101,7 @@ class Task:
 
     @property
     def most_seconds(self) -> float:
-        """Seconds within which the task is done or never will be; inf without such a limit."""
+        """Seconds after which a task that is not done is given up; inf without such a limit."""
         return inf
 
     def prepare(self) -> None:
@@ -122,12 +121,12 @@ class Task:
 
 @frozen
 class DrawingTask(Task):
-    """Reads a drawing.
+    """A task that reads a drawing.
 
     Parameters
     ----------
-    ending : of its file's name, which shows what it is.
-    content : of the file.
+    ending : ending of the file's name, which tells the format.
+    content : content of the file.
     options : keyword arguments of ``files.part.load.read_workpiece``.
     """
 
@@ -163,13 +162,13 @@ class DrawingTask(Task):
 
 @frozen
 class QueryTask(Task):
-    """Finds the fixtures of a part in a toolkit.
+    """A task that finds the fixtures of a part in a toolkit.
 
     Parameters
     ----------
-    part : the record of its drawing.
-    query : what is asked, of another part whose place it takes.
-    best : how many of the fixtures, the best, to keep; all are counted, or where they are very many, estimated.
+    part : record of the part's drawing.
+    query : the query, for a placeholder part that this part replaces.
+    best : number of fixtures to keep, the best ones; all are counted or, where they are very many, estimated.
     """
 
     part: bytes = field(repr=False)
@@ -203,14 +202,14 @@ class QueryTask(Task):
 
 @define(eq=False)
 class FirstFixtures:
-    """Takes the fixtures of an answer in blocks, and keeps the first few, to save memory.
+    """A receiver of fixtures in blocks that keeps only the first few, to save memory.
 
     Parameters
     ----------
-    most : how many to keep.
-    folder : where there is room for what is being sorted.
-    table : those kept.
-    result : that they are of, with their seating, where it is known.
+    most : number of fixtures to keep.
+    folder : folder with room for sorting.
+    table : the fixtures kept.
+    result : the result that they belong to, with their seating where it is known.
     """
 
     most: int
@@ -241,13 +240,13 @@ class Outcome:
 
     Parameters
     ----------
-    name : of the task.
-    record : to keep; None where there is none, because the task failed in a way that may not come again, or
-        because the worker has put it where it belongs.
-    failure : why there is none, in a sentence; empty otherwise.
-    seconds : that the work took.
-    worker : who did it.
-    has_no_room : whether it failed for want of room on a disk, as others will.
+    name : name of the task.
+    record : record to keep; None where the task failed in a way that may not occur again, or where the worker
+        has written the record to the store.
+    failure : why there is no record, in a sentence; empty otherwise.
+    seconds : seconds that the work took.
+    worker : name of the worker.
+    has_no_room : whether it failed because a disk is full, so that other tasks will fail too.
     """
 
     name: str
@@ -259,8 +258,9 @@ class Outcome:
 
 
 def run_task(task: Task, worker: str = "") -> Outcome:
-    """Return the outcome of a task that is done here;
-    errors become a refusal's record or a failure, and are not raised.
+    """Run a task in this process and return its outcome.
+
+    Errors are not raised: they become a refusal's record or a failure.
     """
     start = perf_counter()
     record, failure, has_no_room = None, "", False
@@ -295,8 +295,9 @@ class UnfitWorkerError(WorkholdError):
 
 
 def make_ready(task: Task) -> None:
-    """Prepare this process for a task;
-    raise UnfitWorkerError where its program is another one or lacks something.
+    """Prepare this process for a task.
+
+    Raises UnfitWorkerError where this process runs another program than the sender, or lacks something.
     """
     if task.program != identify_program():
         raise UnfitWorkerError(

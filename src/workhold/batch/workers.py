@@ -57,7 +57,7 @@ def run_worker(connection: Connection, memory_bytes: int) -> None:
 
 @define(eq=False)
 class Worker:
-    """A worker process and what it has in hand."""
+    """A worker process and the task that it is doing."""
 
     title: str
     process: Any
@@ -82,10 +82,10 @@ class LocalWorkers:
 
     Parameters
     ----------
-    count : how many.
-    watcher : is notified of what happens.
-    memory_bytes : that each may take; None is an equal share of this machine's.
-    seconds : that a task may take, after which its worker is ended and the task has failed.
+    count : number of processes.
+    watcher : observer that is notified of events.
+    memory_bytes : bytes that each process may take; None for an equal share of this machine's memory.
+    seconds : seconds that a task may take; then its worker is ended and the task has failed.
     """
 
     count: int
@@ -150,14 +150,14 @@ class LocalWorkers:
             self.workers.append(self.start_worker(self.find_free_title()))
 
     def find_free_title(self) -> str:
-        """Return the first of "worker 1", "worker 2" … that no worker has."""
+        """Return the first of "worker 1", "worker 2" … that is not the title of a worker."""
         taken = {one.title for one in self.workers}
         return next(
             title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken
         )
 
     def start_worker(self, title: str) -> Worker:
-        """Return a worker whose process is started and not ready yet."""
+        """Return a worker whose process has been started and need not be ready yet."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         memory = compute_memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
@@ -168,8 +168,9 @@ class LocalWorkers:
         return Worker(title, process, ours)
 
     def give(self, one: Worker, task: Task) -> None:
-        """Send a task to an idle worker and start its clock;
-        a dead worker is not noticed here, but when it is next waited for.
+        """Send a task to an idle worker and start its clock.
+
+        That a worker is dead is noticed later, in :meth:`wait_for_workers`.
         """
         one.task, one.seconds = task, min(self.seconds, task.most_seconds)
         one.ends_at = monotonic() + one.seconds
@@ -183,10 +184,10 @@ class LocalWorkers:
         return [one for one in self.workers if one.connection in ready]
 
     def receive_outcome(self, one: Worker) -> Outcome | None:
-        """Return the outcome that a worker has sent;
-        None where it says that it is ready, or has ended and is dropped.
+        """Return the outcome that a worker has sent.
 
-        Raises InputError where too many workers in a row end before they are ready.
+        Return None where the worker says that it is ready, or has ended, in which case it is removed. Raises
+        InputError where too many workers in a row end before they are ready.
         """
         try:
             kind, _, value = one.connection.recv()
@@ -223,8 +224,9 @@ class LocalWorkers:
             )
 
     def replace_lost_worker(self, one: Worker, task: Task, times: int) -> Outcome | None:
-        """Notify the watcher that a worker died during a task;
-        return the task's failure if it has been tried before, else None.
+        """Notify the watcher that a worker died during a task, and return the task's failure or None.
+
+        The failure is returned where the task has been tried before; otherwise it is tried again.
         """
         how = explain_worker_end(one)
         if times < MOST_TRIES:
@@ -243,7 +245,7 @@ class LocalWorkers:
 
 
 def explain_worker_end(one: Worker) -> str:
-    """Return how a process ended, such as "by signal 9" or "with code 1"."""
+    """Return words on how a worker's process ended, such as "by signal 9" or "with code 1"."""
     code = one.process.exitcode
     return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
 

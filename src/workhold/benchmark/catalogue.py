@@ -1,18 +1,19 @@
 """The sets of the benchmark, read from the manifest that comes with the program, and their files' form.
 
 The manifest names every workpiece with family, reason, source, licence and checksum, and every set with its
-toolkit, the counts of its complete list and the checksums of it. Lists themselves are not shipped: a search
+toolkit, the counts of its complete list and the list's checksums. Lists themselves are not shipped: a search
 makes them, and the checksums say whether they are the ones meant.
 
-A set's file, ``workhold-benchmark/1``, has the question, then one fixture in a line. What a fixture says is
-that of a result file, less what is a matter of opinion. Figures are those of the model; the order is by type,
-direction, holes and pose, not by preference. The manual describes the form for other programs
-(docs/benchmark.md).
+A set's file, ``workhold-benchmark/1``, has the query, then one fixture in each line. A fixture has the keys
+that it has in a result file, except those that are a matter of opinion. Figures are those of the model; the
+order is by type, direction, holes and pose, not by preference. The manual describes the form for other
+programs (docs/benchmark.md).
 
 Glossary
 --------
-head : everything in the file but the fixtures.
-line : one fixture as JSON.
+set : a workpiece and a toolkit, with the complete list of the fixtures that hold the one in the other.
+head : everything in a set's file except the fixtures.
+line : one fixture as JSON text.
 """
 
 from __future__ import annotations
@@ -70,12 +71,12 @@ class SetEntry:
 
     Parameters
     ----------
-    name : of the set, by which files and commands name it.
+    name : of the set, in files and commands.
     part : name of the workpiece.
-    toolkit : its kind and the fields that differ from the defaults, as ``make_toolkit`` takes them.
-    listing : "all" for two clamps; None for other toolkits.
+    toolkit : its kind, and the fields that differ from the defaults, as ``make_toolkit`` takes them.
+    listing : "all" for two clamps (every pair is listed); None for other toolkits.
     reason : why it is in the benchmark.
-    counts : how many fixtures of each type the complete list has.
+    counts : number of fixtures in the complete list by type.
     sums : checksums, see :func:`compute_checksums`.
     """
 
@@ -100,7 +101,7 @@ def read_benchmark_file(name: str) -> bytes:
 
 @cache
 def load_manifest() -> Mapping[str, Any]:
-    """Return the manifest of the benchmark, parsed from JSON; cached."""
+    """Return the manifest of the benchmark as parsed JSON; cached."""
     content: dict[str, Any] = json.loads(read_benchmark_file(MANIFEST))
     return content
 
@@ -128,7 +129,7 @@ def find_set(name: str) -> SetEntry:
     Raises
     ------
     InputError
-        For a name that no set has, with those that are close.
+        For an unknown name; the message gives similar ones.
     """
     by_name = {one.name: one for one in load_sets()}
     if name in by_name:
@@ -144,7 +145,7 @@ def make_set_query(entry: SetEntry) -> Query:
     Raises
     ------
     InputError
-        When the workpiece's file is not the one in the manifest.
+        When the checksum of the workpiece's file is not the one in the manifest.
     """
     content = read_benchmark_file(f"parts/{entry.part}.json")
     if sha256(content).hexdigest() != load_manifest()["workpieces"][entry.part]["sha256"]:
@@ -155,7 +156,7 @@ def make_set_query(entry: SetEntry) -> Query:
 
 
 def make_set_text(name: str, result: Result) -> SetText:
-    """Return the head and the lines of a set's file, from the complete result of the set's query."""
+    """Return (head, lines) of a set's file, from the complete result of the set's query."""
     fixtures = [
         reduce_fixture(json.loads(line))
         for lines in write_fixture_lines(result.table, result.toolkit, result.workpiece)
@@ -166,7 +167,7 @@ def make_set_text(name: str, result: Result) -> SetText:
 
 
 def reduce_fixture(fixture: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a fixture object of a result file with only the keys that a set's file has."""
+    """Return a fixture object of a result file, reduced to the keys that a set's file has."""
     quality = {key: fixture["quality"][key] for key in FIGURE_KEYS if key in fixture["quality"]}
     return {key: fixture[key] for key in KEPT if key in fixture} | {"quality": quality}
 
@@ -185,7 +186,7 @@ def make_order_key(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def make_set_head(name: str, result: Result) -> dict[str, Any]:
-    """Return the head of a set's file, without fixtures, from a result."""
+    """Return the head of a set's file (everything except the fixtures), from a result."""
     said = result_head(result)
     key = next(key for key in TOOLKIT_KEYS if key in said)
     workpiece = {key: said["workpiece"][key] for key in ("name", "units", "loops")}
@@ -212,10 +213,11 @@ def write_set_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
 
 
 def compute_checksums(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
-    """Return the checksums (SHA-256, in hexadecimal) of a set: "file", "fixtures" and "holes".
+    """Return the checksums of a set, SHA-256 in hexadecimal, under the keys "file", "fixtures" and "holes".
 
-    "file" is of the whole text, "fixtures" of the lines joined by line ends, and "holes" of the whole numbers
-    in them. The last is the same on machines whose arithmetic rounds otherwise.
+    "file" is of the whole text and "fixtures" of the lines joined by line ends. "holes" is of the whole
+    numbers in the lines only (:func:`write_holes_line`); it is the same on machines whose arithmetic rounds
+    otherwise.
     """
     return {
         "file": compute_sha256(write_set_text(head, lines)),
@@ -225,7 +227,7 @@ def compute_checksums(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str
 
 
 def write_holes_line(line: str) -> str:
-    """Return the type, the directions and each peg's column, row and face of a fixture's line, as JSON
+    """Return a fixture's line reduced to type, directions, and column, row and face of each peg, as JSON
     text.
     """
     fixture = json.loads(line)

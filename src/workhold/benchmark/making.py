@@ -1,4 +1,6 @@
-"""The complete lists of sets: made, written with all that a copy of the benchmark needs, and compared."""
+"""The complete lists of sets: made by a search, written with all that a copy of the benchmark needs, and
+compared.
+"""
 
 from __future__ import annotations
 
@@ -47,14 +49,14 @@ LARGE = 5000
 
 @frozen
 class MadeSet:
-    """A set that was made.
+    """A set whose list was made.
 
     Parameters
     ----------
     entry : its entry in the manifest.
     path : its file.
-    counts : of its fixtures, by type.
-    differs : the names of checksums that are not those of the manifest: "fixtures", "holes", "file".
+    counts : number of its fixtures by type.
+    differs : which of the checksums "fixtures", "holes" and "file" are not those of the manifest.
     """
 
     entry: SetEntry
@@ -69,14 +71,20 @@ class MadeSet:
 
     @property
     def is_same(self) -> bool:
-        """Whether the list is the one of the manifest, apart from rounding."""
+        """Whether the list is the one of the manifest; numbers may differ by rounding."""
         return "holes" not in self.differs
 
 
 def make_list(
     entry: SetEntry, threads: int | None = None, cancel: Event | None = None
 ) -> tuple[dict[str, Any], list[str]] | None:
-    """Return the head and the lines of a set, from a search; None where that was cancelled."""
+    """Return (head, lines) of a set's file, made by a search; None if that was cancelled.
+
+    Parameters
+    ----------
+    threads : number of threads; None for the default.
+    cancel : when set, the search ends.
+    """
     result = answer(make_set_query(entry), threads=threads, cancel=cancel)
     return make_set_text(entry.name, result) if result.complete else None
 
@@ -92,13 +100,14 @@ def make_and_write_sets(
 ) -> Iterator[MadeSet]:
     """Make sets one after the other, write each into a folder, and yield it.
 
-    Ends without a further set once the search is cancelled.
+    Once ``cancel`` is set, no further set is yielded.
 
     Parameters
     ----------
     parquet : whether large sets are written as Parquet instead of JSON; needs pyarrow.
-    progress : called with the share of the sets that are done and the fixtures in them.
-    cancel : when set, no further set is made.
+    threads : number of threads of each search; None for the default.
+    progress : called with the share of the sets that are done and the number of fixtures in these.
+    cancel : when set, the running search ends.
     """
     total, fixtures, done = sum(one.size + 200 for one in chosen), 0, 0
     for entry in chosen:
@@ -121,8 +130,10 @@ def make_and_write_sets(
 
 
 def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
-    """Write manifest, checker, schemas and the workpieces of some sets into a
-    folder; make the folder if needed.
+    """Write into a folder what all sets need: manifest, checker and schemas; also the workpieces of the
+    chosen sets.
+
+    The folder is made if needed.
     """
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     for name in (*COMMON, *(f"parts/{part}.json" for part in {one.part for one in chosen})):
@@ -130,7 +141,7 @@ def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
 
 
 def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> None:
-    """Write a set as Parquet: a row for each fixture, and the head in the metadata of the schema."""
+    """Write a set as Parquet, with a row for each fixture and the head in the metadata of the schema."""
     arrow, tables = load_arrow()
     rows = [json.loads(line) for line in lines]
     table = arrow.Table.from_pylist(rows)
@@ -162,15 +173,15 @@ def compare_entry(
     threads: int | None = None,
     cancel: Event | None = None,
 ) -> Comparison | None:
-    """Return the comparison of another program's list with the complete list,
-    which is made anew; None if cancelled.
+    """Return the comparison of another program's list with the complete list; None if cancelled.
 
-    ``tolerance`` and ``symmetric`` are those of ``matching.compare_places``.
+    The complete list is made anew by a search. ``tolerance`` and ``symmetric`` are those of
+    ``matching.compare_places``.
 
     Raises
     ------
     InputError
-        Where the list made here is not the one of the manifest.
+        When the list made here is not the one of the manifest.
     """
     known = find_set(entry.set_name)
     query = make_set_query(known)

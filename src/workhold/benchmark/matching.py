@@ -63,7 +63,7 @@ Array = NDArray[np.float64]
 
 @frozen
 class SubmittedPeg:
-    """A peg of another program: its role, and the place of its centre in the toolkit's frame in mm."""
+    """A peg in another program's list: its role, and its centre in the toolkit's frame in mm."""
 
     role: str
     x: float
@@ -71,8 +71,8 @@ class SubmittedPeg:
 
     @property
     def push(self) -> tuple[float, float]:
-        """The unit vector in which the peg pushes the part, in the toolkit's
-        frame; (0, 0) for one that stands still.
+        """The unit vector in which the peg pushes the part, in the toolkit's frame; (0,
+        0) for a fixed peg.
         """
         return PUSHES[self.role]
 
@@ -100,12 +100,12 @@ def read_entry(path: Path, set_name: str | None = None) -> Submission:
 
     Parameters
     ----------
-    set_name : the set it is for, where the file does not say.
+    set_name : name of the set that the list is for, where the file does not name it.
 
     Raises
     ------
     InputError
-        For a file that cannot be read, naming the fixture and what is wrong with it.
+        For a file that cannot be read; the message names the fixture and the fault.
     """
     try:
         text = read_text(path, LIMITS["list"], SAVED if path.suffix.lower() == ".csv" else "save it as UTF-8")
@@ -117,7 +117,10 @@ def read_entry(path: Path, set_name: str | None = None) -> Submission:
 
 
 def parse_entry(text: str, usual: str) -> Submission:
-    """Return the list in a JSON text; ``usual`` is its set where the text does not name one."""
+    """Return the list in a JSON text.
+
+    ``usual`` is the name of its set where the text does not give one.
+    """
     try:
         content = parse_json(text)
     except InputError as error:
@@ -133,8 +136,9 @@ def parse_entry(text: str, usual: str) -> Submission:
 
 
 def read_numbered_fixture(number: int, fixture: Any) -> SubmittedFixture:
-    """Return a fixture of a list from a JSON object; ``number`` names it in the InputError for a wrong
-    form.
+    """Return a fixture of a list from its JSON object.
+
+    ``number`` names the fixture in the InputError that is raised for an object of a wrong form.
     """
     try:
         return read_entered_fixture(fixture)
@@ -163,10 +167,10 @@ def read_entered_fixture(fixture: Mapping[str, Any]) -> SubmittedFixture:
 
 
 def find_peg_role(peg: Mapping[str, Any], direction: str | None) -> str:
-    """Return the role of a peg, for a clamp with its direction ("clamp -x"),
-    which the peg or the fixture gives.
+    """Return the role of a peg; for a clamp with its direction, such as "clamp -x".
 
-    Raises KeyError without a role, ValueError for an unknown one.
+    The direction is the peg's own, or if it has none ``direction``, the fixture's. Raises KeyError without a
+    role, ValueError for an unknown one.
     """
     role = peg["jaw"] if "jaw" in peg else peg["role"]
     role = f"clamp {peg.get('direction', direction)}" if role == "clamp" else role
@@ -202,7 +206,10 @@ def read_csv_rows(text: str) -> tuple[SubmittedFixture, ...]:
 
 
 def convert_row_to_object(row: CsvRow, pegs: Sequence[str]) -> dict[str, Any]:
-    """Return a CSV row as a JSON object of a fixture; pegs without any cell are left out."""
+    """Return a CSV row as the JSON object of a fixture.
+
+    ``pegs`` are the names of the columns of pegs; pegs of which all cells are empty are left out.
+    """
     given = [peg for peg in pegs if not row.cells.keys().isdisjoint((peg, f"{peg}_x", f"{peg}_y"))]
     return {
         "pegs": [
@@ -223,8 +230,9 @@ class ListedPlaces:
 
     Parameters
     ----------
-    part : what is held.
+    part : the workpiece.
     entered : the fixtures.
+    places : the place (P, 6) of each, see the glossary.
     """
 
     part: Workpiece
@@ -239,7 +247,9 @@ class ListedPlaces:
         return [compute_fixture_place(one, scale) for one in self.entered]
 
     def list_images(self, place: Array) -> list[Array]:
-        """Return a place (P, 6) under all rotations of the part onto itself, the place itself first."""
+        """Return the images of a place (P, 6) under all rotations of the part onto itself, the place itself
+        first.
+        """
         every = self.part.numbered
         faces = [face.segment for face in every.faces]
         kept = find_centroid_of_joints(faces)
@@ -253,8 +263,9 @@ class ListedPlaces:
 
 
 def compute_fixture_place(entered: SubmittedFixture, scale: float) -> Array:
-    """Return the place (P, 6) of a fixture, see the glossary; directions and
-    axes have the length ``scale`` mm.
+    """Return the place (P, 6) of a fixture with P pegs, see the glossary.
+
+    Vectors of directions and axes have the length ``scale`` in mm.
     """
     theta = np.radians(entered.theta_deg)
     rows = []
@@ -267,14 +278,15 @@ def compute_fixture_place(entered: SubmittedFixture, scale: float) -> Array:
 
 @frozen
 class Comparison:
-    """Another program's list compared with the complete one.
+    """Another program's list compared with the complete list.
 
     Parameters
     ----------
-    listed, theirs : number of fixtures in the complete list and in theirs.
-    found, missed : indices of fixtures of the complete list, from 0.
-    extra : indices of theirs that are not in the complete list.
-    repeated : indices of theirs that they list before.
+    listed, theirs : numbers of fixtures in the complete list, and in the other list.
+    found, missed : indices, from 0, of the fixtures of the complete list that the other list has, and has
+        not.
+    extra : indices, from 0, of the fixtures of the other list that are not in the complete list.
+    repeated : indices, from 0, of the fixtures of the other list that occur earlier in it.
     """
 
     listed: int
@@ -293,10 +305,11 @@ class Comparison:
 def compare_places(
     complete: ListedPlaces, theirs: ListedPlaces, tolerance: float, symmetric: bool
 ) -> Comparison:
-    """Return how another program's list compares with the complete one.
+    """Return how another program's list (``theirs``) compares with the complete one.
 
-    ``tolerance`` is how far in mm pegs may be off, and directions at half the part's extent. ``symmetric``
-    says whether a fixture also stands for all that a rotation of the part onto itself carries it into.
+    ``tolerance`` is the largest difference in mm of pegs' coordinates, and of directions taken as vectors of
+    half the part's extent. ``symmetric`` says whether a fixture also stands for its images under rotations of
+    the part onto itself.
     """
     index = PlaceIndex.from_places(complete.places, tolerance)
     hits, met = set[int](), set[int | None]()
@@ -323,11 +336,11 @@ def compare_places(
 
 @frozen(eq=False)
 class PlaceIndex:
-    """Places sorted by the sum of their pegs' x, for a search by place.
+    """N places, sorted by the sum of their pegs' x so that near ones are found fast.
 
     Parameters
     ----------
-    places : all of them.
+    places : in their given order.
     sums : (N, 2) sums of their pegs' x and y.
     order : (N,) indices sorted by the sum of x.
     tolerance : in mm.
@@ -345,10 +358,9 @@ class PlaceIndex:
         return cls(places, sums, np.argsort(sums[:, 0], kind="stable"), tolerance)
 
     def find_nearest(self, place: Array) -> int | None:
-        """Return the index of the place nearest to ``place`` (P, 6) within the
-        tolerance; None where there is none.
+        """Return the index of the place nearest to ``place`` (P, 6); None where none is within the tolerance.
 
-        Pegs are matched in any order; the distance is the largest difference of any coordinate.
+        Pegs are matched in any order. The distance of two places is the largest difference of any coordinate.
         """
         x, y = place[:, :2].sum(axis=0)
         room = self.tolerance * len(place)

@@ -1,9 +1,10 @@
 """How far the fixtures of a result bend their part: one mesh and two factorizations for all of them.
 
-Every unit load is solved once: of each contact of all the fixtures, however many share it, of what bears the part, and
-of the places where tools and loads press. What a fixture's clamps do, and how far it gives at each place, are sums of
-these. This is done with elements of the second order. What was worst is reckoned again with the third order, and that is
-told: the difference is the error.
+Each unit load is solved once: at the contacts of all fixtures (fixtures share equal contacts), at the
+supports below the part, and at the places where tools and loads press. The movement by a fixture's clamps,
+and how far it gives at each place, are sums of these solutions. All are computed with elements of the second
+order. The worst cases are computed again with the third order: those values are reported, with an error
+derived from the difference.
 """
 
 from __future__ import annotations
@@ -56,16 +57,19 @@ PRESSED_AT_ONCE = 64
 
 @frozen(eq=False)
 class BendingQuestion:
-    """What is asked of bending.
+    """The question how far fixtures bend a part.
 
     Parameters
     ----------
-    material : what the part is of.
-    thickness : of the part in mm; that of its solid, or of the query, if None.
-    jaw_force : in N; that of the query if None, else the one that its loads need, else a thousand newtons.
-    faces : which faces are to be cut: numbers of faces of the outline, "top" and "bottom"; all where there are none.
-    stiffness : how many times as stiff as a contact the closed jaw is.
-    below : pads and clamp under the part of a fixture, by its index; it lies on its level faces elsewhere.
+    material : material of the part.
+    thickness : thickness of the part in mm; None for that of its solid or of the query.
+    jaw_force : jaw force in N; None for that of the query, else the one that the query's loads need, else
+        1000 N.
+    faces : faces to be cut, whose movement counts: face numbers of the outline, "top" and "bottom"; empty for
+        all.
+    stiffness : stiffness of the closed jaw over that of one contact.
+    below : by index of a fixture, the pads under its part and the clamp on top; the parts of other fixtures
+        lie on their level faces.
     """
 
     material: ElasticMaterial
@@ -92,7 +96,9 @@ class BendingQuestion:
         return height
 
     def find_jaw_force(self, fixture: Fixture, query: Query) -> tuple[float, bool]:
-        """Return the jaw force in N, and whether it is a stated one because none is known."""
+        """Return (jaw force in N, is_stated); is_stated is True where the force is a mere convention, as none
+        is known.
+        """
         given = query.jaw_force if self.jaw_force is None else self.jaw_force
         if given is not None:
             return given, False
@@ -104,15 +110,15 @@ class BendingQuestion:
 
 @define(eq=False)
 class UnitLoads:
-    """Unit loads on a part and readings of its movement, each once, by what they are.
+    """Unit loads on a part, and readings of its movement; equal ones are stored once and share a number.
 
     Parameters
     ----------
-    surface : of the part.
-    forces : in the order in which they came.
-    footings : of these, where they act on the surface.
-    numbers : by points and forces.
-    places : footings by points.
+    surface : surface of the part's mesh.
+    forces : the loads and readings; the index of one is its number.
+    footings : for each of ``forces``, where it acts on the surface.
+    numbers : number of each load or reading, by its points and forces as bytes.
+    places : footings, by points and outward direction as bytes.
     """
 
     surface: Surface
@@ -122,7 +128,7 @@ class UnitLoads:
     places: dict[bytes, Footing] = field(factory=dict)
 
     def add(self, forces: Iterable[PointForces]) -> list[int]:
-        """The numbers of some loads or readings, those that are new at the end."""
+        """Return the number of each of the given loads or readings; those not known yet are appended."""
         found = []
         for one in forces:
             key = np.round(one.points, 6).tobytes() + np.round(one.forces, 12).tobytes()
@@ -134,7 +140,7 @@ class UnitLoads:
         return found
 
     def find_footing(self, one: PointForces) -> Footing:
-        """Where a load acts; loads on one patch share it."""
+        """Return where a load acts on the surface; loads with the same points share the footing."""
         outward = b"" if one.outward is None else one.outward.tobytes()
         key = one.points.tobytes() + outward
         if key not in self.places:
@@ -148,10 +154,10 @@ class HeldFixture:
 
     Parameters
     ----------
-    hold : its columns.
-    numbers : of these among all unit loads.
-    reads : of each level of its locators, the numbers of their readings.
-    force, is_stated : the jaw force in N, and whether nobody said it.
+    hold : the elastic hold, with its unit loads (columns).
+    numbers : for each column of the hold, its number in :class:`UnitLoads`.
+    reads : for each level of the hold's locators, the numbers of its readings in :class:`UnitLoads`.
+    force, is_stated : jaw force in N, and whether it is a convention because nobody said it.
     """
 
     hold: ElasticHold
@@ -163,14 +169,15 @@ class HeldFixture:
 
 @frozen(eq=False)
 class PressedPlace:
-    """Where a tool or a load presses.
+    """A place where tools or loads press on the part.
 
     Parameters
     ----------
-    middle : (3,) in mm.
-    cuts : numbers of its unit loads: forces along x, y and z, and a moment about the upright.
-    reads : numbers of its readings: movements along x, y and z.
-    wrenches : (6, 4) of the unit loads.
+    middle : (3,) centre of the place in mm.
+    cuts : numbers in :class:`UnitLoads` of four unit loads here: forces along x, y and z, and a moment about
+        z.
+    reads : numbers in :class:`UnitLoads` of three readings here: movements along x, y and z.
+    wrenches : (6, 4) force and moment about the origin of each of the four unit loads.
     """
 
     middle: Array
@@ -181,14 +188,14 @@ class PressedPlace:
 
 @frozen(eq=False)
 class WorstGive:
-    """Where a fixture gives most, with the second order.
+    """The load under which a fixture gives most, computed with elements of the second order.
 
     Parameters
     ----------
-    value : in mm.
-    load : number of what presses.
-    place : number of the place.
-    vector : (4,) the forces and the moment there.
+    value : movement in mm.
+    load : index of the load in the :class:`workhold.bending.places.CutterLoads`.
+    place : index of the :class:`PressedPlace`.
+    vector : (4,) forces along x, y and z in N, and moment about z in N mm.
     """
 
     value: float
@@ -205,11 +212,13 @@ def find_bendings(
     cancel: Event | None = None,
     progress: Progress | None = None,
 ) -> list[Bending]:
-    """How far some fixtures of a result bend their part; fewer of them where ``cancel`` is set on the way.
+    """Return how far some fixtures of a result bend their part, in the order of ``rows``.
+
+    The list is shorter where ``cancel`` is set on the way.
 
     Parameters
     ----------
-    rows : their indices in the result.
+    rows : indices of the fixtures in the result.
     progress : called as ``progress(fraction done, fixtures)``.
 
     Raises
@@ -274,7 +283,7 @@ def find_bendings(
 
 
 def tell_nobody(fraction: float, count: int) -> None:
-    """Where nobody watches."""
+    """Do nothing: the progress callback used where none is given."""
 
 
 def describe(
@@ -288,7 +297,10 @@ def describe(
     query: Query,
     asked: BendingQuestion,
 ) -> Bending:
-    """What is told of a fixture, from what is solved with the second and the third order."""
+    """Return the bending of one fixture from the solutions with elements of the second and the third order.
+
+    Values are those of the third order, errors follow from the difference.
+    """
     surface = third.body.surface
     pressed = find_pressed(surface.nodes, one.hold.pressed)
     moved = third.clamp(one)
@@ -324,11 +336,15 @@ def describe(
 def find_most_moved(
     one: HeldFixture, moved: Array, pressed: Mask, is_cut: Mask, second: SolvedLoads, third: SolvedLoads
 ) -> BentPlace:
-    """Where clamping moves what counts most: among the nodes, and between them where something presses near by.
+    """Return the place where clamping moves the faces that count (``is_cut``) most, outside of dents
+    (``pressed``).
+
+    Places between nodes are searched as well, on faces with a node that moves at least as much as any node
+    that counts.
 
     Parameters
     ----------
-    moved, pressed, is_cut : (N, 3) and (N,) of the nodes, see :class:`Bending`.
+    moved, pressed, is_cut : (N, 3) movement and (N,) masks of the N surface nodes, see :class:`Bending`.
     """
     surface = third.body.surface
     size = np.linalg.norm(moved, axis=1)
@@ -349,7 +365,10 @@ def find_most_moved(
 
 
 def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPlace]:
-    """The patches of the surface that are loaded where tools and loads press."""
+    """Return a loaded patch of the surface for each of the chosen places where tools and loads press.
+
+    The unit loads and readings of these patches are added to ``units``.
+    """
     found = []
     for number in loads.chosen.tolist():
         footing = units.surface.find_footing(loads.points[number][None], None)
@@ -362,7 +381,11 @@ def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPla
 
 
 def find_pressed(nodes: Array, points: Array) -> Mask:
-    """Which nodes (N,) lie where something presses at points (K, 3), or so near that its dent is felt."""
+    """Return the mask (N,) of the nodes (N, 3) nearer than :data:`BESIDE` to one of the pressed points (K,
+    3).
+
+    There the surface is dented.
+    """
     found = np.zeros(len(nodes), np.bool_)
     for start in range(0, len(points), PRESSED_AT_ONCE):
         some = points[start : start + PRESSED_AT_ONCE]
@@ -374,11 +397,14 @@ def find_pressed(nodes: Array, points: Array) -> Mask:
 
 
 class SolvedLoads:
-    """A body with what is solved of the unit loads on it.
+    """An elastic body with the solutions under unit loads, each computed when it is first needed.
+
+    S is the number of surface unknowns per component, see ``ElasticBody.surface_unknowns``.
 
     Parameters
     ----------
-    is_summed : whether sums of unit loads are solved as one, which pays where there are fewer sums than unit loads.
+    is_summed : whether each sum of unit loads is solved as one load, which is quicker where there are fewer
+        sums than unit loads.
     """
 
     def __init__(self, body: ElasticBody, units: UnitLoads, is_summed: bool = False) -> None:
@@ -390,7 +416,7 @@ class SolvedLoads:
         self.readings: dict[tuple[int, int], float] = {}
 
     def compute_work(self, number: int) -> Array:
-        """The work (S, 3) of a unit load or a reading on the unknowns of the surface."""
+        """Return the work (S, 3) that a unit load or reading does on each unknown of the surface."""
         if number not in self.works:
             self.works[number] = self.body.compute_work(
                 self.units.forces[number], self.units.footings[number]
@@ -398,13 +424,19 @@ class SolvedLoads:
         return self.works[number]
 
     def solve(self, number: int) -> Array:
-        """How the surface moves (S, 3) under a unit load, solved when it is first asked."""
+        """Return the surface's unknowns (S, 3) under the unit load with this number; solved at the first call
+        only.
+        """
         if number not in self.responses:
             self.responses[number] = self.body.respond([self.compute_work(number)])[0]
         return self.responses[number]
 
     def gather(self, numbers: Sequence[int], factors: Array) -> tuple[Sequence[int], Array]:
-        """A sum of unit loads as it is solved: as it stands, or as one load by itself."""
+        """Return (numbers, factors) by which a sum of unit loads is solved.
+
+        They are the arguments unchanged or, if ``is_summed``, the number of one load that equals the sum,
+        with factor 1. Numbers of such loads are negative.
+        """
         if not self.is_summed:
             return numbers, factors
         key = np.array(numbers).tobytes() + factors.tobytes()
@@ -418,7 +450,9 @@ class SolvedLoads:
         return [number], np.ones(1)
 
     def add_up(self, numbers: Sequence[int], factors: Array) -> Array:
-        """How the surface moves (S, 3) under a sum of unit loads."""
+        """Return the surface's unknowns (S, 3) under the sum of unit loads ``numbers``, each times its
+        factor.
+        """
         numbers, factors = self.gather(numbers, factors)
         total = np.zeros((len(self.body.surface_unknowns[0]), 3))
         for number, factor in zip(numbers, factors.tolist(), strict=True):
@@ -427,46 +461,64 @@ class SolvedLoads:
         return total
 
     def read(self, reads: Sequence[int], numbers: Sequence[int]) -> Array:
-        """What readings say (R, L) of the movement under each of some unit loads."""
+        """Return what the readings ``reads`` (R) measure under each of the unit loads ``numbers`` (L): an
+        array (R, L).
+        """
         return np.array([[self.read_one(read, number) for number in numbers] for read in reads])
 
     def read_one(self, read: int, number: int) -> float:
-        """What a reading says of the movement under a unit load."""
+        """Return what the reading with number ``read`` measures under the unit load with this number."""
         pair = (read, number)
         if pair not in self.readings:
             self.readings[pair] = float(np.einsum("sk,sk->", self.compute_work(read), self.solve(number)))
         return self.readings[pair]
 
     def find_motion(self, one: HeldFixture, numbers: Sequence[int], factors: Array, gives: Array) -> Array:
-        """The rigid motion (6,) that lays the part against its locators under a sum of unit loads.
+        """Return the rigid motion (6,) that lays the part against a fixture's locators under a sum of unit
+        loads.
+
+        It is three shifts in mm, then three turns in radians.
 
         Parameters
         ----------
-        gives : (R,) how far its contacts give way, in mm.
+        gives : (R,) how far the R contacts of the first level of locators give way, in mm.
         """
         numbers, factors = self.gather(numbers, factors)
         return one.hold.find_motion([self.read(level, numbers) @ factors for level in one.reads], gives)
 
     def clamp(self, one: HeldFixture) -> Array:
-        """How the clamps of a fixture move the nodes of the surface (N, 3), laid against its locators."""
+        """Return the movement (N, 3) in mm of the surface's nodes by a fixture's clamps, the part laid
+        against its locators.
+        """
         values, motion = self.find_clamped(one)
         return self.body.move_nodes(values) + make_rigid_motions(self.body.surface.nodes) @ motion
 
     def clamp_on(self, one: HeldFixture, faces: NDArray[np.int64], shares: Array) -> Array:
-        """How they move points (F, K, 3) of faces, by barycentric coordinates (K, 3)."""
+        """Return the movement (F, K, 3) in mm of points on F faces by a fixture's clamps, laid against its
+        locators.
+
+        The points are at the barycentric coordinates ``shares`` (K, 3), the same on each face.
+        """
         values, motion = self.find_clamped(one)
         points = self.body.surface.place_on(faces, shares)
         rigid = (make_rigid_motions(points.reshape(-1, 3)) @ motion).reshape(points.shape)
         return self.body.move_on(values, faces, shares) + rigid
 
     def find_clamped(self, one: HeldFixture) -> tuple[Array, Array]:
-        """How the clamps of a fixture move the surface (S, 3), and what lays it against its locators (6,)."""
+        """Return (unknowns, motion) under a fixture's clamps.
+
+        They are the surface's unknowns (S, 3), and the rigid motion (6,) that lays the part against its
+        locators.
+        """
         clamping = one.hold.clamping
         motion = self.find_motion(one, one.numbers, clamping, np.zeros(len(one.hold.gives)))
         return self.add_up(one.numbers, clamping), motion
 
     def move_place(self, one: HeldFixture, place: PressedPlace, vectors: Array) -> Array:
-        """How a place moves (3, V) under forces and a moment on it (4, V), with all that answers them."""
+        """Return the movement (3, V) in mm of a place under V forces and moments on it, ``vectors`` (4, V).
+
+        The forces at contacts that balance the load, and the contacts' giving way, are included.
+        """
         answers = one.hold.answers @ place.wrenches @ vectors
         numbers = [*place.cuts, *one.numbers]
         rigid = make_rigid_motions(place.middle[None])[0]
@@ -478,7 +530,9 @@ class SolvedLoads:
         return np.array(moved).T
 
     def find_worst_give(self, one: HeldFixture, loads: CutterLoads, places: list[PressedPlace]) -> WorstGive:
-        """Where a fixture gives most, and under what."""
+        """Return the load under which a fixture gives most; each load counts at the nearest of the chosen
+        places.
+        """
         matrices = [self.move_place(one, place, np.eye(4)) for place in places]
         worst: WorstGive | None = None
         for number in range(len(loads)):
@@ -493,7 +547,7 @@ class SolvedLoads:
 
 
 def refuse_unknown_faces(faces: Sequence[int | str], workpiece: Workpiece) -> None:
-    """Refuses faces to be cut that the part does not have."""
+    """Raise InputError for faces to be cut that the part does not have."""
     known = {face.number for face in workpiece.faces} | {TOP, BOTTOM}
     for face in faces:
         if face not in known:
@@ -503,14 +557,18 @@ def refuse_unknown_faces(faces: Sequence[int | str], workpiece: Workpiece) -> No
 
 
 def describe_faces(faces: Sequence[int | str]) -> str | None:
-    """The faces to be cut in words; None for all."""
+    """Return the faces to be cut in words; None where there are none, which stands for all."""
     numbers = ", ".join(str(face) for face in faces if isinstance(face, int))
     level = [str(face) for face in faces if isinstance(face, str)]
     return ", ".join([*level, *([f"faces {numbers}"] if numbers else [])]) or None
 
 
 def find_cut_nodes(surface: Surface, faces: Sequence[int | str], workpiece: Workpiece, height: float) -> Mask:
-    """Which nodes (N,) of a surface are on faces that are to be cut; all where none is named."""
+    """Return the mask (N,) of the surface's nodes on the faces to be cut; True for all where no face is
+    named.
+
+    Raises InputError where no face of the mesh lies on them.
+    """
     nodes = surface.nodes
     if not faces:
         return np.ones(len(nodes), np.bool_)

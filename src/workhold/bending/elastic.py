@@ -1,4 +1,4 @@
-"""A part as an elastic body that nothing holds: how its surface moves under forces, each set of them once solved.
+"""A part as a free elastic body: the movement of its surface under sets of forces.
 
 The displacement field u minimizes the energy of linear elasticity, with tetrahedra of the second order or the third. The
 body is free, so its stiffness matrix K is singular: its null space are the six rigid motions R. Each load f is balanced
@@ -8,8 +8,9 @@ force flows there then, however stiff they are. K with the springs is factorized
 out of the answer. So the compliance C = P K⁻ P', P = 1 - R (R'MR)⁻¹ R'M, is symmetric and depends on none of the nodes
 that are held (inertia relief; T. J. R. Hughes, *The Finite Element Method*, 1987, for the rest).
 
-Loads and readings are both sums of forces at points of the surface, written as the work they do on its unknowns: what one
-load moves another's points by is what the other moves the first one's by (Maxwell and Betti).
+Loads and readings are both sums of forces at points of the surface, written as the work that they do on its
+unknowns. The work of load A on the movement by load B equals the work of B on the movement by A (Maxwell and
+Betti).
 """
 
 from __future__ import annotations
@@ -36,13 +37,14 @@ IntArray = NDArray[np.int64]
 
 @frozen(eq=False)
 class PointForces:
-    """Forces at points of the surface, as a load, or as what is read of a movement: its work on them.
+    """Forces at points of the surface: a load, or a reading of a movement, whose value is the work of the
+    forces on it.
 
     Parameters
     ----------
     points : (M, 3) in mm, on the surface or near it.
     forces : (M, 3) in N.
-    outward : direction out of the part there; None where any side may be the nearest.
+    outward : direction (3,) out of the part at the points; None where the nearest side counts.
     """
 
     points: Array
@@ -69,24 +71,24 @@ def make_rigid_motions(points: Array) -> Array:
 
 
 def weigh(columns: Array, values: Array) -> Array:
-    """Each of some columns (n, 6) times values (n,)."""
+    """Return the transpose of ``columns`` (n, 6) times ``values`` (n,): an array (6,)."""
     return np.asarray(np.einsum("nk,n->k", columns, values))
 
 
 def combine(columns: Array, factors: Array) -> Array:
-    """The sum (n,) of columns (n, 6) times factors (6,)."""
+    """Return ``columns`` (n, 6) times ``factors`` (6,): an array (n,)."""
     return np.asarray(np.einsum("nk,k->n", columns, factors))
 
 
 @define(eq=False)
 class ElasticBody:
-    """A meshed part of a material, factorized when it is first asked.
+    """A meshed part of a material; its stiffness matrix is factorized at first use.
 
     Parameters
     ----------
-    mesh : of the part.
-    material : what it is of.
-    order : of its elements.
+    mesh : mesh of the part.
+    material : its material.
+    order : order of the elements, 2 or 3.
     """
 
     mesh: PartMesh
@@ -102,29 +104,35 @@ class ElasticBody:
 
     @property
     def unknowns(self) -> int:
-        """How many there are."""
+        """Number of unknowns of the body, over all three components."""
         return 3 * int(self.scalar.ndof)
 
     @property
     def elements(self) -> int:
-        """How many tetrahedra there are."""
+        """Number of tetrahedra."""
         return int(self.mesh.made.ne)
 
     @property
     def surface(self) -> Surface:
-        """The surface with its nodes."""
+        """Surface of the mesh, with its nodes."""
         return self.mesh.surface
 
     @cached_property
     def surface_unknowns(self) -> tuple[IntArray, IntArray]:
-        """The unknowns (S,) of a component that move the surface, and of each face its own (F, D), by number of these."""
+        """Unknowns that move the surface, as (numbers, table).
+
+        ``numbers`` (S,) are the body's unknowns of one component; ``table`` (F, D) has the D unknowns of each
+        face as indices into ``numbers``.
+        """
         solving = load_elements().solving
         rows = np.array([list(one.dofs) for one in self.scalar.Elements(solving.BND)], np.int64)
         used, numbers = np.unique(rows, return_inverse=True)
         return used, numbers.reshape(rows.shape)
 
     def compute_shapes(self, footing: Footing) -> Array:
-        """The shape functions (M, D) of their faces at some points."""
+        """Return the values (M, D) of the D shape functions of each point's face, at the M points of a
+        footing.
+        """
         solving = load_elements().solving
         shares, faces = footing.shares, footing.faces.tolist()
         own = {face: self.scalar.GetFE(solving.ElementId(solving.BND, face)) for face in set(faces)}
@@ -135,11 +143,11 @@ class ElasticBody:
         return np.array(values, np.float64).reshape(len(faces), -1)
 
     def compute_work(self, forces: PointForces, footing: Footing | None = None) -> Array:
-        """The work (S, 3) that forces do on each unknown of the surface.
+        """Return the work (S, 3) that forces do on each unknown of the surface.
 
         Parameters
         ----------
-        footing : where they act; looked for if None.
+        footing : where the forces act on the surface; found here if None.
         """
         if footing is None:
             footing = self.surface.find_footing(forces.points, forces.outward)
@@ -150,14 +158,18 @@ class ElasticBody:
         return work
 
     def move_nodes(self, values: Array) -> Array:
-        """How the nodes of the surface move (N, 3), by the values (S, 3) of its unknowns."""
+        """Return the movement (N, 3) in mm of the surface's nodes, from the values (S, 3) of its unknowns."""
         faces = self.surface.faces
         moved = np.empty((len(self.surface.nodes), 3))
         moved[faces.ravel()] = self.move_on(values, np.arange(len(faces)), LATTICE).reshape(-1, 3)
         return moved
 
     def move_on(self, values: Array, faces: IntArray, shares: Array) -> Array:
-        """How points of faces move (F, K, 3), by barycentric coordinates (K, 3), the same of each face."""
+        """Return the movement (F, K, 3) in mm of points on F faces, from the values (S, 3) of the surface's
+        unknowns.
+
+        The points are at the barycentric coordinates ``shares`` (K, 3), the same on each face.
+        """
         _, table = self.surface_unknowns
         kinds, first, own = self.kinds_of_faces
         there = np.tile(shares, (len(kinds), 1)), np.repeat(first, len(shares))
@@ -166,9 +178,9 @@ class ElasticBody:
 
     @cached_property
     def kinds_of_faces(self) -> tuple[IntArray, IntArray, IntArray]:
-        """The kinds of faces by their shape functions, a face of each, and of each face (F,) its kind.
+        """Faces classified by their shape functions: (kinds, a face of each kind, kind (F,) of each face).
 
-        Shape functions depend on which corners of a face have the higher numbers alone.
+        The shape functions of a face depend only on the order of the numbers of its corners.
         """
         surface = self.surface
         order = np.column_stack([surface.vertices.argsort(axis=1), surface.is_turned])
@@ -176,11 +188,11 @@ class ElasticBody:
         return kinds, first, own.ravel()
 
     def respond(self, works: Sequence[Array]) -> Array:
-        """How the surface moves under loads, each by itself: the values (L, S, 3) of its unknowns, in mm.
+        """Return the values (L, S, 3) of the surface's unknowns in mm under each of L loads by itself.
 
         Parameters
         ----------
-        works : of each load the work (S, 3) on the unknowns of the surface, see :meth:`compute_work`.
+        works : for each load, its work (S, 3) on the unknowns of the surface, see :meth:`compute_work`.
         """
         used, _ = self.surface_unknowns
         solver, load, answer = self.factorized
@@ -199,7 +211,11 @@ class ElasticBody:
 
     @cached_property
     def motions(self) -> tuple[Array, Array, Array]:
-        """Rigid motions R about the middle of the box (3 n, 6) as unknowns, M R, and the inverse of R'MR."""
+        """Rigid motions R about the middle of the bounding box as unknowns (3 n, 6), then M R, then the
+        inverse of R'MR.
+
+        For R and M see the head of this file; n is the number of unknowns of a component.
+        """
         solving = load_elements().solving
         nodes = self.surface.nodes
         x, y, z = (
@@ -221,7 +237,9 @@ class ElasticBody:
 
     @cached_property
     def factorized(self) -> tuple[Any, Any, Any]:
-        """The stiffness matrix with springs at six freedoms, factorized, with room for a load and an answer."""
+        """(factorized stiffness matrix with springs at six unknowns, vector for a load, vector for an
+        answer).
+        """
         solving = load_elements().solving
         modulus, ratio = self.material.elastic_modulus, self.material.poisson
         shear = modulus / (2 * (1 + ratio))
@@ -243,9 +261,10 @@ class ElasticBody:
         return solver, matrix.CreateColVector(), matrix.CreateColVector()
 
     def choose_held(self) -> list[tuple[int, int]]:
-        """Choose six freedoms at three corners of the mesh that leave the body no motion, far from each other.
+        """Return six pairs (number of a corner, axis) to hold by springs, so that no rigid motion is left
+        free.
 
-        Each is the number of a corner and an axis.
+        They are at three corners of the mesh far from each other.
         """
         vertices, at = np.unique(self.surface.vertices.ravel(), return_index=True)
         points = self.surface.corners.reshape(-1, 3)[at]

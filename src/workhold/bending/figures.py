@@ -1,4 +1,4 @@
-"""How far a part is bent: what is told of one fixture."""
+"""Figures of how far one fixture bends its part."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BENDING_FIGURES = (
 
 
 def find_bending_figure(name: str) -> Figure:
-    """The figure of a name as a user writes it.
+    """Return the figure with a name as a user writes it.
 
     Raises
     ------
@@ -52,15 +52,16 @@ def find_bending_figure(name: str) -> Figure:
 
 @frozen
 class BentPlace:
-    """The largest movement of a kind.
+    """The largest movement of one kind (by clamping, or at the cutter), and where it is.
 
     Parameters
     ----------
     value : in mm, with elements of the third order.
-    error : twice the change of the movement there from the second order to the third, in mm.
-    at : where it is, in mm in the part's coordinates.
-    line, tool : of the program, where a cut makes it; None for others.
-    load : number of the load that makes it, from 1; None for others.
+    error : error estimate in mm: twice the change of the movement there from elements of the second order to
+        the third.
+    at : (x, y, z) in mm, in the part's coordinates.
+    line, tool : line and tool of the program, where a cut causes the movement; None otherwise.
+    load : number, from 1, of the load that causes the movement; None otherwise.
     """
 
     value: float
@@ -71,7 +72,7 @@ class BentPlace:
     load: int | None = None
 
     def describe(self, unit: Unit) -> str:
-        """Size, error and place."""
+        """Return size, error and place as text, with lengths in the unit."""
         place = ", ".join(unit.format_number(value, unit.decimals - 1) for value in self.at)
         because = ""
         if self.line is not None:
@@ -99,16 +100,18 @@ class Bending:
 
     Parameters
     ----------
-    material : what the part is of.
-    jaw_force : in N, that it is reckoned with.
-    is_stated : whether nobody said how hard the jaws press, so that all is for each kN.
-    clamp_distortion : by clamping alone, where the part is laid against its locators as if it were stiff.
-    give : at the cutter, or where a load acts, with the pegs that bend; None where nothing acts.
-    elements : how many tetrahedra the mesh has.
-    faces : what of the part is to be cut, in words; None for all of it.
-    surface : of the mesh, in the part's coordinates.
-    moved : (N, 3) how far clamping moves each of its nodes, in mm.
-    pressed : (N,) whether something presses there, so that the dent is not counted.
+    material : material of the part.
+    jaw_force : jaw force in N that the figures hold for.
+    is_stated : whether the jaw force is a convention, because nobody said how hard the jaws press.
+    clamp_distortion : largest movement by clamping alone, where the part is laid against its locators as if
+        it were stiff.
+    give : largest movement at the cutter, or where a load acts, with the bending of pegs; None where nothing
+        acts.
+    elements : number of tetrahedra of the mesh.
+    faces : the faces to be cut, in words; None for all.
+    surface : surface of the mesh, in the part's coordinates.
+    moved : (N, 3) movement of each node of the surface by clamping, in mm.
+    pressed : (N,) whether something presses at the node, so that its dent is not counted.
     """
 
     material: ElasticMaterial
@@ -124,16 +127,16 @@ class Bending:
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures by their keys, in mm."""
+        """Figures by key, in mm."""
         known = {"clamp_distortion": self.clamp_distortion.value}
         return known if self.give is None else known | {"give": self.give.value}
 
     def list_sentences(self, mover: str, unit: Unit) -> list[str]:
-        """What a machinist has to know.
+        """Return sentences on how far clamping bends the part and how far it gives at the cutter.
 
         Parameters
         ----------
-        mover : what presses, such as "jaw".
+        mover : name of what presses, such as "jaw".
         """
         force = f"At a {mover} force of {unit.format_force(self.jaw_force)}"
         if self.is_stated:
@@ -147,7 +150,7 @@ class Bending:
         return said
 
     def list_warnings(self, limit: float | None, unit: Unit) -> list[str]:
-        """What to beware of, a sentence each, above a limit in mm; nothing without one."""
+        """Return a warning for each figure above ``limit`` in mm; [] where the limit is None."""
         if limit is None:
             return []
         more = f"more than {unit.format_small_length(limit)}"

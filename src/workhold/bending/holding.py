@@ -1,9 +1,10 @@
-"""What holds a part, as loads on an elastic body: columns, how much of each the clamps and a load take, and what locates.
+"""Holds of a part as loads on an elastic body: unit loads, their factors under clamping and under a load, and
+locators.
 
-Pegs, tips and walls press along their normals on strips; their forces are those of ``statics``, which friction does not
-enter. What tilts the part, and what presses it down, is borne from below: by three pads, or by the level faces that it
-lies on, with a pressure that is affine over them. Flat jaws press with the affine pressures of the least norm, and what
-a load asks of them by friction is the least norm as well.
+Pegs, tips and walls press along their normals on strips; their forces are those of ``statics``, without
+friction. Forces downward and moments that tilt the part are borne from below: by three pads, or by the level
+faces that the part lies on, with a pressure that is affine over them. Flat jaws press with the affine
+pressures of least norm, and the friction forces that balance a load are those of least norm as well.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ class PadsBelow:
 
     Parameters
     ----------
-    pads : (3, 2) middles in mm.
+    pads : (3, 2) centres of the pads in mm.
     pad_radius : in mm.
-    clamp : middle (3,) of the tip on the part in mm.
+    clamp : (3,) point in mm where the clamp's tip presses on the part.
     tip_radius : in mm.
-    force : of the clamp, in N.
+    force : force of the clamp in N.
     """
 
     pads: Array
@@ -67,14 +68,17 @@ class ElasticHold:
 
     Parameters
     ----------
-    columns : C unit loads.
-    clamping : (C,) how much of each the clamps make, in N.
-    answers : (C, 6) how much of each answers a unit of force or moment about the origin that acts on the part.
-    locating : readings that are nought where the part lies against its locators, the most binding ones first.
-    movers : of each reading of the first of these, how far its contact goes along with each thing that moves (R, M).
-    gives : (R, C) how far those contacts give way outward, in mm for each N of the columns.
-    pressed : (K, 3) points that something presses on, where the surface is dented.
-    size : a length of the part in mm, which turns are scaled by.
+    columns : C unit loads on the part.
+    clamping : (C,) factor of each unit load under clamping, in N.
+    answers : (C, 6) factors of the unit loads that balance a unit force along x, y, z, or a unit moment about
+        the origin.
+    locating : levels of readings that are 0 where the part lies against its locators, the most binding level
+        first.
+    movers : (R, M) how far the contact of each of the R readings of the first level moves with each of M
+        carriers.
+    gives : (R, C) how far each of these contacts gives way outward, in mm per N of each unit load.
+    pressed : (K, 3) points that are pressed, around which the surface is dented.
+    size : a length of the part in mm, by which turns are scaled.
     """
 
     columns: tuple[PointForces, ...]
@@ -98,12 +102,13 @@ class ElasticHold:
         object.__setattr__(self, "constraints", tuple(rows))
 
     def find_motion(self, readings: Sequence[Array], gives: Array) -> Array:
-        """Find the rigid motion (6,) that lays the part against its locators: shifts in mm, then turns in radians.
+        """Return the rigid motion (6,) that lays the part against its locators: shifts in mm, then turns in
+        radians.
 
         Parameters
         ----------
-        readings : of each level of ``locating`` what is read (R,) of the movement, in mm.
-        gives : (R,) how far the contacts of the first give way outward, in mm.
+        readings : for each level of ``locating``, the readings (R,) of the movement in mm.
+        gives : (R,) how far the contacts of the first level give way outward, in mm.
         """
         values = [-read for read in readings]
         values[0] = values[0] + gives
@@ -130,10 +135,10 @@ def make_elastic_hold(
     ----------
     foot : the level faces that the part lies on.
     jaw_force : in N.
-    height : of the part in mm.
-    pressed_up_to : up to which height pegs press on a prism, in mm; its height if None. A solid says it itself.
-    stiffness : how many times as stiff as a contact the closed jaw is.
-    below : pads and a clamp on top; the part lies on its foot if None.
+    height : height of the part in mm.
+    pressed_up_to : height in mm up to which pegs press on a prism; None for its height. Not used for a solid.
+    stiffness : stiffness of the closed jaw over that of one contact.
+    below : pads and a clamp on top; if None the part lies on ``foot``.
     """
     size = max(np.ptp(np.array(workpiece.bounds).reshape(2, 2), axis=0).max(), height)
     if isinstance(fixture.hold, StrappedHold):
@@ -189,7 +194,11 @@ def find_pressed_heights(
     height: float,
     pressed_up_to: float | None,
 ) -> tuple[Array, Array]:
-    """The heights (P,) between which each contact presses, in mm above the part's lower side."""
+    """Return (low, high), each (P,): heights between which each contact presses, in mm above the part's lower
+    side.
+
+    On a prism they are 0 and ``pressed_up_to``; on a solid those of its faces, at most ``height``.
+    """
     count = len(fixture.pegs)
     if workpiece.solid is None:
         return np.zeros(count), np.full(count, pressed_up_to)
@@ -202,7 +211,9 @@ def find_pressed_heights(
 def find_flexibilities(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, points: Array, pressed_up_to: float | None
 ) -> Array:
-    """How far each contact gives way (P,) in mm for each N; nothing where nobody knows, and of tips and walls."""
+    """Return how far each contact gives way (P,), in mm per N; 0 for tips and walls, and where it is not
+    known.
+    """
     carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
     runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, points, pressed_up_to)
@@ -211,7 +222,11 @@ def find_flexibilities(
 
 
 def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow | None) -> ElasticHold:
-    """Return a hold with the supports below the part, and with the forces that press it down on them."""
+    """Return the hold with the supports below the part added, and the factors with which they bear clamping
+    and loads.
+
+    They are the pads with their clamp on top, or where ``below`` is None the level faces ``foot``.
+    """
     count = len(held.columns)
     more: tuple[PointForces, ...] = ()
     extra = np.zeros(0)
@@ -243,7 +258,11 @@ def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow 
 
 
 def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointForces, ...]]:
-    """Three unit loads on the foot, which add up to any affine pressure, and the readings that fit a plane to it."""
+    """Return (unit loads, readings) of the foot, three each.
+
+    The loads are upward pressures 1, x and y about the centre, which add up to any affine pressure; the
+    readings fit a plane to the movement of the foot.
+    """
     assert foot.weights is not None
     middle = foot.weights @ foot.points
     arms = foot.points - middle
@@ -254,7 +273,10 @@ def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointFor
 def make_elastic_jaw_hold(
     fixture: Fixture, hold: JawHold, foot: LoadPatch, jaw_force: float, height: float, size: float
 ) -> ElasticHold:
-    """Return the elastic hold of two flat jaws: affine pressures on what they touch, of the least norm that balances."""
+    """Return the elastic hold of two flat jaws, which press with affine pressures on what they touch.
+
+    Of all pressures that balance, those of least norm are taken.
+    """
     pose = fixture.pose.inverse
     columns: list[PointForces] = []
     normal_columns: list[list[int]] = []
@@ -301,7 +323,12 @@ def make_elastic_jaw_hold(
 def sample_rectangle(
     rectangle: tuple[float, float, float, float], y: float, height: float
 ) -> tuple[Array, Array]:
-    """Return points of a rectangle on a jaw, in the vise's frame, and their areas; a line has a strip's width."""
+    """Return points (M, 3) of a rectangle on a jaw, in the vise's frame, and the area in mm² that each stands
+    for.
+
+    The rectangle is (x0, x1, z0, z1) in mm, cut off at ``height``; one narrower than a peg's strip is widened
+    to it.
+    """
     x0, x1, z0, z1 = rectangle
     z1 = min(z1, height)
     if x1 - x0 < PEG_WIDTH:

@@ -1,4 +1,4 @@
-"""A bent part laid against what locates it: the rigid motion that its contacts leave it."""
+"""The rigid motion that lays a bent part against its locators."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ class Constraints:
 
     Parameters
     ----------
-    rows : (R, K) shifts along x, y and z in mm, turns about them times a length in mm, then how far carriers move.
-    values : (R,) in mm.
+    rows : (R, K) coefficients of the equations. The K unknowns are shifts along x, y and z in mm, turns about
+        these axes times a length in mm, then how far carriers move.
+    values : (R,) right-hand sides in mm.
     """
 
     rows: Array
@@ -30,7 +31,10 @@ class Constraints:
 
 
 def find_rigid_motion(levels: Sequence[Constraints]) -> Array:
-    """The motion (K,) that fits the first constraints best, of these the next ones, and so on; else the smallest.
+    """Return the motion (K,) that fits the levels of constraints in order of priority, by least squares.
+
+    The first level is fitted best; among the motions that do so, the second level is fitted best, and so on.
+    What stays free is taken as small as possible.
 
     >>> import numpy as np
     >>> wall = Constraints(np.array([[1.0, 0.0], [1.0, 0.0]]), np.array([2.0, 4.0]))

@@ -18,7 +18,7 @@ REQUIREMENT = "ngsolve>=6.2.2608"
 
 @frozen
 class Elements:
-    """The modules of the library: of elements and solvers, of shapes, and of meshes."""
+    """Modules of the library: elements and solvers, shapes, and meshes."""
 
     solving: Any
     shapes: Any
@@ -27,7 +27,8 @@ class Elements:
 
 @cache
 def load_elements() -> Elements:
-    """Load the library, which takes about a second, and keep it to one thread.
+    """Return the library's modules; the first call loads them, which takes about a second, and limits them to
+    one thread.
 
     Raises
     ------

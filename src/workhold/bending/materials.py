@@ -14,15 +14,15 @@ __all__ = ["MATERIALS", "ElasticMaterial", "find_material"]
 
 @frozen
 class ElasticMaterial:
-    """A material that bends alike in every direction.
+    """A material with the same stiffness in every direction.
 
     Parameters
     ----------
-    name : as users write it.
+    name : name as users write it.
     elastic_modulus : Young's modulus E in MPa.
     poisson : Poisson's ratio, from 0 to below 0.5.
     density : in kg/m³.
-    source : where the numbers are from.
+    source : where the numbers are taken from.
     """
 
     name: str
@@ -43,7 +43,7 @@ class ElasticMaterial:
 
     @property
     def words(self) -> str:
-        """Its name with what is reckoned with, for people.
+        """Name with Young's modulus and Poisson's ratio, as text for people.
 
         >>> MATERIALS["mild-steel"].words
         'mild-steel (E 205 GPa, Poisson 0.29)'
@@ -97,7 +97,7 @@ MATERIALS = {
 
 
 def find_material(name: str) -> ElasticMaterial:
-    """The material of a name, or of E in MPa and Poisson's ratio, such as "69000,0.33".
+    """Return the material of a name, or one made from "E in MPa,Poisson's ratio", such as "69000,0.33".
 
     Raises
     ------

@@ -38,19 +38,19 @@ class PartMesh:
 
     Parameters
     ----------
-    made : by the library.
+    made : mesh object of the library.
     """
 
     made: Any
 
     @cached_property
     def surface(self) -> Surface:
-        """Its surface."""
+        """Surface of the mesh."""
         return find_surface(self.made)
 
 
 def make_mesh(part: PartToBend) -> PartMesh:
-    """Mesh a part.
+    """Return a mesh of a part.
 
     Raises
     ------
@@ -79,7 +79,10 @@ def make_mesh(part: PartToBend) -> PartMesh:
 
 
 def fill(shape: Any, size: float) -> Any:
-    """Fill a shape with tetrahedra of a size in mm at most: with few, or with more where few cannot be fitted."""
+    """Return a library mesh of a shape, with tetrahedra of at most ``size`` mm.
+
+    It has few tetrahedra, or more where the shape cannot be meshed with few.
+    """
     whole = load_elements().shapes.OCCGeometry(shape)
     try:
         return whole.GenerateMesh(maxh=size, **COMMON, **FEW)
@@ -88,7 +91,9 @@ def fill(shape: Any, size: float) -> Any:
 
 
 def curve_mesh(mesh: Any) -> PartMesh:
-    """A mesh for the solver."""
+    """Return a mesh for the solver whose elements are curved to follow round faces; ``mesh`` is one of the
+    library.
+    """
     made = load_elements().solving.Mesh(mesh)
     made.Curve(2)
     return PartMesh(made)

@@ -1,7 +1,8 @@
-"""Patches of the surface that something presses on, and what is read of movements beside them.
+"""Patches of the surface that are pressed, and readings of the movement beside them.
 
-Under a patch the surface is dented: the narrower the patch, the deeper, and no mesh tells how deep. So movements are
-read a little beside it, where they do not depend on how the force is shared out below.
+Under a patch the surface is dented: the narrower the patch, the deeper, and no mesh tells how deep. So
+movements are read a little beside the patch, where they do not depend on how the force is distributed over
+it.
 """
 
 from __future__ import annotations
@@ -35,10 +36,10 @@ class LoadPatch:
 
     Parameters
     ----------
-    points : (M, 3) in mm, each standing for the same share of its area.
-    beside : (K, 3) where movements are read.
-    outward : unit vector (3,) out of the part; None where any side may be the nearest.
-    weights : (M,) shares of the area; all alike if None.
+    points : (M, 3) points of the patch in mm.
+    beside : (K, 3) points beside the patch where movements are read, in mm.
+    outward : unit vector (3,) out of the part; None where the nearest side counts.
+    weights : (M,) fraction of the patch's area that each point stands for; all the same if None.
     """
 
     points: Array
@@ -48,23 +49,26 @@ class LoadPatch:
 
     @property
     def middle(self) -> Array:
-        """The middle (3,) of the patch."""
+        """Mean (3,) of the points."""
         return np.asarray(self.points.mean(axis=0))
 
     def press(self, direction: Array, factors: Array | None = None) -> PointForces:
-        """A force in a direction (3,) spread evenly over the patch, 1 N in all, or times a factor (M,) at each point."""
+        """Return a force of 1 N in a direction (3,), spread evenly over the patch.
+
+        With ``factors`` (M,), the force at each point is multiplied by its factor.
+        """
         shares = np.full(len(self.points), 1.0 / len(self.points)) if self.weights is None else self.weights
         if factors is not None:
             shares = shares * factors
         return PointForces(self.points, shares[:, None] * direction, self.outward)
 
     def read(self, direction: Array) -> PointForces:
-        """What is read beside the patch: the mean movement in a direction (3,)."""
+        """Return the reading of the mean movement in a direction (3,) of the points beside the patch."""
         count = len(self.beside)
         return PointForces(self.beside, np.tile(direction / count, (count, 1)), self.outward)
 
     def make_unit_moment(self) -> PointForces:
-        """Return a moment of 1 N mm about the upright through the middle."""
+        """Return forces with a moment of 1 N mm about the vertical axis (z) through the middle."""
         arms = self.points - self.middle
         forces = np.column_stack([-arms[:, 1], arms[:, 0], np.zeros(len(arms))])
         return PointForces(self.points, forces / (arms[:, :2] ** 2).sum(), self.outward)
@@ -76,13 +80,13 @@ def compute_interval_middles(low: float, high: float, count: int) -> Array:
 
 
 def make_strip(point: tuple[float, float], normal: tuple[float, float], low: float, high: float) -> LoadPatch:
-    """The upright strip on which a round peg presses.
+    """Return the vertical strip of the surface on which a round peg presses.
 
     Parameters
     ----------
     point : where the peg touches, (x, y) in mm.
-    normal : of the part there, outward, of length 1.
-    low, high : the heights between which it presses, in mm.
+    normal : outward unit normal of the part at that point.
+    low, high : heights in mm between which the peg presses.
     """
     along = (-normal[1], normal[0])
     heights = compute_interval_middles(low, high, max(ACROSS, ceil((high - low) / ALONG)))
@@ -100,13 +104,13 @@ def make_strip(point: tuple[float, float], normal: tuple[float, float], low: flo
 
 
 def make_disc(middle: Array, radius: float, outward: Array | None) -> LoadPatch:
-    """A level disc, such as a pad's or a tip's; of where a tool cuts on whatever side of the part.
+    """Return a level disc, such as that of a pad or a tip, or the place of a cutter on any side of the part.
 
     Parameters
     ----------
-    middle : (3,) in mm.
+    middle : (3,) centre in mm.
     radius : in mm.
-    outward : unit vector (3,) out of the part; None where the nearest side counts.
+    outward : unit vector (3,) out of the part; None where the side nearest to the points counts.
     """
 
     def ring(far: float, count: int) -> Array:
@@ -118,7 +122,11 @@ def make_disc(middle: Array, radius: float, outward: Array | None) -> LoadPatch:
 
 
 def make_rectangle(corner: Array, sides: tuple[Array, Array], spacing: float = ALONG) -> tuple[Array, Array]:
-    """Points (M, 3) of a flat rectangle from a corner (3,) along two sides (3,), and the area in mm² of each."""
+    """Return points (M, 3) spread evenly over a flat rectangle, and the area in mm² that each stands for.
+
+    The rectangle is spanned from ``corner`` (3,) by two vectors ``sides`` (3,); points are at most
+    ``spacing`` mm apart, at least two along each side.
+    """
     lengths = [float(np.linalg.norm(side)) for side in sides]
     counts = [max(2, ceil(length / spacing)) for length in lengths]
     first, second = (
@@ -130,9 +138,10 @@ def make_rectangle(corner: Array, sides: tuple[Array, Array], spacing: float = A
 
 
 def make_foot(nodes: Array, triangles: NDArray[np.int64], normals: Array, lowest: float) -> LoadPatch | None:
-    """The level faces that a part lies on, at a height of ``lowest`` in mm; None where it has none.
+    """Return the patch of the level faces on which a part lies, at the height ``lowest`` in mm; None where it
+    has none.
 
-    Nodes (N, 3), triangles (T, 6) and normals (T, 3) are those of a mesh's surface.
+    Nodes (N, 3), triangles (T, 6) and outward normals (T, 3) are those of a mesh's surface.
     """
     corners = nodes[triangles[:, :3]]
     is_foot = (normals[:, 2] < -0.999) & (np.abs(corners[:, :, 2] - lowest).max(axis=1) < 1e-3)

@@ -1,4 +1,4 @@
-"""Where tools and loads press on a part, and with what, so that it is known how far it gives there."""
+"""Places where tools and loads press on a part, and their forces, to compute how far the part gives there."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ MOST_PLACES = 16
 
 @frozen(eq=False)
 class CutterLoads:
-    """What presses on the part at N places.
+    """Forces and moments that tools and loads exert on the part at N places.
 
     Parameters
     ----------
     points : (N, 3) in mm, in the part's coordinates.
-    force, torque : (N,) force in the plane in N, and moment about the upright in N mm, either way round where it is a
-        tool's.
+    force, torque : (N,) force in the plane in N, and moment about z in N mm; a tool's moment may have either
+        sign.
     axial : (N, 2) least and greatest force downward, in N.
-    middle, half : (N,) of the range of directions, in radians.
-    row : (N,) number of the program's move, or the load's number from 1, negative.
-    chosen : (P,) numbers of places far from each other, at which the part is loaded.
-    owner : (N,) of each place the nearest of these, by its number among them.
+    middle, half : (N,) directions of the force in the plane: from middle - half to middle + half, in radians.
+    row : (N,) index of the program's move; for a load, minus its number from 1.
+    chosen : (P,) indices of places far from each other, at which the part is loaded.
+    owner : (N,) for each place the nearest of the chosen ones, as an index into ``chosen``.
     """
 
     points: Array
@@ -57,7 +57,9 @@ class CutterLoads:
         return len(self.row)
 
     def list_vectors(self, number: int) -> Array:
-        """The forces along x, y and z and moments (V, 4) that press at one place."""
+        """Return all combinations (V, 4) that may press at place ``number``: forces along x, y and z in N,
+        and moment about z in N mm.
+        """
         span = np.linspace(-1.0, 1.0, DIRECTIONS) if self.half[number] > 0.0 else np.zeros(1)
         angles = self.middle[number] + self.half[number] * span
         torque, own = float(self.torque[number]), self.force[number]
@@ -72,7 +74,9 @@ class CutterLoads:
         )
 
     def choose_places(self) -> tuple[IntArray, IntArray]:
-        """Choose places far from each other, and for each place the nearest of these, by number among them."""
+        """Return (chosen, owner), see the class: places far from each other, and for each place the nearest
+        of these.
+        """
         chosen = [int(np.hypot(self.force, np.abs(self.axial).max(axis=1)).argmax())]
         nearest = np.linalg.norm(self.points - self.points[chosen[0]], axis=1)
         owner = np.zeros(len(self), np.int64)
@@ -86,7 +90,11 @@ class CutterLoads:
 
 
 def list_cutter_loads(query: Query, height: float) -> CutterLoads | None:
-    """What presses on the part of a query, of a height in mm: its program's tools, and its loads; None without any."""
+    """Return what the tools of a query's program and its loads exert on the part; None where there are
+    neither.
+
+    ``height`` is the part's height in mm.
+    """
     rows = [*list_program_rows(query, height), *list_load_rows(query, height)]
     if not rows:
         return None
@@ -97,7 +105,12 @@ def list_cutter_loads(query: Query, height: float) -> CutterLoads | None:
 
 
 def list_program_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
-    """Return the forces of each cut of a program, at places along it."""
+    """Return rows (point, force, torque, least axial, greatest axial, middle, half, move) at places along
+    each cut.
+
+    The fields are those of :class:`CutterLoads`; the list is empty without a program. ``height`` is the
+    part's height in mm.
+    """
     if query.program is None:
         return []
     pieces = CuttingPieces.from_program(query.program, height)
@@ -123,7 +136,9 @@ def list_program_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
 
 
 def list_load_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
-    """Return the forces of each load, at each of its points."""
+    """Return a row as :func:`list_program_rows` does for each point of each load; the last field is minus the
+    load's number from 1.
+    """
     rows: list[tuple[Any, ...]] = []
     for number, load in enumerate(query.loads):
         low, high = np.radians(load.directions)

@@ -22,7 +22,7 @@ class PartToBend(Protocol):
     """A shape in the part's coordinates, in mm, its lowest point at z = 0."""
 
     def build(self) -> Any:
-        """The shape as the library has it."""
+        """Return the shape as an object of the meshing library."""
 
 
 @frozen
@@ -31,7 +31,7 @@ class PrismShape:
 
     Parameters
     ----------
-    workpiece : the part; of a solid its silhouette counts.
+    workpiece : the part; for a solid its silhouette is used.
     thickness : in mm.
     """
 
@@ -39,7 +39,7 @@ class PrismShape:
     thickness: float
 
     def build(self) -> Any:
-        """The prism, from z = 0 up; refuses a part in several pieces."""
+        """Return the prism from z = 0 upward; raise InputError for a part in several pieces."""
         part = self.workpiece
         outer, holes = part.loop_segments[: part.pieces], part.hole_segments
         shapes = load_elements().shapes
@@ -64,13 +64,13 @@ class KeptShape:
 
     Parameters
     ----------
-    text : of its file.
+    text : content of the shape's file.
     """
 
     text: str
 
     def build(self) -> Any:
-        """The solid."""
+        """Return the solid as an object of the meshing library."""
         with TemporaryDirectory(prefix="workhold-") as folder:
             path = Path(folder) / "part.brep"
             path.write_text(self.text, encoding="ascii")
@@ -78,7 +78,7 @@ class KeptShape:
 
 
 def make_face(loop: Sequence[Segment]) -> Any:
-    """Return the flat face within a loop, whichever way it runs."""
+    """Return the flat face at z = 0 inside a loop, which may run either way round."""
     if compute_signed_area(loop) < 0:
         loop = [reverse_segment(segment) for segment in reversed(loop)]
     return load_elements().shapes.Face(
@@ -87,14 +87,16 @@ def make_face(loop: Sequence[Segment]) -> Any:
 
 
 def reverse_segment(segment: Segment) -> Segment:
-    """A segment run through from its end."""
+    """Return the segment with start and end exchanged."""
     if isinstance(segment, Arc):
         return Arc(segment.center, segment.radius, segment.mid_angle, segment.half_sweep, -segment.sign)
     return type(segment)(segment.end, segment.start)
 
 
 def make_edges(segment: Segment) -> list[Any]:
-    """Return the edges of a segment at z = 0; of an arc two halves, since a whole circle has no ends."""
+    """Return the library's edges of a segment at z = 0: one for a line, two halves for an arc, since a circle
+    has no ends.
+    """
     shapes = load_elements().shapes
 
     def point(place: Point) -> Any:

@@ -1,4 +1,5 @@
-"""The surface of a mesh: nodes and triangles fine enough to find what moves most, and where points lie on it."""
+"""The surface of a mesh: nodes and triangles fine enough to find the largest movement, and the places of
+points on it."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ IntArray = NDArray[np.int64]
 
 
 def list_lattice(pieces: int) -> Array:
-    """Barycentric coordinates (K, 3) of evenly spaced points of a triangle whose sides are cut into so many pieces.
+    """Return barycentric coordinates (K, 3) of evenly spaced points of a triangle, its sides cut into
+    ``pieces`` pieces.
 
     >>> list_lattice(1).tolist()
     [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
@@ -41,12 +43,12 @@ ALIKE = 0.5
 
 @frozen(eq=False)
 class Footing:
-    """Where points lie on a surface: in each a face, and barycentric coordinates of it.
+    """Places of M points on a surface: for each a face, and barycentric coordinates in it.
 
     Parameters
     ----------
-    faces : (M,) numbers of faces.
-    shares : (M, 3).
+    faces : (M,) indices of faces.
+    shares : (M, 3) barycentric coordinates.
     """
 
     faces: IntArray
@@ -55,17 +57,17 @@ class Footing:
 
 @frozen(eq=False)
 class Surface:
-    """The surface of a mesh: the faces of its elements, and each cut into four triangles of six nodes.
+    """The surface of a mesh: F faces of elements, each also cut into four triangles of six nodes.
 
     Parameters
     ----------
     nodes : (N, 3) in mm.
-    triangles : (4 F, 6) numbers of nodes: three corners, counter-clockwise from outside, then the middles of the edges
-        between the first two, the last two, and the last and the first.
-    normals : (4 F, 3) unit vectors outward.
-    faces : (F, 15) numbers of the nodes of each face, in the order of ``LATTICE``.
+    triangles : (4 F, 6) indices of nodes: three corners, counter-clockwise from outside, then the middles of
+        the edges from first to second, second to third, and third to first corner.
+    normals : (4 F, 3) outward unit normals.
+    faces : (F, 15) indices of the nodes of each face, in the order of ``LATTICE``.
     vertices : (F, 3) the library's numbers of the corners of each face, counter-clockwise from outside.
-    is_turned : (F,) whether the library has the second and the third of these the other way round.
+    is_turned : (F,) whether the library has the second and the third corner in the opposite order.
     """
 
     nodes: Array
@@ -77,15 +79,16 @@ class Surface:
 
     @property
     def corners(self) -> Array:
-        """The corners (F, 3, 3) of the faces, in mm."""
+        """Corners (F, 3, 3) of the faces, in mm."""
         return self.nodes[self.faces[:, [number_of(4, 0), number_of(0, 4), number_of(0, 0)]]]
 
     def find_footing(self, points: Array, outward: Array | None) -> Footing:
-        """Find the faces that points (M, 3) lie on, or nearest to.
+        """Return the places on the surface nearest to points (M, 3): faces and barycentric coordinates.
 
         Parameters
         ----------
-        outward : direction out of the part there; None where any side may be the nearest.
+        outward : direction (3,) out of the part at the points, which the face's normal must roughly have;
+            None where any side may be the nearest.
 
         Raises
         ------
@@ -116,24 +119,28 @@ class Surface:
         return Footing(faces, shares)
 
     def place_on(self, faces: IntArray, shares: Array) -> Array:
-        """Points (F, K, 3) of faces, which are curved, by barycentric coordinates (K, 3), in mm."""
+        """Return the points (F, K, 3) in mm of curved faces at the barycentric coordinates ``shares`` (K, 3)."""
         a, b, c = shares.T
         weights = [a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a]
         six = [number_of(*one) for one in ((4, 0), (0, 4), (0, 0), (2, 2), (0, 2), (2, 0))]
         return np.asarray(np.einsum("sk,fsx->fkx", np.array(weights), self.nodes[self.faces[faces][:, six]]))
 
     def place(self, footing: Footing) -> Array:
-        """The points (M, 3) of a footing, on the flat faces, in mm."""
+        """Return the points (M, 3) in mm of a footing, on the flat triangles through the corners of the
+        faces.
+        """
         return np.asarray(np.einsum("mc,mck->mk", footing.shares, self.corners[footing.faces]))
 
 
 def number_of(first: int, second: int) -> int:
-    """The number in the lattice of a node, by its quarters of the first and the second corner."""
+    """Return the index in ``LATTICE`` of the node with these quarters of the first and the second barycentric
+    coordinate.
+    """
     return int(np.flatnonzero((QUARTERS[:, 0] == first) & (QUARTERS[:, 1] == second))[0])
 
 
 def list_small_triangles() -> IntArray:
-    """The four triangles (4, 6) that a face is cut into, of nodes of the lattice."""
+    """Return the four triangles (4, 6) that a face is cut into, as indices into ``LATTICE``."""
     rows = []
     for corners in (
         ((4, 0), (2, 2), (2, 0)),
@@ -147,7 +154,7 @@ def list_small_triangles() -> IntArray:
 
 
 def find_surface(mesh: Any) -> Surface:
-    """The surface of a mesh of the library."""
+    """Return the surface of a mesh of the library."""
     solving = load_elements().solving
     elements = list(mesh.Elements(solving.BND))
     vertices = np.array([[v.nr for v in one.vertices] for one in elements], np.int64)
@@ -175,13 +182,15 @@ def find_surface(mesh: Any) -> Surface:
 
 
 def name_nodes(vertices: IntArray, count: int) -> IntArray:
-    """Name the nodes (F, 15) of faces of vertices (F, 3): faces that share a node name it alike.
+    """Return integers (F, 15) that identify the nodes of F faces with vertices (F, 3): shared nodes have
+    equal ones.
 
-    A node at a corner or on an edge is named by the quarters of the two corners and these, one within a face by the face.
+    At a corner or on an edge, the integer follows from the numbers of its corners and the quarters between
+    them; the integers of nodes inside a face are negative.
 
     Parameters
     ----------
-    count : of all vertices.
+    count : number of all vertices of the mesh.
     """
     names = np.empty((len(vertices), len(LATTICE)), np.int64)
     for column, quarters in enumerate(QUARTERS.tolist()):
@@ -198,9 +207,11 @@ def name_nodes(vertices: IntArray, count: int) -> IntArray:
 
 
 def project_onto(points: Array, corners: Array) -> tuple[Array, Array]:
-    """The nearest points of triangles to points: shares of the corners (M, T, 3), and squared distances (M, T).
+    """Return the points of T triangles nearest to M points: barycentric coordinates (M, T, 3), squared
+    distances (M, T).
 
-    Points are (M, 3), corners (T, 3, 3), in mm. What lies beside a triangle is laid on the nearest of its sides.
+    Points are (M, 3) and corners (T, 3, 3), in mm. A point beside a triangle is projected onto the nearest
+    side.
     """
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     ab, ac = b - a, c - a

@@ -121,7 +121,7 @@ class ProgramArguments(ToolArguments):
 
         Parameters
         ----------
-        height : of the part's solid in mm; None where it has none.
+        height : height of the part's solid in mm; None where it has none.
         """
         left_out = {"path", "peg_height", "thickness"}
         given = self.model_dump(exclude=left_out)

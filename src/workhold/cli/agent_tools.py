@@ -77,9 +77,10 @@ class AgentTool:
 
     Parameters
     ----------
-    words : what it does, for an agent.
-    arguments : their form.
-    run : takes the arguments, a folder for files that nobody has named, and an event that ends a search.
+    words : description of the tool for an agent.
+    arguments : the form of its arguments.
+    run : function called with the arguments, a folder for files without a given name, and an event that ends
+        a search.
     """
 
     words: str
@@ -88,7 +89,10 @@ class AgentTool:
 
 
 def load(asked: LoadArguments, folder: Path, cancel: Event) -> ToolAnswer:
-    """Return a part as plain data with its faces, and its picture if asked for."""
+    """Return a part, read as ``asked``, as plain data with its faces, and its picture if asked for.
+
+    ``folder`` and ``cancel`` are not used.
+    """
     loaded = read_workpiece(asked.part, **asked.to_load_arguments())
     return ToolAnswer(
         describe_part(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
@@ -96,10 +100,10 @@ def load(asked: LoadArguments, folder: Path, cancel: Event) -> ToolAnswer:
 
 
 def run_design_tool(asked: DesignArguments, folder: Path, cancel: Event) -> ToolAnswer:
-    """Return the best fixtures as plain data, after writing all that were found to a result file.
+    """Return the best fixtures as plain data, after writing a result file with all fixtures found.
 
-    The file is a new one in ``folder`` unless the arguments name one. ``cancel`` ends the search, which then
-    is incomplete.
+    The file is a new one in ``folder`` unless the arguments name one. Setting ``cancel`` ends the search, and
+    the result is incomplete then.
     """
     out = asked.out or str(folder / f"result-{len(list(folder.iterdir())) + 1}.json")
     refuse_output(out, (asked.part, asked.toolkit), asked.force, "force")
@@ -115,8 +119,9 @@ def run_design_tool(asked: DesignArguments, folder: Path, cancel: Event) -> Tool
 
 
 def explain(asked: DesignArguments, folder: Path, cancel: Event) -> ToolAnswer:
-    """Return why there is no fixture and what would help;
-    where there are fixtures, return their number instead.
+    """Return why there is no fixture and which changes would help, as plain data.
+
+    Where there are fixtures, return their number instead.
     """
     _, result = search_until_deadline(asked, cancel)
     found = sum(result.found.values())
@@ -138,8 +143,8 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> ToolAnswer:
 
 
 def search_until_deadline(asked: DesignArguments, cancel: Event) -> tuple[LoadedPart, Result]:
-    """Return the part and the result of a search that stops
-    when the asked seconds are over or ``cancel`` is set.
+    """Return the part and the result of a search that stops when the seconds asked for are over or ``cancel``
+    is set.
     """
     from workhold.search.design import answer
 
@@ -193,7 +198,8 @@ def read_program_to_pass(asked: ProgramArguments | None, workpiece: Workpiece) -
 
 
 def make_asked_toolkit(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
-    """Return the toolkit of a preset, a file or a kind, with some fields changed, and its own tolerance.
+    """Return the toolkit of a preset, a TOML file or a kind, with ``fields`` replaced, and the toolkit's own
+    tolerance.
 
     The tolerance is None for a kind. Raises InputError for an unknown name and fields that do not fit.
     """

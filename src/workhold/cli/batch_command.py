@@ -123,8 +123,9 @@ class WorkerOptions:
     )
 
     def place(self) -> WorkerSetting:
-        """Return where the work is done;
-        raise InputError for more than one place, and for a cluster without Dask installed.
+        """Return the place of the work: processes of this machine, or a cluster.
+
+        Raises InputError for more than one place, and for a cluster without Dask installed.
         """
         count = read_optional_count("--workers", self.workers)
         processes = read_optional_count("--local-cluster", self.local_cluster)
@@ -153,10 +154,10 @@ class WorkerSetting:
 
     Parameters
     ----------
-    count : of processes; None for one on each processor.
-    seconds : that a job may take in one of them.
+    count : number of processes; None for one on each processor.
+    seconds : most seconds that a job may take.
     cluster : the address of a cluster's scheduler.
-    processes : of a cluster on this machine.
+    processes : number of processes of a cluster on this machine.
     records : where records are kept; None for the folder of the results.
     """
 
@@ -187,8 +188,8 @@ class BatchTask:
 
     Parameters
     ----------
-    kept : how many fixtures of each job are kept.
-    folder, names : where tables and report go, and what they are called.
+    kept : number of fixtures of each job that are kept, the best ones.
+    folder, names : folder for tables and report, and the names of these files.
     """
 
     requests: Sequence[PartRequest]
@@ -205,10 +206,10 @@ class BatchAnswer:
 
     Parameters
     ----------
-    store, measured : records of jobs, and how long they took.
-    spent : seconds that it took.
-    events : what happened to workers, for the report.
-    gone : how all workers were lost; empty where they were not.
+    store, measured : records of the jobs, and the seconds that each job took.
+    spent : seconds that the whole batch took.
+    events : sentences on what happened to workers, for the report.
+    gone : sentence on how all workers were lost; empty where they were not.
     """
 
     done: BatchState
@@ -220,7 +221,7 @@ class BatchAnswer:
 
     @property
     def sentence(self) -> str:
-        """Sentence with the numbers of parts, of new and of known answers, and the seconds."""
+        """Sentence with the number of parts, of jobs answered now and before, and the seconds."""
         before = f"; {self.done.kept:,} were known already" if self.done.kept else ""
         parts, fresh = format_count(len(self.done.parts), "part"), format_count(self.done.fresh, "answer")
         return f"{parts}, {fresh} found in {self.spent:.1f} s{before}."
@@ -259,8 +260,9 @@ def parse(
     work: WorkerOptions,
     reading: PartOptions,
 ) -> BatchTask:
-    """Return what was typed as a task, checked before any search;
-    each part is read later, by the worker that needs it.
+    """Return what was typed as a task, checked before any search.
+
+    Each part is read later, by the worker that needs it.
     """
     if not written.out:
         raise InputError("the folder for the results is not given: name one with --out.")
@@ -350,8 +352,8 @@ def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
 
 
 def is_seated(held: ToolkitQuery) -> bool:
-    """Return whether a query asks for seating that needs compiled kernels:
-    with a vise or one clamp, not with two clamps.
+    """Return whether a query asks for seating that needs compiled kernels: for a vise or one clamp, but not
+    for two clamps.
     """
     from workhold.model.query import Query
 
@@ -368,9 +370,7 @@ def list_requests(
     reading: PartOptions,
     folder: Path,
 ) -> list[PartRequest]:
-    """Return what is asked of each part:
-    first the parts named on the command line, then those of files of jobs.
-    """
+    """Return a request for each part: first the parts named on the command line, then those in files of jobs."""
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
 
     lists = varied.has_pitches or toolkit is not None
@@ -450,8 +450,9 @@ def list_asked_toolkits(
     varied: ToolkitListOptions,
     reading: PartOptions,
 ) -> list[NamedToolkit]:
-    """Return the toolkits of names and files, and those of the lists of figures;
-    at most one name may be a kind.
+    """Return the toolkits of the names and files typed, each varied by the lists of figures.
+
+    At most one name may be a kind of toolkit.
     """
     from workhold.fixels.kinds import ALIASES, KINDS
 

@@ -64,8 +64,8 @@ class BenchmarkTask:
 
     Parameters
     ----------
-    names : of sets, or of files with another program's fixtures.
-    tolerance : in mm, of these.
+    names : names of sets, or paths of files with another program's fixtures.
+    tolerance : tolerance in mm when another program's fixtures are compared.
     """
 
     action: str
@@ -127,10 +127,10 @@ def print_checker() -> None:
 
 
 def choose_sets(words: Sequence[str]) -> list[SetEntry]:
-    """Return the sets that any of the words names, in the benchmark's order; all sets without words.
+    """Return the sets that match any of the words, in the benchmark's order; all sets without words.
 
-    A word is the name of a set, else that of a workpiece, else a part of names. Raises InputError for any
-    other.
+    A word matches a set of that name, else all sets of a workpiece of that name, else all sets whose name
+    contains it. Raises InputError for a word that matches none.
     """
     from workhold.benchmark.catalogue import find_set, load_sets
 
@@ -167,7 +167,7 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
 
 
 def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]:
-    """Write the chosen sets into the folder and return them; after a Ctrl-C, those that are done."""
+    """Write the chosen sets into the folder and return them; after Ctrl-C, return those that are complete."""
     words = asked.words
     if words.out is None:
         raise InputError("run needs a folder for the sets: name one with --out.")
@@ -190,8 +190,9 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
 
 
 def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence[MadeSet]) -> None:
-    """Print how the made sets compare with the manifest;
-    exit with DIFFERS where one differs, INTERRUPTED where some lack.
+    """Print how the made sets compare with the manifest.
+
+    Exits with DIFFERS where a set differs, and with INTERRUPTED where some sets were not made.
     """
     other = [one for one in made if not one.is_same]
     if asked.words.json_:
@@ -222,8 +223,9 @@ def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence
 
 
 def compare(asked: BenchmarkTask) -> list[ComparedFile]:
-    """Return the comparison of each file of another program's
-    fixtures with the complete list, or those done at a Ctrl-C.
+    """Return, for each file of another program's fixtures, how it compares with the complete list.
+
+    After Ctrl-C, return the comparisons done so far.
     """
     files, words = asked.names, asked.words
     if not files:
@@ -250,8 +252,9 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
 
 
 def report_compared(asked: BenchmarkTask, done: Sequence[ComparedFile]) -> None:
-    """Print what of each set another program found, missed or has in excess;
-    exit with INTERRUPTED where some files lack.
+    """Print which fixtures of each set another program found, missed or has too many.
+
+    Exits with INTERRUPTED where some files were not compared.
     """
     if asked.words.json_:
         print_json(files=[convert_comparison_to_json(*one) for one in done])

@@ -158,7 +158,7 @@ def bend(
 
 
 def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
-    """Return what is asked of the bending, from options as typed; lengths are read in ``unit``."""
+    """Return the question of bending from the options as typed; lengths without a unit are in ``unit``."""
     from workhold.bending.asking import BendingQuestion
     from workhold.bending.materials import find_material
     from workhold.statics.loads import read_jaw_stiffness
@@ -185,8 +185,9 @@ def read_figure(name: str | None) -> str | None:
 
 
 def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Result, list[int]]:
-    """Return the result and the indices, from 0, of the fixtures to bend:
-    that of ``rank``, else the best 20 or ``best``.
+    """Return the result in a file, and the indices, from 0, of the fixtures to bend.
+
+    The fixture is that of ``rank`` where given, else the first ``best`` fixtures, or 20 for None.
     """
     if rank is not None:
         return read_result_with_rank(result_file, rank), [rank - 1]
@@ -199,9 +200,9 @@ def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Res
 
 
 def rank_bendings(found: list[tuple[int, Bending]], figure: str | None) -> list[tuple[int, Bending]]:
-    """Return pairs of index and bending ordered by a figure, the least first and equal ones as before.
+    """Return pairs (index, bending) sorted by a figure, the smallest first; equal ones keep their order.
 
-    Return them unchanged for None. Raises InputError where a bending lacks the figure.
+    For None the pairs are returned unchanged. Raises InputError where a bending lacks the figure.
     """
     if figure is None:
         return found
@@ -242,8 +243,8 @@ def write_first(
 def tabulate(
     ranked: list[tuple[int, Bending]], result: Result, asked: BendingQuestion, unit: Unit
 ) -> list[Table | str]:
-    """Return a heading, a table and a footnote on how far each fixture bends its part;
-    [] without fixtures.
+    """Return a heading, a table and a footnote on how far each fixture bends its part; [] where ``ranked`` is
+    empty.
     """
     small, mover = unit.small_name, result.toolkit.moving.noun
     if not ranked:

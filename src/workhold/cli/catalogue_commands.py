@@ -172,8 +172,8 @@ def tabulate_toolkit_figures(loaded: LoadedToolkit, unit: Unit) -> Table:
 
 
 def list_own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
-    """Yield (words, value as text) of the figures that a toolkit
-    has beyond those of every plate, unset ones left out.
+    """Yield (words, value as text) of the figures that a toolkit has beyond those of every plate; unset ones
+    are left out.
     """
     from workhold.fixels.kinds import find_table
 
@@ -198,8 +198,9 @@ def list_own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, s
 
 
 def format_field_value(form: Form, value: Any, unit: Unit) -> str:
-    """Return the value of a toolkit's field as text with its unit;
-    ``form`` is the field's kind, such as "length".
+    """Return the value of a toolkit's field as text with the unit's abbreviation where it is a length.
+
+    ``form`` is the form of the field, such as "length".
     """
     if form == "count":
         return str(value)
@@ -230,7 +231,7 @@ def format_pitch(pitch: tuple[float, float], unit: Unit) -> str:
 
 
 def format_limits(limits: Limits, unit: Unit) -> str:
-    """Return limits in mm as text with the unit, such as "5.98 to 6.00 mm"."""
+    """Return limits in mm as text with the unit's abbreviation, such as "5.98 to 6.00 mm"."""
     return f"{unit.format_number(limits[0])} to {unit.format_length(limits[1])}"
 
 
@@ -263,7 +264,7 @@ class FeaturesTask:
 
     Parameters
     ----------
-    radius : of pegs whose centres are drawn; None for none.
+    radius : radius in mm of the pegs whose centres' curves are drawn; None for no curves.
     unit : of lengths shown.
     """
 
@@ -280,8 +281,9 @@ class FeaturesTask:
         return [] if self.picture is None else [str(self.picture)]
 
     def load(self) -> LoadedPart:
-        """Return the part, read with the heights and peg diameter
-        of the toolkit that will hold it, if one is named.
+        """Return the part as read from its file.
+
+        If a toolkit is named, the part is read with the carrier heights and the peg diameter of that toolkit.
         """
         if self.words.toolkit is None:
             return self.reading.load(self.part)
@@ -317,7 +319,10 @@ def parse(part: str, words: FeatureOptions, reading: PartOptions) -> FeaturesTas
 
 
 def report_faces(asked: FeaturesTask, loaded: LoadedPart) -> None:
-    """Print the faces of a part, and draw them if asked, with the curves of the peg centres for a radius."""
+    """Print the faces of a part, and draw them if asked.
+
+    Where a peg radius was typed, the drawing also has the curves of the peg's centre along each face.
+    """
     workpiece, unit = loaded.workpiece, asked.unit
     if not asked.words.json_:
         from workhold.cli.tables import (

@@ -50,7 +50,7 @@ def print_remark(message: str) -> None:
 
 
 def forget(stream: TextIO) -> None:
-    """Redirect a stream to the null device, once its reader is gone or the disk is full.
+    """Redirect a stream to the null device because its reader is gone or the disk is full.
 
     Otherwise the interpreter would complain when it flushes the stream at exit.
     """
@@ -72,8 +72,8 @@ def make_option(panel: str | None, metavar: str, help: str, *names: str, default
     Parameters
     ----------
     panel : section of the help; None for the general one.
-    metavar : what stands for the value in the help.
-    names : of the option, such as "--out"; made from the parameter's name if none.
+    metavar : placeholder for the value in the help.
+    names : names of the option, such as "--out"; without any, the name is made from the parameter's.
     default : as it would be typed.
     """
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
@@ -85,11 +85,10 @@ def make_flag(panel: str | None, help: str, name: str) -> Any:
 
 
 def spread_option_groups(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command in whose signature each parameter that
-    is a group of options is replaced by the group's options.
+    """Return a command in whose signature the options of each group stand in place of the group.
 
-    A group is an attrs class whose fields are options. When called, the new command builds the groups and
-    calls the old.
+    A group is an attrs class whose fields are options. When called, the new command builds the groups from
+    its options and calls ``command`` with them.
     """
     kinds = get_type_hints(command, include_extras=True)
     groups = {
@@ -116,7 +115,7 @@ def spread_option_groups(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def make_default_group(kind: type[Words], **typed: Any) -> Words:
-    """Return a group of options with all options at their defaults except those given here."""
+    """Return a group of options, each at its default except those given in ``typed``."""
     usual = {name: one.default.default for name, one in signature(kind).parameters.items()}
     return kind(**usual | typed)
 
@@ -125,7 +124,9 @@ class PlainCommand(TyperCommand):
     """A subcommand whose parameters are words."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return parameters and help option, with Typer's checks of words switched off."""
+        """Return the command's parameters and the help option, all with Typer's checks of values switched
+        off.
+        """
         return pass_words_unchecked(super().get_params(ctx))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
@@ -140,13 +141,13 @@ class PlainGroup(TyperGroup):
     """A group of subcommands, which shows the help where no subcommand is named."""
 
     def get_params(self, ctx: Any) -> list[Any]:
-        """Return parameters and help option, with Typer's checks of words switched off."""
+        """Return the group's parameters and the help option, all with Typer's checks of values switched off."""
         return pass_words_unchecked(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Return the words left after parsing those before the subcommand.
+        """Return the arguments from the subcommand on, after parsing those before it.
 
-        Without any word, print the help and exit with BAD_INPUT, unless a shell asks for completions.
+        Without any argument, print the help and exit with BAD_INPUT, unless a shell asks for completions.
         """
         if not args and not ctx.resilient_parsing:
             typer.echo(ctx.get_help())
@@ -170,8 +171,9 @@ class PlainGroup(TyperGroup):
 
 
 def pass_words_unchecked(parameters: list[Any]) -> list[Any]:
-    """Return the same parameters, changed in place so that a word,
-    or None for an option not given, is passed on unchecked.
+    """Return the same parameters, changed in place so that Typer passes on a word, or None, unchecked.
+
+    None stands for an option not given.
     """
     for parameter in parameters:
         if "process_value" not in vars(parameter):
@@ -180,8 +182,9 @@ def pass_words_unchecked(parameters: list[Any]) -> list[Any]:
 
 
 def take_parameter_value(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
-    """Return the value of a parameter:
-    a word, or None for an option not given, as it is; Typer checks anything else.
+    """Return the value of a parameter, unchecked if it is a word or None (an option not given).
+
+    For any other value, return what ``checked(ctx, value)`` returns.
     """
     if isinstance(value, str) or (value is None and not parameter.required):
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)

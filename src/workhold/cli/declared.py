@@ -1,4 +1,5 @@
-"""Options of declared fields: how each stands in a command's signature, and how what is typed for it is read."""
+"""Options made from declared fields: their place in a command's signature, and how the words typed are
+read."""
 
 from __future__ import annotations
 
@@ -56,7 +57,7 @@ def make_field_option(row: Declaration) -> Any:
 
 
 def format_default(row: Declaration) -> str | None:
-    """Return a field's default as it would be typed; None where there is none or the help describes it."""
+    """Return a field's default as it would be typed; None where it has none or its help text describes it."""
     if row.typed_default:
         return row.typed_default
     if row.default is None or row.form in SEVERAL:
@@ -82,14 +83,13 @@ def make_list_attribute(option: Any) -> Any:
 
 
 def make_option_attributes(rows: Iterable[Declaration], **beside: Any) -> dict[str, Any]:
-    """Return attrs attributes by name for a group of options:
-    one for each declared field, and the options ``beside`` them.
+    """Return attrs attributes by name for a group of options: one for each declared field, and those in
+    ``beside``.
 
     Parameters
     ----------
-    beside : further options by name. A value is an attribute of :func:`make_word_attribute` and the like,
-        which is put last;
-        or, under a field's name, a mapping of such attributes, which are put before that field.
+    beside : further options by name. A value made by :func:`make_word_attribute` or the like is put last;
+        under a field's name, a mapping of such attributes is put before that field.
     """
     out: dict[str, Any] = {}
     for row in rows:
@@ -117,8 +117,9 @@ def read_rings(row: Declaration, texts: list[str], unit: Unit) -> list[tuple[flo
 def read_separated_lengths(
     option_name: str, text: str, mark: str, count: int, unit: Unit
 ) -> tuple[float, ...]:
-    """Return ``count`` lengths in mm from text with ``mark`` between them;
-    raise InputError for another number of them.
+    """Return ``count`` lengths in mm from text in which they are separated by ``mark``.
+
+    Raises InputError for any other number of lengths.
     """
     words = text.split(mark)
     if len(words) != count:

@@ -133,11 +133,11 @@ class OutputOptions:
     json_: bool = JSON
 
     def read_output(self, inputs: tuple[str | None, ...], before: str | None) -> OutputTarget:
-        """Return where the answer goes, after checking all that can be checked before the search.
+        """Return where the answer goes, after all checks that are possible before the search.
 
         Parameters
         ----------
-        inputs : files that are read.
+        inputs : files that are read before the search.
         before : a further file, which is read after the search.
 
         Raises
@@ -165,10 +165,11 @@ class OutputTarget:
 
     Parameters
     ----------
-    out, form : the result file and its form; None for none.
-    folder : of pictures.
-    listed : how many fixtures the terminal lists, and whether with those that are unfit.
-    sheet, before : the setup sheet of the first choice, and the result of the side before that it names.
+    out, form : path of the result file and its form; None for no file.
+    folder : folder for pictures; None for no pictures.
+    listed : number of fixtures that the terminal lists, and whether unfit ones are among them.
+    sheet, before : path of the setup sheet of the first choice, and of the result of the side before, which
+        the sheet names.
     as_json : whether one JSON object is printed instead of tables.
     """
 
@@ -203,8 +204,8 @@ class DesignTask:
     Parameters
     ----------
     loaded : the part as it was read.
-    every : whether all fixtures are listed, however many.
-    thickness : of the part in mm, where supports are wanted.
+    every : whether all fixtures are listed, however many there are.
+    thickness : thickness of the part in mm where supports are wanted, else None.
     unit : of lengths shown.
     """
 
@@ -224,8 +225,8 @@ class DesignAnswer:
 
     Parameters
     ----------
-    estimated : about how many fixtures there are, where there are very many.
-    spent : the time it took, in words.
+    estimated : estimate of the number of fixtures, where there are very many; else None.
+    spent : time that the search took, in words.
     """
 
     result: Result
@@ -405,10 +406,10 @@ def write_sheet_of_first(
 
 
 def limit_query_to_best(asked: DesignTask, cancel: Event) -> tuple[Query, int | None]:
-    """Return the query to search, and about how many fixtures there are (None where not estimated).
+    """Return the query to search, and an estimate of how many fixtures there are (None where not estimated).
 
-    Where there are very many and --all is not given, it is a query for the best only; a remark says so.
-    Raises InputError where all of very many are asked for without a file that can carry them.
+    Where there are very many and --all is not given, the query is for the best only, and a remark says so.
+    Raises InputError where --all is given with very many fixtures and no file that can hold them.
     """
     from workhold.limits import choose_thread_count
     from workhold.model.notes import round_to_two_digits
@@ -439,10 +440,10 @@ def limit_query_to_best(asked: DesignTask, cancel: Event) -> tuple[Query, int | 
 def search_and_stream(
     query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any
 ) -> Result:
-    """Return the result of an engine, "curves" or "algebra";
-    where ``streamed`` is a path, write it there during the search.
+    """Return the result of a search by ``engine``, "curves" or "algebra".
 
-    ``watching`` are keyword arguments of the search, such as progress and cancel.
+    If ``streamed`` is a path, the result file is written there during the search. ``watching`` are keyword
+    arguments of the search, such as progress and cancel.
     """
     if engine == "algebra":
         from workhold.algebra.engine import find_fixtures_by_algebra
@@ -496,10 +497,11 @@ def report_found(result: Result, spent: str, output: OutputTarget, unit: Unit) -
 
 
 def make_further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
-    """Return "explanation", why there is no fixture or None,
-    and "pictures", the paths of those drawn, as plain data.
+    """Return plain data: "explanation" (why there is no fixture, or None) and "pictures" (paths of those
+    drawn).
 
-    The pictures are drawn here. A search that was interrupted has neither.
+    The pictures are drawn here. For a search that was interrupted the explanation is None and no picture is
+    drawn.
     """
     explained, written = None, []
     folder, unit = asked.output.folder, asked.unit

@@ -31,7 +31,7 @@ def list_picture_names() -> list[str]:
 
 
 def make_picture_name(place: int) -> str:
-    """Return the file name, without its ending, of the picture of the entry at a place, counted from 1."""
+    """Return the file name, without its ending, of the picture of the n-th entry, ``place`` = n from 1."""
     return f"fixture-{place:02d}"
 
 
@@ -46,8 +46,9 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
 
 
 def write_pictures(pictures: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write SVG texts by name as SVG and PNG into a folder;
-    return the paths. If one fails, remove all and raise again.
+    """Write each SVG text into a folder as SVG and as PNG, under its name; return the paths.
+
+    If one cannot be written, all are removed and the error is raised again.
     """
     from workhold.drawing.render import render
     from workhold.files.atomic import write_bytes
@@ -101,9 +102,9 @@ MOST_HELPS = 6
 def explain_none(
     result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
 ) -> None:
-    """Print what each rule took away, what came nearest, and what would help.
+    """Print what each rule takes away, the nearest miss, and changes that would help.
 
-    The nearest miss is drawn into ``folder``, unless that is None, as SVG and PNG.
+    The nearest miss is drawn into ``folder`` as SVG and PNG, unless the folder is None.
     """
     from workhold.search.explaining import explain
 
@@ -117,7 +118,7 @@ def explain_none(
 def print_explanation(
     explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[Note] = ()
 ) -> None:
-    """Print an explanation of why there is no fixture, leaving out what the notes in ``said`` say already."""
+    """Print an explanation of why there is no fixture, without what the notes in ``said`` have said already."""
     from workhold.cli.tables import tabulate_fixture_setup
 
     print_tables("", stream=stream)

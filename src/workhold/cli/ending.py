@@ -1,8 +1,8 @@
 """How the command ends on Ctrl-C or SIGTERM, whatever it is doing.
 
 Python acts on a signal between two of its own steps, and then waits for its threads: a long step in compiled
-code would keep the end waiting. So a thread of its own sees the signal at once. It gives the program a moment
-to end in order, and then ends it, without unfinished files. A second signal ends it at once.
+code would delay the end. So a separate thread receives the signal at once. It gives the program a moment to
+end in order, and then ends it, without unfinished files. A second signal ends it at once.
 """
 
 from __future__ import annotations
@@ -84,8 +84,9 @@ ending = SignalState()
 
 
 def end_on_signals() -> None:
-    """Install handlers so that Ctrl-C and SIGTERM end this process within two seconds;
-    call it in the main thread.
+    """Install handlers so that Ctrl-C and SIGTERM end this process within two seconds.
+
+    Call it in the main thread.
     """
     if ending.watched or threading.current_thread() is not threading.main_thread():
         return
@@ -123,8 +124,10 @@ def terminate(number: int, frame: FrameType | None) -> None:
 
 
 def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
-    """End at once where the exception of a signal was lost,
-    as in a callback of a compiled library; the unraisable hook.
+    """End the process at once where the exception of a signal was lost, as in a callback of a compiled
+    library.
+
+    Installed as ``sys.unraisablehook``.
     """
     for kind, number in ((Interrupted, signal.SIGINT), (Terminated, signal.SIGTERM)):
         if issubclass(lost.exc_type, kind):
@@ -133,13 +136,13 @@ def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
 
 
 def leave(code: int) -> NoReturn:
-    """Exit with a code through SystemExit, noting the code for :func:`keep_the_code`."""
+    """Raise SystemExit with a code, and remember the code for :func:`keep_the_code`."""
     ending.code = code
     sys.exit(code)
 
 
 def keep_the_code() -> None:
-    """Ignore signals while Python shuts down, so that they do not change the exit code; runs at exit.
+    """Ignore signals while Python shuts down, so that they do not change the exit code; called at exit.
 
     Output is written and threads have ended by then. A process that has received a signal exits here at once.
     """
@@ -181,9 +184,11 @@ def keep_what_is_found() -> None:
 
 @contextmanager
 def ask_to_stop(then: str) -> Iterator[threading.Event]:
-    """Yield an event that Ctrl-C sets within the block; ``then`` says on stderr what happens next.
+    """Yield an event that Ctrl-C sets within the block; ``then`` is printed on stderr to say what happens
+    next.
 
-    A second Ctrl-C ends the program, and so does a moment without findings (see :func:`keep_what_is_found`).
+    The program ends on a second Ctrl-C, or shortly after the first where there are no findings (see
+    :func:`keep_what_is_found`).
     """
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():

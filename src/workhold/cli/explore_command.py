@@ -63,8 +63,8 @@ class ExploreTask:
 
     Parameters
     ----------
-    loaded : the part as it was read, once for each height of the pegs.
-    queries : by the name of the toolkit; an error says why there is no such toolkit.
+    loaded : the part as it was read, one reading for each peg height.
+    queries : by name of the toolkit, its query, or the error that says why the toolkit cannot be made.
     unit : of lengths shown.
     """
 
@@ -75,8 +75,8 @@ class ExploreTask:
 
     @property
     def ranking(self) -> tuple[str, ...]:
-        """Keys of the figures in the table:
-        those of the first toolkit that can be tried; () where there is none.
+        """Keys of the figures in the table: those that the first usable toolkit ranks by; () where none is
+        usable.
         """
         return next((query.rank_by for _, query in self.queries if not isinstance(query, InputError)), ())
 
@@ -142,8 +142,9 @@ def parse(
 def read_for(
     diameters: Iterable[float | None], part: str, heights: Mapping[str, Sequence[float]], reading: PartOptions
 ) -> dict[float | None, LoadedPart]:
-    """Return the part read once for each diameter of pegs in
-    mm (None: as given), by diameter; print each remark once.
+    """Return the part by diameter of pegs in mm (None for the diameter given), read once for each.
+
+    Each remark is printed once.
     """
     loaded: dict[float | None, LoadedPart] = {}
     for one in dict.fromkeys(diameters):
@@ -153,7 +154,9 @@ def read_for(
 
 
 def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[LoadedPart]) -> None:
-    """Raise InputError for numbers of faces that do not exist or are not sure in any reading of the part."""
+    """Raise InputError for numbers of faces that, in any reading of the part, do not exist or are not
+    certain.
+    """
     from workhold.contact.features import find_face_of_segment
     from workhold.files.part.load import refuse_unsure_numbers
 
@@ -180,8 +183,9 @@ def ask(asked: ExploreTask) -> list[ToolkitOutcome]:
 
 
 def report(asked: ExploreTask, found: list[ToolkitOutcome]) -> None:
-    """Print the table and the first choice, and write the file;
-    exit with INTERRUPTED where some were not tried.
+    """Print the table and the first choice, and write the file.
+
+    Exits with INTERRUPTED where some toolkits were not tried.
     """
     from workhold.files.atomic import write_text_file
     from workhold.files.toolkit_file import is_sold
@@ -211,8 +215,9 @@ FIGURES_KEPT = 3
 
 
 def list_known_figures(item: ToolkitOutcome, query: tuple[str, Query | InputError]) -> dict[str, float]:
-    """Return the figures of a toolkit's first fixture by key,
-    the edge distance inf where there is no edge; {} without any.
+    """Return the figures of a toolkit's first fixture by key; {} where it has none.
+
+    An edge distance is inf where the part has no edge.
     """
     from workhold.presenting.figure_words import find_edgeless_distance, mark_edgeless
 

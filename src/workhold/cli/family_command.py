@@ -161,7 +161,7 @@ class FamilyTask:
     Parameters
     ----------
     rules : keyword arguments of ``family.family.make_family``.
-    setups : the most of the plan; None for as many as the largest loss takes.
+    setups : largest number of set-ups in the plan; None for as many as keep within the largest loss.
     has_plan : whether a plan is asked for.
     unit : of lengths shown.
     """
@@ -239,9 +239,9 @@ def parse(
 
 
 def ask(asked: FamilyTask) -> FamilyAnswer:
-    """Return the family of patterns that hold the parts, and the plan if asked for.
+    """Return the family of peg patterns that hold the parts, and the plan if one was asked for.
 
-    A Ctrl-C while kernels are compiled exits with INTERRUPTED.
+    Exits with INTERRUPTED after Ctrl-C while kernels are compiled.
     """
     from workhold.cli.warming import compile_kernels
 

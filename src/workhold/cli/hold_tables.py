@@ -1,4 +1,5 @@
-"""Tables and sentences for the terminal of what friction holds, between flat jaws or under straps."""
+"""Tables and sentences for the terminal about parts that friction holds, between flat jaws or under
+straps."""
 
 from __future__ import annotations
 
@@ -22,10 +23,10 @@ SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "con
 
 
 def tabulate_holds(result: Result, entries: ShownEntries, count: int, unit: Unit) -> Table:
-    """Return a table of the first ``count`` entries:
-    what lies on the fixed jaw, parallels, stop, opening and figures.
+    """Return a table of the first ``count`` entries: faces on the fixed jaw, parallels, stop, opening and
+    figures.
 
-    Toolkits with straps have a table of their own.
+    For a toolkit with straps it is the table of :func:`tabulate_straps`.
     """
     from workhold.model.hold_words import describe_touched_faces
     from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
@@ -70,8 +71,9 @@ def tabulate_holds(result: Result, entries: ShownEntries, count: int, unit: Unit
 
 
 def explain_first_hold(result: Result, unit: Unit) -> str:
-    """Return a sentence on why the first hold stands first and,
-    with loads, with which friction forces are stated.
+    """Return a sentence on why the first hold is ranked first.
+
+    With loads it also says which coefficients of friction the forces are stated with.
     """
     from workhold.model.hold_words import describe_coefficients, list_hold_reasons
 
@@ -83,9 +85,10 @@ def explain_first_hold(result: Result, unit: Unit) -> str:
 
 
 def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
-    """Return sentences and tables on how to set up one hold, what each load asks for, and its warnings.
+    """Return sentences and tables on how to set up one hold, the force that each load needs, and its
+    warnings.
 
-    ``rank`` counts from 1, ``total`` is the number of fixtures listed, and ``unit`` is that of lengths shown.
+    ``rank`` counts from 1, ``total`` is the number of fixtures listed, and lengths are shown in ``unit``.
     """
     from workhold.model.hold_words import describe_coefficients, write_setup_sentences, write_warnings
     from workhold.model.jaw_hold import JawHold

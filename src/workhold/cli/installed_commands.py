@@ -1,7 +1,7 @@
 """The commands ``doctor`` and ``schema``: what is installed and missing, and what shape the files have.
 
-For ``doctor`` nothing is imported but the library for STEP files, which may be installed and still lack one
-of the system. What the extras ask for is read from the installed package, so that nothing is listed twice.
+``doctor`` imports only the library for STEP files, which may be installed and still lack a library of the
+system. What the extras require is read from the installed package, so that nothing is listed twice.
 
 For ``schema`` JSON Schemas are generated from the forms that check what goes in and out.
 """
@@ -56,10 +56,10 @@ class InstallationRow:
 
     Parameters
     ----------
-    what : the part of the installation: ``kernels``, or an extra.
-    state : what was found.
-    use : what it is good for.
-    remedy : what to type for what is missing; None where nothing is.
+    what : part of the installation: ``kernels``, or the name of an extra.
+    state : words on the version found, or on what is missing.
+    use : what that part is good for.
+    remedy : command to type where something is missing; None where nothing is.
     """
 
     what: str
@@ -119,7 +119,7 @@ def find_kernels() -> InstallationRow:
 
 
 def find_extras(is_built: bool) -> Iterator[InstallationRow]:
-    """Yield what is installed of each extra, in the order of :data:`USES`.
+    """Yield a row for each extra, in the order of :data:`USES`, on what of it is installed.
 
     ``is_built`` says that the package has compiled kernels for this machine, so that numba is not needed.
     """
@@ -161,8 +161,8 @@ def list_requirements() -> dict[str, list[tuple[str, str]]]:
 
 
 def describe_distribution(name: str, least: str) -> tuple[str, bool]:
-    """Return words on a distribution (its version, or that it is missing or too old),
-    and whether it can be used.
+    """Return (words, usable): a distribution's version, or that it is missing or older than ``least``; and
+    whether it can be used.
     """
     if find_spec(MODULES.get(name, name)) is None:
         return f"{name} missing", False
@@ -225,8 +225,8 @@ SCHEMAS = {
 def make_schema(name: str) -> dict[str, Any]:
     """Return the JSON Schema with a name of :data:`SCHEMAS`.
 
-    Where a word in the file chooses one of several forms, the forms differ in their fields, so it is enough
-    that a file fits at least one of them.
+    Where a word in the file chooses one of several forms, a file need fit only one of them, as they differ in
+    their fields.
     """
     from workhold.files.input_forms import LoadsFile, WorkpieceFile
     from workhold.files.result.fixture_forms import ResultFile

@@ -58,11 +58,11 @@ class JobOptions:
 
     Parameters
     ----------
-    place : where it stands, for messages.
+    place : where the job stands in its file, for messages.
     part : file, folder or built-in name.
     toolkits : names and files; None where the file gives none.
-    options : what the file says of reading the part, of its fixtures, of their seating and of the program to
-        pass, by the names of options.
+    options : by names of options, what the file says of reading the part, its fixtures, their seating and the
+        program.
     """
 
     place: str
@@ -71,13 +71,13 @@ class JobOptions:
     options: Mapping[str, Any]
 
     def replace_options(self, typed: Words) -> Words:
-        """Return a group of options as typed,
-        with each option that the job's file gives replaced by the file's.
+        """Return a group of options with the values typed, replaced by the job's file where that gives an
+        option.
         """
         return evolve(typed, **self.make_options(type(typed)))
 
     def make_options(self, group: type[AttrsInstance]) -> dict[str, Any]:
-        """Return the options that the file gives and this group has, by name."""
+        """Return by name the options of this group that the job's file gives."""
         return {name: self.options[name] for name in fields_dict(group) if name in self.options}
 
 
@@ -104,7 +104,7 @@ def read_jobs(path: Path) -> list[JobOptions]:
 
 
 def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yield the entries of each job: those above all jobs, then the job's own, which take precedence."""
+    """Yield the entries of each job: those that stand above all jobs, overridden by the job's own."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import MOST_COLUMNS
     from workhold.files.text import parse_toml
@@ -125,7 +125,9 @@ def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def read_csv_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yield the cells of each row by column, empty ones left out; a cell of a list column is split at "|"."""
+    """Yield for each row its cells by column name; empty cells are left out, cells of list columns are split
+    at "|".
+    """
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import NOT_GIVEN, read_table
 
@@ -135,7 +137,7 @@ def read_csv_entries(text: str) -> Iterator[dict[str, Any]]:
 
 
 def normalize_word(key: str) -> str:
-    """Return the name of a word in small letters with underscores, so that "Jaw-force" is "jaw_force"."""
+    """Return a word in small letters with underscores for hyphens: "jaw_force" for "Jaw-force"."""
     return key.strip().lower().replace("-", "_").replace(" ", "_").replace("toolkits", TOOLKIT)
 
 
@@ -239,8 +241,7 @@ def list_family_parts(parts: list[str], words: QueryOptions, reading: PartOption
 
 
 def shorten_part_name(name: str, names: list[str]) -> str:
-    """Return the file name of a path, or the whole path
-    where another of ``names`` ends in the same file name.
+    """Return the file name of a path, or the whole path if another of ``names`` has the same file name.
 
     >>> shorten_part_name("a/x.dxf", ["a/x.dxf", "b/y.dxf"]), shorten_part_name("a/x.dxf", ["a/x.dxf", "b/x.dxf"])
     ('x.dxf', 'a/x.dxf')
@@ -258,10 +259,11 @@ def make_family_queries(
     *,
     both_sides: bool = False,
 ) -> tuple[list[MemberRequest], list[ExcludedPart]]:
-    """Return the query of each part that can be read, and the parts that cannot, with reasons.
+    """Return a query for each part that can be read, and the other parts with the reasons.
 
-    ``both_sides`` adds a query of each part turned over; the file of a solid is read again for that. Remarks
-    are printed. Raises InputError for a zero that a part does not have, and faces whose numbers are not sure.
+    ``both_sides`` adds a query of each part turned over, for which the file of a solid is read again. Remarks
+    are printed. Raises InputError for a part zero that a part does not have, and for faces whose numbers are
+    not certain.
     """
     from hashlib import sha256
 

@@ -154,9 +154,7 @@ class WorkholdGroup(PlainGroup):
         return get_command(alone)
 
     def make_context(self, *args: Any, **extra: Any) -> Any:
-        """Return the context of the parsed arguments,
-        or exit after printing the help where it is asked for.
-        """
+        """Return the context with the parsed arguments; print the help and exit where the help is asked for."""
         with handle_exits():
             return super().make_context(*args, **extra)
 
@@ -171,7 +169,10 @@ class WorkholdGroup(PlainGroup):
         super()._main_shell_completion(ctx_args, prog_name, complete_var)
 
     def invoke(self, ctx: Any) -> Any:
-        """Return what the command returns, after refusing to run in too little address space."""
+        """Return what the command returns.
+
+        Refuses to run where the process has too little address space.
+        """
         refuse_little_space(LEAST_SPACE, "workhold", "raise the limit")
         with handle_exits():
             return super().invoke(ctx)
@@ -185,8 +186,9 @@ class WorkholdGroup(PlainGroup):
         windows_expand_args: bool = True,
         **extra: Any,
     ) -> Any:
-        """Run the command of the arguments; exit the process,
-        or return the exit code where ``standalone_mode`` is off.
+        """Run the command of the arguments and exit the process.
+
+        Where ``standalone_mode`` is off, return the exit code instead of exiting.
         """
         command = super().main
         code = exit_code(lambda: command(args, prog_name, complete_var, False, windows_expand_args, **extra))
@@ -238,7 +240,7 @@ def run() -> NoReturn:
 
 
 def exit_code(command: Callable[[], Any]) -> int:
-    """Return the exit code of a command that is run here; print one sentence on stderr if it failed."""
+    """Run a command here and return its exit code; print one sentence on stderr if it failed."""
     try:
         return int(command() or DONE)
     except InputError as error:
@@ -268,7 +270,7 @@ def exit_code(command: Callable[[], Any]) -> int:
 
 
 def complain(error: Exception) -> int:
-    """Print what is wrong with the command line, and where the help is; return BAD_INPUT."""
+    """Print what is wrong with the command line and how to get help; return BAD_INPUT."""
     message = str(getattr(error, "message", "") or error)
     with suppress(Exception):
         message = error.format_message()  # type: ignore[attr-defined]
@@ -284,8 +286,9 @@ def say(message: str) -> None:
 
 
 def report_fault(error: Exception) -> None:
-    """Print that the program has a mistake,
-    and write the traceback to a temporary file, or to stderr if so set.
+    """Print that the program has a mistake.
+
+    The traceback goes to a temporary file, or to stderr where the environment says so.
     """
     import tempfile
     import traceback

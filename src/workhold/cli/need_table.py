@@ -1,4 +1,4 @@
-"""The table of the force that each load asks for, where friction holds the part."""
+"""The table of the clamping force that each load needs, where friction holds the part."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ __all__ = ["tabulate_needs"]
 
 
 def tabulate_needs(names: Iterable[str], needs: Sequence[float | None], heading: str, unit: Unit) -> Table:
-    """Return a table of the force in N that each load needs,
-    by the names of loads; None is "no force holds it".
+    """Return a table with a row for each load: number, name and the force that it needs.
+
+    ``needs`` are in N, shown in the unit's force unit; None is shown as "no force holds it". ``heading`` is
+    the heading over the forces.
     """
     table = Table((">load", "name", f">{heading} {unit.force}"))
     for number, (name, need) in enumerate(zip(names, needs, strict=True), 1):

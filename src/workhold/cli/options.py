@@ -91,7 +91,7 @@ SHOWN_UNIT = make_option(
 
 
 def is_at_terminal() -> bool:
-    """Return whether stdin and stderr are a terminal, so that the user can be asked."""
+    """Return whether both stdin and stderr are a terminal, so that the user can be asked."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
@@ -128,7 +128,7 @@ class PartOptions:
         ----------
         part : a file or a built-in name.
         heights, peg_diameter : as for ``files.part.load.read_workpiece``.
-        said : remarks that are not printed once more.
+        said : remarks that are not printed again.
 
         Raises
         ------

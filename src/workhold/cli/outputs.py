@@ -134,9 +134,9 @@ def write_output(result: Result, out: str, form: str) -> None:
 
 
 def write_found(result: Result, out: str, form: str) -> Result:
-    """Write what a search found and return it.
+    """Write the result of a search, and return the result that was written.
 
-    After a Ctrl-C during the writing of millions of fixtures, write and return only the best.
+    After Ctrl-C during the writing of millions of fixtures, only the best are written and returned.
     """
     try:
         write_output(result, out, form)
@@ -157,7 +157,7 @@ JSON = make_flag(
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:
-    """Raise InputError where --json and the result file would both go to stdout."""
+    """Raise InputError where both --json and the result file would go to stdout."""
     if as_json and out == STANDARD_OUTPUT:
         raise InputError(
             "--json and the result file would both go to the terminal (-): leave one of them out."
@@ -171,7 +171,7 @@ def print_json(**content: Any) -> None:
 
 
 def print_written(as_json: bool, sentence: str, *paths: str | Path) -> None:
-    """Print which files were written: the sentence, or their paths as JSON."""
+    """Print the sentence on the files written or, if ``as_json``, their paths as JSON."""
     if as_json:
         print_json(written=[str(path) for path in paths])
         return

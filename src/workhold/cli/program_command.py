@@ -140,10 +140,10 @@ def convert_program_to_data(read: ReadProgram) -> dict[str, Any]:
 
 
 def list_tool_forces(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str, Any]]:
-    """Return for each tool, in order of first use,
-    the largest force and torque and the least and largest axial force.
+    """Return for each tool, in order of first use, its largest force and torque and its least and largest
+    axial force.
 
-    ``tool`` (M,) has the tool's number for each move; forces are in N and torques in N mm.
+    ``tool`` (M,) has the tool's number for each of the program's M moves; forces are in N, torques in N mm.
     """
     return [
         {
@@ -186,7 +186,7 @@ def tabulate_tool_forces(program: Program, unit: Unit) -> list[Table | str]:
 
 
 def describe_stock(program: Program, unit: Unit) -> str:
-    """Return a sentence on the stock on which alone tools press."""
+    """Return a sentence on the stock; tools press only where they meet it."""
     stock = program.stock
     assert stock is not None
     shape = "the part's outline" if stock.shape == "outline" else "the block around the part"
@@ -197,7 +197,8 @@ def describe_stock(program: Program, unit: Unit) -> str:
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
-    """Print the figures of each tool and a summary;
+    """Print the figures of each tool and a summary.
+
     ``from_z_zero`` says that heights count from the program's Z0.
     """
     from workhold.model.program_figures import bound_tip, measure_tools

@@ -1,6 +1,5 @@
-"""Options of a program: where its zero is, how its tools cut, and that fixtures are to let it pass.
-
-How tools cut is asked where the table of tools does not say it.
+"""Options of a program that the fixtures have to keep clear of: where its zero is, and how its tools cut
+where the table of tools does not say.
 """
 
 from __future__ import annotations
@@ -96,8 +95,8 @@ class ProgramOptions:
 
     @property
     def has_forces(self) -> bool:
-        """Whether forces of the tools are asked for,
-        by an option or in the table of tools, which is read here.
+        """Whether cutting forces are asked for, by an option or in the table of tools (a file that is read
+        here).
         """
         if self.program is None:
             return False
@@ -111,8 +110,9 @@ class ProgramOptions:
         return any(tool.cutting.asks_for_forces for tool in tools.values())
 
     def adapt_part_options(self, part: str, reading: PartOptions) -> PartOptions:
-        """Return the options for reading a part:
-        those of a drawing without the peg height, which counts for the fixtures only.
+        """Return the options for reading a part.
+
+        For a drawing the peg height is removed, as it counts for the fixtures only.
         """
         is_drawing = Path(part).suffix.lower() not in SOLIDS
         return evolve(reading, **NO_HEIGHT) if is_drawing else reading
@@ -120,11 +120,10 @@ class ProgramOptions:
     def read_query_arguments(
         self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None
     ) -> dict[str, Any]:
-        """Return "program", "thickness" and "peg_height" of a query, in mm;
-        without a program the heights alone.
+        """Return "program", "thickness" and "peg_height" (mm) of a query as keyword arguments.
 
-        Without a program it is {} for a solid and for a part that is not read yet. Remarks on the program are
-        printed.
+        Without a program: only the heights, and {} for a solid or a part that is not read yet. Remarks on the
+        program are printed.
 
         Parameters
         ----------
@@ -166,7 +165,7 @@ class ProgramOptions:
         return {"program": read_once(self, unit, thick, zero), **heights}
 
     def read_heights(self, unit: Unit, peg_height: str | None) -> dict[str, float | None]:
-        """Return "thickness" of a drawn part and "peg_height" in mm, None for those not given.
+        """Return "thickness" of a part from a drawing, and "peg_height", in mm; None for those not given.
 
         Raises
         ------
@@ -180,8 +179,9 @@ class ProgramOptions:
 
 
 def read_stock_arguments(text: str, unit: Unit) -> dict[str, Any]:
-    """Return the stock's fields that are given,
-    as :meth:`workhold.model.stock.Stock.from_value` takes them; lengths in mm.
+    """Return the fields of the stock that the text gives, by name, lengths in mm.
+
+    :meth:`workhold.model.stock.Stock.from_value` takes them.
 
     Examples
     --------
@@ -207,11 +207,11 @@ def read_program_zero(text: str, unit: Unit) -> tuple[float, float]:
 
 
 def read_program_zero_on_part(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
-    """Return the point (x, y) in mm of the part at which the program has X0 Y0,
-    from two lengths or a place of the part.
+    """Return the point (x, y) in mm on the part where the program has X0 Y0, from two lengths or a place's
+    name.
 
     Places are named as on the setup sheet, such as "corner" or "hole 2". Raises InputError for a place that
-    the part does not have, and for a named place where no part is known.
+    the part does not have, and for a named place where ``workpiece`` is None.
     """
     if workpiece is None or not text.strip()[:1].isalpha():
         return read_program_zero(text, unit)
@@ -223,8 +223,9 @@ def read_program_zero_on_part(workpiece: Workpiece | None, text: str, unit: Unit
 def make_reader_arguments(
     words: Any, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> dict[str, Any]:
-    """Return keyword arguments of ``files.program.reader.read_program``;
-    ``thickness`` and ``zero`` are in mm.
+    """Return keyword arguments of ``files.program.reader.read_program``.
+
+    ``thickness`` and the part's point ``zero`` at X0 Y0 are in mm.
 
     Parameters
     ----------
@@ -251,8 +252,9 @@ def make_reader_arguments(
 def read_once(
     words: ProgramOptions, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> Program:
-    """Return the program, read from its file and cached,
-    after printing remarks; ``thickness`` and ``zero`` are in mm.
+    """Return the program, read from its file and cached, after printing remarks.
+
+    ``thickness`` and the part's point ``zero`` at X0 Y0 are in mm.
     """
     assert words.program is not None
     asked = make_reader_arguments(words, unit, thickness, zero)

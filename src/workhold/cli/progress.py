@@ -1,4 +1,4 @@
-"""Progress on the terminal: a bar while a search runs, and the work of each process while a batch runs."""
+"""Progress on the terminal: a bar while a search runs, and a line for each process while a batch runs."""
 
 from __future__ import annotations
 
@@ -26,10 +26,9 @@ ONLY_TASK = cast("TaskID", 0)
 
 @contextmanager
 def show_search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]]:
-    """Yield a function that shows progress of a search:
-    call it with the fraction done and the number of fixtures found.
+    """Yield a function that shows progress: call it with the fraction done and the number of fixtures found.
 
-    Where ``keeps`` is true, an interrupted search with findings gets the time to return them.
+    Where ``keeps`` is true, an interrupted search that has found fixtures gets time to return them.
     """
     with show_progress("Searching", "found") as show:
 
@@ -53,9 +52,9 @@ def show_progress(
 
     Parameters
     ----------
-    doing : what is being done.
-    counted : word behind the count.
-    first : text until the first call; None to show nothing until then.
+    doing : phrase on the work in progress.
+    counted : word shown after the count.
+    first : text shown until the first call; None to show nothing until then.
     """
     if not sys.stderr.isatty():
         yield lambda fraction, count: None
@@ -107,8 +106,8 @@ class BatchProgress:
 
     Parameters
     ----------
-    bars : on a terminal.
-    events : what happened on the way, in sentences.
+    bars : the bars on a terminal; None where there is no terminal.
+    events : sentences on events of the run.
     """
 
     bars: Progress | None
@@ -119,8 +118,9 @@ class BatchProgress:
     done: int = field(default=0, init=False)
 
     def begin_stage(self, doing: str, count: int, seconds: float) -> None:
-        """Begin a stage of ``count`` tasks that take about ``seconds`` in all;
-        it replaces the bar of the stage before.
+        """Begin a stage of ``count`` tasks that take about ``seconds`` in all.
+
+        Its bar replaces that of the stage before.
         """
         self.count, self.done = count, 0
         if self.bars is None or count == 0:

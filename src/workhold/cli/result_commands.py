@@ -75,9 +75,10 @@ class VerifyTask:
 
     Parameters
     ----------
-    of_supports : whether it lists supports, not fixtures.
-    listed : how many that are not proven are listed on the terminal.
-    complete, threads : whether what the file leaves out is searched for, and by how many threads.
+    of_supports : whether the file lists supports instead of fixtures.
+    listed : number of unproven entries that are listed on the terminal.
+    complete, threads : whether a new search looks for fixtures that the file leaves out, and its number of
+        threads.
     """
 
     path: str
@@ -90,7 +91,7 @@ class VerifyTask:
 
 @frozen
 class VerifyAnswer:
-    """Outcome of a verification, the time it took in words, and sentences on what was not looked at."""
+    """Outcome of a verification, the time it took in words, and sentences on what was not checked."""
 
     outcome: Verification
     spent: str
@@ -141,9 +142,7 @@ def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: b
 
 
 def ask(asked: VerifyTask) -> VerifyAnswer:
-    """Return the verification of all that the file lists,
-    compared with a new search if that was asked for.
-    """
+    """Return the verification of everything in the file, compared with a new search if that was asked for."""
     from workhold.verification.listing import read_listing
     from workhold.verification.supports import verify_supports_file
     from workhold.verification.verify import verify_listing
@@ -161,8 +160,9 @@ def ask(asked: VerifyTask) -> VerifyAnswer:
 
 
 def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
-    """Print what is not proven; exit with REFUTED where something is refuted,
-    INTERRUPTED where the comparison is missing.
+    """Print what is not proven.
+
+    Exits with REFUTED where something is refuted, INTERRUPTED where a comparison asked for is missing.
     """
     outcome = answer.outcome
     if asked.as_json:
@@ -183,8 +183,9 @@ def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
 
 
 def compare_with_search(outcome: Verification, listing: WrittenListing, workers: int | None) -> Verification:
-    """Return the verification with the outcome of a new
-    search of the file's query, or unchanged after a Ctrl-C.
+    """Return the verification with the comparison of the file with a new search of its query.
+
+    After Ctrl-C the verification is returned unchanged.
     """
     from workhold.cli.warming import compile_kernels
     from workhold.completeness import complete_verification

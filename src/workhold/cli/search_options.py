@@ -1,4 +1,4 @@
-"""Options of a search: what is ruled out, loads, what makes a fixture good, and whether the part seats.
+"""Options of a search: restrictions, loads, the ranking, and seating.
 
 A load is typed as ``--load "force=200 at=10,5 direction=30..60"``.
 """
@@ -99,8 +99,9 @@ class LoadOptions:
         loads: str | None
 
     def read_arguments(self, unit: Unit) -> dict[str, Any]:
-        """Return "jaw_force" in N, "jaw" (stiffness), "friction" and "loads";
-        force and friction are None where not given.
+        """Return "jaw_force" in N, "jaw" (its stiffness), "friction" and "loads" as keyword arguments.
+
+        Force and friction are None where not given.
         """
         from workhold.statics.loads import read_jaw_stiffness
 
@@ -171,7 +172,8 @@ class QueryOptions:
     def read_arguments(
         self, unit: Unit, has_program: bool = False, has_forces: bool = False
     ) -> dict[str, Any]:
-        """Return keyword arguments of a query, lengths in mm; the tolerance is None where none was typed.
+        """Return keyword arguments of a query, with lengths in mm; the tolerance is None where none was
+        typed.
 
         Parameters
         ----------
@@ -199,11 +201,10 @@ class QueryOptions:
 def avoid_faces_cut_before(
     restrictions: Restrictions, workpiece: Workpiece, before: str | None
 ) -> Restrictions:
-    """Return restrictions that also avoid the faces of the
-    solid that an earlier set-up avoided because it cut them.
+    """Return restrictions that also avoid the solid's faces that the set-up before cut (and so had to avoid).
 
-    ``before`` is the result file of that set-up, None for none. Raises InputError for parts without a solid's
-    face numbers.
+    ``before`` is the result file of that set-up; for None the restrictions are returned unchanged. Raises
+    InputError for parts without a solid's face numbers.
     """
     if before is None:
         return restrictions
@@ -223,7 +224,7 @@ def avoid_faces_cut_before(
 
 
 def read_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
-    """Return the tolerance from "PEG" (for faces, too) or "PEG,FACE"; None for None."""
+    """Return the tolerance in ``unit`` from "PEG" (for pegs and faces) or "PEG,FACE"; None for None."""
     from workhold.model.requirements import Tolerance
 
     if text is None:
@@ -238,8 +239,9 @@ def read_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
 
 
 def add_dowel_fit(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
-    """Return the tolerance asked for, with the dowels' fit of the named toolkit;
-    where one of them is None, the other one.
+    """Return the tolerance asked for, with the dowels' fit of the named toolkit's tolerance.
+
+    Where one of the two is None, the other is returned.
     """
     if asked is None or named is None:
         return asked or named
@@ -247,7 +249,7 @@ def add_dowel_fit(asked: Tolerance | None, named: Tolerance | None) -> Tolerance
 
 
 def read_asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:
-    """Return the loads typed, then those of the file; lengths without a unit are in ``unit``."""
+    """Return the loads typed, then the loads in the file; lengths that carry no unit are in ``unit``."""
     if not loads and file is None:
         return ()
     from workhold.files.loads_file import read_loads

@@ -53,7 +53,7 @@ class SeatTask:
 
     Parameters
     ----------
-    side, opened : which seats are shown, see :func:`list_shown_seats`.
+    side, opened : limits on the seats shown, see :func:`list_shown_seats`.
     unit : of lengths shown.
     """
 
@@ -109,7 +109,7 @@ def parse(result_file: str, rank: int, words: SeatOptions) -> SeatTask:
 
 
 def ask(asked: SeatTask) -> Seating:
-    """Return the fixture's seating: that of the result, else worked out here."""
+    """Return the fixture's seating: the result's if it has it, else computed here."""
     result = asked.result
     known: Seating | None = asked.fixture.seating
     if known is not None:
@@ -152,7 +152,7 @@ def report(asked: SeatTask, seating: Seating) -> None:
 
 
 def report_by_hand(asked: SeatTask) -> None:
-    """Print how a part that two clamps hold is put in by hand, and draw the fixture if asked."""
+    """Print how to put in by hand a part that two clamps hold, and draw the fixture if asked."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.seating.clamping import plan_hand_loading
 
@@ -181,8 +181,8 @@ def describe_steps_by_hand(rank: int, result: Result, unit: Unit) -> list[str]:
 def list_shown_seats(seating: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
     """Return the fixture's own seat, then the other seats that can be reached.
 
-    ``side`` is "both", "drawn" or "turned-over"; ``opened`` is how far the jaws are opened, in mm, None
-    without a limit.
+    ``side`` is "both", "drawn" or "turned-over"; ``opened`` is how far the jaws are opened in mm, None for no
+    limit.
     """
     own = [one for one in seating.seats if one.is_own]
     rest = [
@@ -197,7 +197,7 @@ def list_shown_seats(seating: Seating, side: str, opened: float | None, result: 
 
 
 def describe_seating(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """Return sentences on a fixture's seating: what to set, what to read, and what to beware of."""
+    """Return sentences on a fixture's seating: the length to set, the readings of a caliper, and warnings."""
     from workhold.seating.clamping import Gauge
 
     seating: Seating = fixture.seating

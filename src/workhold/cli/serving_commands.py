@@ -47,8 +47,8 @@ FIRST_RUN = (
 
 
 def make_limit_option(default: str | None, metavar: str, variable: str, help: str) -> Any:
-    """Return a Typer option of a limit, which can also come
-    from the environment as WORKHOLD_ and ``variable``.
+    """Return a Typer option of a limit whose value may also come from the environment variable
+    WORKHOLD_<variable>.
     """
     return typer.Option(
         default, metavar=metavar, envvar=f"WORKHOLD_{variable}", help=help, rich_help_panel=LIMITS
@@ -176,7 +176,7 @@ def serve(*, words: ServerOptions, limits: LimitOptions) -> None:
 
 
 def prepare() -> None:
-    """Compile the kernels if that has not been done, so that workers need not do so one after the other."""
+    """Compile the kernels if that is not done yet, so that workers do not compile them one after the other."""
     from workhold.cli.warming import compile_kernels, compile_seating
     from workhold.kernels.base.libraries import ROOMS, is_built
 
@@ -226,7 +226,7 @@ def mcp() -> None:
 
 
 def make_tool_server(folder: Path) -> Any:
-    """Return the MCP server of the tools; results for which no file is named are written into the folder."""
+    """Return the MCP server of the tools; it writes results without a named file into ``folder``."""
     import mcp_types as types
     from anyio import get_cancelled_exc_class
     from anyio.to_thread import run_sync
@@ -266,8 +266,9 @@ def make_tool_server(folder: Path) -> Any:
 def run_tool(
     name: str, arguments: dict[str, Any] | None, folder: Path, cancel: Event
 ) -> tuple[dict[str, Any] | str, str | None, bool]:
-    """Return a tool's data, its picture as PNG in base 64 or None,
-    and whether it failed; then the data are a sentence.
+    """Return (data, picture, failed) of a tool: the picture is a PNG in base 64, or None.
+
+    If the tool failed, the data are a sentence that says why.
     """
     from workhold.cli.agent_arguments import check_arguments
     from workhold.cli.agent_tools import TOOLS

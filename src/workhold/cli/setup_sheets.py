@@ -1,6 +1,6 @@
-"""What commands write of a set-up: setup sheets, and its bodies in GLB and STEP files.
+"""Files that commands write of a set-up: setup sheets, and bodies in GLB and STEP files.
 
-Of a sheet there are the one of a design's first choice, and what sheets say of supports and of another side.
+The sheets here are those of a design's first choice, and those with supports or with the part's other side.
 """
 
 from __future__ import annotations
@@ -70,8 +70,9 @@ class BodyOptions:
     part: str | None = PART_FILE
 
     def list_given_model_files(self, inputs: Sequence[str | None], force: bool) -> list[Path]:
-        """Return the GLB and STEP files to write;
-        raise InputError for an option that needs them where there are none.
+        """Return the GLB and STEP files to write.
+
+        Raises InputError where an option is given that needs such a file and there is none.
         """
         of_files = {"thickness": self.thickness, "supports": self.supports, "part": self.part}
         return list_asked_model_files(self.glb, self.step, (*inputs, self.part), force, **of_files)
@@ -85,10 +86,10 @@ MOST_ASKED = 200
 def list_asked_model_files(
     glb: str | None, step: str | None, inputs: Sequence[str | None], force: bool, **of_files: object
 ) -> list[Path]:
-    """Return the paths of the GLB and STEP files asked for, none, one or two.
+    """Return the paths of the GLB and STEP files asked for: none, one or two.
 
-    ``of_files`` are options that only count with such a file, by name; None or False is not given. Raises
-    InputError for one of them without a file, a wrong ending, and a file that must not be replaced.
+    ``of_files`` are further options, by name, that need such a file; None or False means not given. Raises
+    InputError for such an option without a file, a wrong ending, and a file that must not be replaced.
     """
     paths = []
     for name, given, endings in (("--glb", glb, (".glb",)), ("--step", step, (".step", ".stp"))):
@@ -155,10 +156,10 @@ def write_first_sheet(
     Parameters
     ----------
     out : path of the result file, whose hash stands on the sheet.
-    thickness : of the part in mm, where supports are wanted: then the first choice is the first fixture that
-        has some.
+    thickness : thickness of the part in mm where supports are wanted, else None. With it, the first choice is
+        the first fixture that has supports.
     before : result file of the set-up of the part's other side before this one.
-    supported : supports of the best fixtures, in order, where they are known already.
+    supported : supports of the best fixtures, in order, as far as they are known; () for none.
     """
     from workhold.presenting.papers import write_paper
 
@@ -181,11 +182,10 @@ def write_first_sheet(
 def find_first_supported(
     result: Result, thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
-    """Return the rank of the best fixture that three supports hold up, and these;
-    (1, None) where none has any.
+    """Return (rank, supports) of the best fixture that three supports hold up; (1, None) where there is none.
 
-    Supports that are known already are tried first, then larger pads before smaller ones. Remarks are
-    printed.
+    Supports already known (``supported``) are tried first, then new ones, larger pads before smaller. Remarks
+    are printed.
     """
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import try_smaller_requests
@@ -246,9 +246,9 @@ def choose_best_supports(
     loads: Sequence[Load] | None,
     jaw_force: float | None,
 ) -> ChosenSupports:
-    """Return the best three supports under the fixture of a rank, of the usual sizes or else of smaller ones.
+    """Return the best three supports under the fixture of a rank: of the usual sizes, else of smaller ones.
 
-    A jaw force under which a load would lift the part off a peg is not used: the sheet warns of it anyway.
+    A jaw force under which a load would lift the part off a peg is not used, since the sheet warns of it.
     Raises InputError where there are no supports, and where the part's thickness is not known.
     """
     from workhold.model.support_triples import ChosenSupports

@@ -82,11 +82,11 @@ class SheetTask:
 
     Parameters
     ----------
-    path, result_file, rank : of what, and into which file.
-    settings : what stands on it, by the fields of ``SheetQuestion``.
-    loads : instead of those of the result; none where none are given.
+    path, result_file, rank : file to write, file of the result, and rank of the fixture in it.
+    settings : contents of the sheet, by fields of ``SheetQuestion``.
+    loads : loads used instead of the result's; empty for the result's.
     unit : of lengths, as typed.
-    on_supports : whether the file is one of supports, so that the rank is that of a set of three.
+    on_supports : whether ``result_file`` is a file of supports, so that the rank is that of a set of three.
     """
 
     path: Path
@@ -153,7 +153,7 @@ def sheet(
 
 
 def parse(result_file: str, rank: int, path: Path, words: SheetOptions, unit: str | None) -> SheetTask:
-    """Return what was typed as a task; raise InputError for options that do not belong into such a file."""
+    """Return what was typed as a task; raise InputError for options that the kind of file cannot have."""
     from workhold.presenting.assembly import STEP_ENDINGS
     from workhold.presenting.papers import MODEL_ENDINGS, PAPER_ENDINGS
     from workhold.statics.loads import read_jaw_stiffness
@@ -208,9 +208,7 @@ def write(asked: SheetTask) -> None:
 
 
 def read_sheet_content(asked: SheetTask) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
-    """Return the result, the fixture's rank,
-    further settings of the sheet (its supports), and the loads on it.
-    """
+    """Return (result, rank of the fixture, further settings of the sheet such as its supports, loads)."""
     settings, loads = asked.settings, asked.loads
     if asked.on_supports:
         chosen = choose_supports_from_file(asked.result_file, asked.rank, settings, loads)
@@ -239,10 +237,10 @@ def refuse_in_space(
     support_height: str | None,
     first_setup: str | None,
 ) -> None:
-    """Raise InputError for what only paper can show in a file for CAM, for supports where the file has none,
-    and for a support height without supports.
+    """Raise InputError for options that the kind of file cannot have.
 
-    ``for_cam`` says that the file is one for CAM, ``shows_supports`` that such a file has supports.
+    They are: what only paper can show, for a file for CAM (``for_cam``); supports (``supported``), for such a
+    file that shows none (``shows_supports`` False); a support height without supports.
     """
     if for_cam and first_setup is not None:
         raise InputError(

@@ -37,11 +37,11 @@ class ShowTask:
     Parameters
     ----------
     pressed_by : the loads, jaw force, jaw and friction that were typed, see ``LoadOptions``.
-    picture, models : files to write, in two and in three dimensions.
-    part : the file of the part's own shape for the latter.
-    height : of the part in them, in mm.
-    on_supports : whether they show it on supports.
-    unit, printed : of lengths as typed, and as shown.
+    picture, models : files to write: a picture, and models in three dimensions.
+    part : STEP file with the part's own shape, for the models.
+    height : height of the part in mm in the models.
+    on_supports : whether the models show the fixture on supports.
+    unit, printed : unit of lengths typed, and of lengths shown.
     """
 
     result: Result
@@ -63,7 +63,7 @@ class ShowTask:
 
     @property
     def closing(self) -> tuple[float | None, float]:
-        """Jaw force typed, in N or None, and the stiffness of the jaw."""
+        """(jaw force in N as typed, or None; stiffness of the jaw)."""
         return self.pressed_by["jaw_force"], self.pressed_by["jaw"]
 
 
@@ -125,8 +125,9 @@ def parse(
 
 
 def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
-    """Return what each load does to the fixture;
-    () for a fixture held by friction, whose loads belong to the design.
+    """Return a load case for each load.
+
+    It is () for a fixture that holds by friction, where loads are counted by the design.
     """
     from workhold.statics.loads import compute_load_cases
 
@@ -227,8 +228,10 @@ def print_fixture(
 
 
 def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
-    """Return how far the pegs of a fixture bend, at a jaw force in N,
-    else the result's; None where no heights are known.
+    """Return how far the pegs of a fixture bend; None where the heights at which they are pressed are not
+    known.
+
+    ``jaw_force`` in N replaces that of the result unless None.
     """
     from workhold.statics.bent_pegs import compute_bent_pegs
 
@@ -243,10 +246,10 @@ def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> B
 
 
 def describe_bending(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
-    """Return a table and sentences on how far pegs bend and what that moves the part by;
-    [] where no heights are known.
+    """Return a table and sentences on how far pegs bend, and how far that moves the part.
 
-    ``jaw_force`` in N replaces the result's.
+    It is [] where the heights at which they are pressed are not known. ``jaw_force`` in N replaces the
+    result's unless None.
     """
     bent = compute_peg_bending(result, rank, jaw_force)
     if bent is None:
@@ -290,7 +293,9 @@ def describe_bending(result: Result, rank: int, unit: Unit, jaw_force: float | N
 def tabulate_load_cases(
     cases: Sequence[LoadCase], fixture: Fixture, toolkit: Toolkit, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
-    """Return tables and sentences on what each load needs and does; () without load cases."""
+    """Return tables and sentences on the jaw force that each load needs and the peg forces; () without load
+    cases.
+    """
     if not cases:
         return ()
     from workhold.statics.loads import describe_jaw
@@ -344,10 +349,10 @@ def tabulate_load_cases(
 def list_program_clearances(
     result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> dict[str, Any]:
-    """Return "program_clearance" and "program_forces" as plain data; those that are not known are left out.
+    """Return "program_clearance" and "program_forces" as plain data; unknown ones are left out.
 
-    They say where tools of the program come nearest, and which forces they ask for. Jaw force and jaw are as
-    of :func:`describe_program_clearances`.
+    The first is where the program's tools come nearest, the second the forces that they need. Jaw force and
+    jaw are as for :func:`describe_program_clearances`.
     """
     from workhold.statics.program_clearance import find_nearest_passing
     from workhold.statics.program_forces import find_cutting_need
@@ -360,7 +365,9 @@ def list_program_clearances(
 
 
 def convert_bending_to_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
-    """Return how far pegs bend as plain data under "pins"; {} where no heights are known."""
+    """Return {"pins": how far pegs bend, as plain data}; {} where the heights at which they are pressed are
+    not known.
+    """
     bent = compute_peg_bending(result, rank, jaw_force)
     return {} if bent is None else {"pins": bent.to_dict()}
 

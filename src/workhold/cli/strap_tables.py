@@ -18,7 +18,9 @@ __all__ = ["describe_completeness", "tabulate_straps", "tabulate_strapped_fixtur
 
 
 def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Unit) -> Table:
-    """Tabulate the best seats: locators, bolts, the force of each strap, and figures of the seat."""
+    """Return a table of the first ``count`` entries: locators, bolts, force of each strap, and figures of the
+    seat.
+    """
     from workhold.model.straps import StrappedHold
 
     straps = result.toolkit.strap_set
@@ -61,7 +63,9 @@ def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Uni
 
 
 def describe_completeness(result: Result, unit: Unit) -> str:
-    """Say what is complete of a list of seats, and with which friction forces are stated."""
+    """Return sentences on which parts of the list are complete and, with loads, which friction the forces are
+    stated with.
+    """
     from workhold.model.straps import StrappedHold
     from workhold.supports.straps import make_question
     from workhold.supports.words_of_straps import describe_assumptions
@@ -75,7 +79,11 @@ def describe_completeness(result: Result, unit: Unit) -> str:
 
 
 def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
-    """Say how to set up one seat with its straps, with lengths in a unit, and what each load asks for."""
+    """Return sentences and tables on how to set up one seat with its straps, and the force that each load
+    needs.
+
+    ``rank`` counts from 1, ``total`` is the number of fixtures listed, and lengths are shown in ``unit``.
+    """
     from workhold.model.straps import StrappedHold
     from workhold.supports.straps import make_question
     from workhold.supports.words_of_straps import (

@@ -103,7 +103,10 @@ def straps(
 
 
 def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion:
-    """Read what was typed."""
+    """Return the question of straps from the options as typed; lengths without a unit are in ``unit``.
+
+    Raises InputError where there are no loads, typed or in the result.
+    """
     from workhold.model.friction import SAFETY, to_coefficients
     from workhold.model.straps import StrapHardware
     from workhold.model.support_request import SpatialLoad
@@ -140,7 +143,7 @@ def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion
 
 
 def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dict[str, Any]:
-    """Return the data for other programs."""
+    """Return the straps found as plain data for JSON: pegs, pose, straps, friction, safety factor and weight."""
     from workhold.model.friction import COUNTED_BY_STRAPS, find_friction_coefficient
 
     return {
@@ -160,7 +163,7 @@ def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dic
 def tabulate(
     found: StrappedHold, fixture: Fixture, rank: int, asked: StrapQuestion, unit: Unit
 ) -> list[Table | str]:
-    """Say how to set the straps up, and what each load asks for."""
+    """Return sentences and tables on how to set the straps up, and the force that each load needs."""
     from workhold.cli.need_table import tabulate_needs
     from workhold.supports.words_of_straps import describe_assumptions, list_remarks, list_steps
 

@@ -1,4 +1,5 @@
-"""What the command reads of loads in space and says of supports: sizes, why none hold, what friction adds."""
+"""Loads in space as the command reads them, and its sentences on supports: sizes, why none hold, and what
+friction adds."""
 
 from __future__ import annotations
 
@@ -35,8 +36,8 @@ MOST_PLACES = 100_000_000
 def find_supports_within_limit(
     fixtures: Sequence[Fixture], query: Query, requests: Iterable[SupportRequest], **how: Any
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
-    """Return the best supports of each fixture,
-    and those of the usual sizes, as far as a limit of work allows.
+    """Return (best supports, best supports of the usual sizes) for each fixture, as far as a limit of work
+    allows.
 
     Arguments and values are those of :func:`workhold.supports.asking.support_with_smaller_sizes`. A bar shows
     progress.
@@ -55,8 +56,8 @@ def find_supports_within_limit(
 
 
 def describe_stopped_search(last: int, count: int) -> str:
-    """Return a sentence: at which fixture the search of supports stopped,
-    what was skipped, and how to get the rest.
+    """Return a sentence that says at which fixture the search of supports stopped, what was left out, and how
+    to get it.
 
     ``last`` is the rank of that fixture, ``count`` the number of fixtures asked for.
     """
@@ -94,8 +95,8 @@ def note_support_sizes(
 
     Parameters
     ----------
-    found, usual : for each fixture in order the supports listed, and those of the usual sizes.
-    bare : ranks of the fixtures that have none in ``found``.
+    found, usual : for each fixture in order, its supports listed, and its supports of the usual sizes.
+    bare : ranks of the fixtures without supports in ``found``.
     """
     from workhold.supports.words import explain_no_set
 
@@ -129,10 +130,10 @@ def note_support_sizes(
 def list_clamp_forces_with_friction(
     found: Supports, count: int | None, friction: float | None
 ) -> list[float]:
-    """Return for each of the first ``count`` sets the least clamp force in N with friction;
-    [] where none is asked for.
+    """Return for each of the first ``count`` sets (all for None) the least clamp force in N with friction.
 
-    Raises InputError without loads, and for a coefficient that is too large.
+    It is [] where ``friction`` is None. Raises InputError without loads, and for a coefficient that is too
+    large.
     """
     if friction is None:
         return []
@@ -142,8 +143,9 @@ def list_clamp_forces_with_friction(
 
 
 def describe_friction_gain(friction: float, helped: list[float], unit: Unit) -> str:
-    """Return sentences on what friction could add;
-    ``helped`` are the least clamp forces in N of the sets listed.
+    """Return sentences on how far friction could reduce the clamp force.
+
+    ``helped`` are the least clamp forces in N with friction, one for each set listed.
     """
     forces = ", ".join(unit.format_force(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
@@ -155,10 +157,10 @@ def describe_friction_gain(friction: float, helped: list[float], unit: Unit) -> 
 
 
 def read_spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
-    """Return a load in space from the text of ``--load``:
-    height, axial force and tilt besides the words of a planar load.
+    """Return a load in space from the text of ``--load``: words of a planar load, and height, axial force and
+    tilt.
 
-    It acts at the part's upper side, ``thickness`` mm high, where no height is given.
+    Without a height it acts at the part's upper side, ``thickness`` mm above its lower one.
     """
     from workhold.model.support_request import SpatialLoad
 

@@ -141,12 +141,12 @@ class SupportsTask:
 
     Parameters
     ----------
-    count : of sets of three that are listed; None for all.
-    closing : the jaw force in N; None for the one that is needed.
-    raised : how far supports stand out of the plates, in mm.
-    models : files in three dimensions to write.
-    part : the file of the part's own shape for these.
-    unit, printed : of lengths as typed, and as shown.
+    count : number of sets of three that are listed; None for all.
+    closing : jaw force in N; None for the force that is needed.
+    raised : height in mm of the supports above the plates.
+    models : files to write in three dimensions.
+    part : STEP file with the part's own shape, for the models.
+    unit, printed : unit of lengths typed, and of lengths shown.
     """
 
     result: Result
@@ -258,8 +258,9 @@ def parse(
 
 
 def ask(asked: SupportsTask) -> Supports:
-    """Return the supports found, with smaller pads where the usual ones find no place;
-    the best so far after a Ctrl-C.
+    """Return the supports found, with smaller pads where pads of the usual size find no place.
+
+    After Ctrl-C, return the best found so far.
     """
     from workhold.supports.asking import support_with_smaller_sizes
 
@@ -314,8 +315,8 @@ def write(asked: SupportsTask, found: Supports) -> None:
 
 
 def read_asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
-    """Return the thickness of a part in mm where supports are wanted:
-    as typed, else its solid's height; None if not wanted.
+    """Return the thickness of a part in mm: as typed, else its solid's height; None where supports are not
+    wanted.
 
     Raises InputError where neither is known, and for a thickness typed for a solid where supports are not
     wanted.
@@ -332,10 +333,10 @@ def read_asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, u
 
 
 def report_supported(result: Result, thickness: float, unit: Unit, stream: TextIO) -> tuple[Supports, ...]:
-    """Print the best three supports of each of the best twenty fixtures,
-    if any, and return the supports of all.
+    """Print the best three supports of each of the best twenty fixtures, and return the supports of all of
+    these.
 
-    They are of the usual sizes or, where these hold up none of the fixtures, of smaller ones.
+    The supports are of the usual sizes or, where these hold up none of the fixtures, of smaller ones.
     """
     from workhold.supports.asking import try_smaller_requests
     from workhold.supports.words import format_set_row, list_set_headings, place_notes, write_flat_faces_notes

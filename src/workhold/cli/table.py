@@ -27,7 +27,7 @@ MORE = "A wider terminal or a pipe shows them; --json has all."
 
 @frozen
 class FittedTable:
-    """A table as lines of text; ``red`` are the numbers of the lines that a terminal shows in red."""
+    """A table as lines of text; ``red`` has the indices of the lines that a terminal shows in red."""
 
     headings: list[str]
     lines: list[str]
@@ -40,10 +40,10 @@ class Table:
 
     Parameters
     ----------
-    columns : the headings; a column whose heading begins with ``>`` has its content on the right.
+    columns : headings; the content of a column is aligned right where its heading begins with ``>``.
     rows : the words, one for each column.
-    red : numbers of the rows that a terminal shows in red.
-    spare : of the columns, the last so many are left out one by one where a terminal has no room for them.
+    red : indices of the rows that a terminal shows in red.
+    spare : number of the last columns that may be left out, one by one, where a terminal has no room.
     """
 
     columns: tuple[str, ...]
@@ -63,9 +63,9 @@ class Table:
     def fit_to_width(self, width: int | None) -> FittedTable:
         """Return the table as lines of at most ``width`` characters; None is no limit.
 
-        A table that is too wide has its headings wrapped first. Then the spare columns are left out, which a
-        last line says. Then columns of words are wrapped, the widest first. At last further columns are left
-        out from the right, but never the first. No number is cut.
+        A table that is too wide is narrowed in this order: wrap headings; leave out spare columns, which a
+        last line says; wrap columns of words, the widest first; leave out columns from the right, but never
+        the first. No number is cut.
         """
         right = [column.startswith(">") for column in self.columns]
         headings = [column.lstrip(">") for column in self.columns]
@@ -105,7 +105,7 @@ class Table:
                 left_out = f"No room for: {', '.join(headings[kept:])}. {MORE}"
 
         def lines_of(cells: list[list[str]], low: bool) -> list[str]:
-            """Return the lines of one row, shorter cells filled up from above (``low``) or from below."""
+            """Return the lines of one row; shorter cells are padded above if ``low``, else below."""
             high = max(map(len, cells[:kept]))
             filled = [
                 [""] * (high - len(cell)) + cell if low else cell + [""] * (high - len(cell))
@@ -139,10 +139,10 @@ def measure_longest_word(texts: Iterable[str]) -> int:
 
 
 def narrow_columns(widths: list[int], least: list[int], over: int) -> list[int]:
-    """Return widths less ``over`` characters in all,
-    taken one by one from the widest column above its least width.
+    """Return column widths reduced by ``over`` characters in all.
 
-    Where all have their least width, the rest of ``over`` is not taken.
+    Each character is taken from the column that is widest at that moment, and no column gets narrower than
+    its ``least`` width. Where all have their least width, less than ``over`` is taken.
 
     >>> narrow_columns([30, 10, 40], [24, 10, 24], 14)
     [28, 10, 28]
@@ -213,8 +213,9 @@ def wrap_sentence(sentence: str, width: int | None) -> list[str]:
 
 
 def find_terminal_width(stream: TextIO) -> int | None:
-    """Return the width in characters: that of the environment's COLUMNS,
-    else the terminal's; None where there is no limit.
+    """Return the width in characters of a stream's terminal; None where there is no limit, as in a file.
+
+    The environment variable COLUMNS takes precedence.
     """
     given = os.environ.get("COLUMNS", "")
     if given.isascii() and given.isdigit() and int(given[:6]):

@@ -82,7 +82,7 @@ def count_fixtures_in_words(result: Result) -> str:
 
 
 def explain_first_fixture(result: Result, unit: Unit) -> str:
-    """Return a sentence on why the first fixture stands first; "" where another order was asked for."""
+    """Return a sentence on why the first fixture is ranked first; "" where the usual order is not used."""
     if result.holds:
         return explain_first_hold(result, unit)
     from workhold.statics.why_first import explain_why_first
@@ -102,11 +102,10 @@ def count_unfit_in_words(unfit: int, toolkit: Toolkit | None = None) -> str:
 
 
 def describe_proof_and_undecided(result: Result, written: str | None = None) -> list[str]:
-    """Return a line on how the search was proven,
-    and below it lines that name the first undecided candidates.
+    """Return a line on the proof of the search, then lines that name the first undecided candidates.
 
-    ``written`` is the name of the JSON file that lists all of them, None if there is none. The list is empty
-    without a proof.
+    ``written`` is the name of the JSON file that lists all of them, or None. The list is empty without a
+    proof.
     """
     proof = result.proof
     if proof is None:
@@ -143,10 +142,11 @@ def describe_proof(proof: ProofReport, complete: bool) -> str:
 
 
 def tabulate_result(result: Result, entries: ShownEntries, count: int, unit: Unit = MILLIMETRE) -> Table:
-    """Return a table of the first ``count`` entries of a result, one line each, lengths in a unit.
+    """Return a table of the first ``count`` entries of a result, one line each; lengths are shown in
+    ``unit``.
 
-    Figures that fixtures are ranked by are rounded as the ranking rounds them, all but the last to two
-    digits, so that the table looks as sorted as it is.
+    Figures that fixtures are ranked by are rounded as the ranking rounds them (all but the last to two
+    digits), so that the table shows the order that it is sorted in.
     """
     if result.toolkit.holds_by_friction:
         return tabulate_holds(result, entries, count, unit)
@@ -202,10 +202,11 @@ def tabulate_quality(
     jaw_force: float | None = None,
     longest: float = inf,
 ) -> Table:
-    """Return a table of a fixture's figures of quality,
-    with meanings where ``mover`` (such as "jaw") presses.
+    """Return a table of a fixture's figures of quality with their meanings, in which ``mover`` (such as
+    "jaw") is named.
 
-    ``jaw_force`` is in N, None where it is not known. An edge distance above ``longest`` mm stands for none.
+    ``jaw_force`` is in N, None where unknown. An edge distance above ``longest`` mm means that there is no
+    edge.
     """
     from workhold.model.quality import FIGURES, PIN_KEYS, PROGRAM_FIGURE
     from workhold.statics.bent_pegs import describe_force
@@ -226,8 +227,8 @@ def tabulate_quality(
 
 
 def describe_part_overhang(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
-    """Return sentences on where on its plate the setup sheet puts the set-up,
-    and on how far the part hangs over.
+    """Return up to two sentences: how the setup sheet moves the set-up to the middle of its plate, and how
+    far the part hangs over.
     """
     from workhold.drawing.panel import describe_move
     from workhold.model.moved_setup import describe_overhang, find_move_to_middle, move_fixture_by_holes
@@ -303,9 +304,9 @@ def describe_clamp_order(fixture: Fixture) -> list[str]:
 
 
 def tabulate_faces(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
-    """Return a table of the numbered faces of a part, lengths in a unit.
+    """Return a table of the numbered faces of a part; lengths are shown in ``unit``.
 
-    A face ends where the next one begins, so the column of ends is left out where there is little room.
+    The column of ends is left out where there is little room, as a face ends where the next one begins.
     """
     table = Table((">face", "kind", f"size {unit.abbreviation}", "loop", "from", "to"), spare=1)
     loop_of, pieces = list[str](), workpiece.pieces
@@ -349,7 +350,7 @@ def describe_face(face: Face, unit: Unit) -> tuple[str, str, str, str]:
 
 
 def format_place(point: tuple[float, float], unit: Unit) -> str:
-    """Return the coordinates of a point in mm as text in a unit, such as "(1.00, 2.00)"."""
+    """Return a point (x, y) in mm as numbers in the unit, without its abbreviation, such as "(1.00, 2.00)"."""
     return f"({unit.format_number(point[0])}, {unit.format_number(point[1])})"
 
 
@@ -379,7 +380,7 @@ def tabulate_face_heights(workpiece: Workpiece, unit: Unit) -> list[Table]:
 
 
 def tabulate_peg_heights(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
-    """Return a table of what the part offers to pegs of other heights; [] where others were not tried."""
+    """Return a table of the outlines that pegs of other heights meet; [] where other heights were not tried."""
     if not rows:
         return []
     names = ("pegs above", "up to", "outline", "touchable", "least band")
@@ -403,7 +404,9 @@ def touches_parallel_faces_only(workpiece: Workpiece) -> bool:
 
 
 def explain_sliding_part(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
-    """Return advice for a solid that slides along all that pegs of any height touch; [] for other parts."""
+    """Return advice for a solid that slides along all faces that pegs of any height touch; [] for other
+    parts.
+    """
     if workpiece.solid is None or not touches_parallel_faces_only(workpiece):
         return []
     if any(row.touchable > 0 and not row.slides for row in rows):
@@ -418,11 +421,11 @@ def explain_sliding_part(workpiece: Workpiece, rows: Sequence[HeightRow]) -> lis
 
 
 def suggest_other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
-    """Return sentences on what may help where pegs of this height hold a solid nowhere:
-    other heights, or another side up.
+    """Return sentences on remedies where pegs of this height cannot hold a solid: other heights, or another
+    side up.
 
-    ``rows`` are what other heights offer; those with more to touch are named first. [] for a part without a
-    solid.
+    ``rows`` are the outlines at other heights; those with more to touch are named first. The list is empty
+    for a part without a solid.
     """
     solid = workpiece.solid
     if solid is None:

@@ -1,7 +1,7 @@
-"""Options that describe a toolkit or lists of them for commands that try many, from the field table.
+"""Options that describe a toolkit, or several toolkits for commands that try many.
 
-Lists are names, files and kinds, and lists of their figures. Which figures there are, and how the words of
-each are read, the field table says.
+Several toolkits are given by names, files and kinds, and by lists of values of their figures. The field table
+says which figures there are and how the words typed for each are read.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class ToolkitOptions:
                 )
 
     def read_toolkit(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
-        """Return the toolkit, and the tolerance that a named one comes with, None for a kind.
+        """Return the toolkit, and the tolerance of a named one; the tolerance is None for a kind.
 
         Raises
         ------
@@ -174,14 +174,15 @@ def read_lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
 
 
 def read_length_range(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
-    """Return the least and the most of a length in mm, from two lengths with a comma between them."""
+    """Return (least, greatest) length in mm, from two lengths with a comma between them."""
     remedy = "two lengths: give the least and the most, such as 10,35."
     return read_two_lengths(option_name, text, unit, remedy)
 
 
 def read_directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
-    """Return directions from ``-x,-y``, or pairs of them from ``-x:-y,-x:+y``;
-    raise InputError for a mixture.
+    """Return directions from text such as ``-x,-y``, or pairs of directions from ``-x:-y,-x:+y``.
+
+    Raises InputError for a mixture of both.
     """
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
@@ -259,7 +260,7 @@ MOST_TOOLKITS = 1000
 
 @frozen
 class NamedToolkit:
-    """A toolkit to try: its name, its kind and keyword arguments, and its tolerance where it has one."""
+    """A toolkit to try: its name, its kind and keyword arguments, and its tolerance if it has one."""
 
     name: str
     kind: str
@@ -289,8 +290,8 @@ def make_query(workpiece: Workpiece, named: NamedToolkit, asked: dict[str, Any])
 
 
 def collect_carrier_heights(toolkits: Sequence[NamedToolkit]) -> dict[str, tuple[float, ...]]:
-    """Return the heights (low, high) in mm of carriers by role,
-    so that one reading of a part serves all toolkits.
+    """Return by role all heights (low, high) in mm of carriers, so that one reading of a part serves all
+    toolkits.
 
     Toolkits that cannot be made are left out. Raises InputError where two toolkits differ in the heights of a
     role.
@@ -373,11 +374,11 @@ def list_toolkits_to_try(
 def load_named_toolkits(
     names: list[str] | None, kind: str | None, said: Mapping[str, Any], given: list[tuple[ToolkitField, str]]
 ) -> list[NamedToolkit]:
-    """Return the toolkits that are named, or all presets that
-    have every varied field, with the fields ``said`` set.
+    """Return the named toolkits, or for None all presets that have every varied field, each with the fields
+    ``said`` set.
 
-    A kind keeps only those of its table, and makes them of that kind. Raises InputError for fields that a
-    named toolkit does not have, and where no toolkit is left.
+    Where ``kind`` is given, only those fields count that this kind has, and all toolkits are made of it.
+    Raises InputError for fields that a named toolkit does not have, and where no toolkit is left.
     """
     from workhold.files.toolkit_file import list_preset_names, load_toolkit
     from workhold.fixels.kinds import find_table
@@ -450,7 +451,7 @@ def read(row: ToolkitField, word: str, unit: Unit) -> Any:
 
 
 def make_entry_name(row: ToolkitField, word: str) -> str:
-    """Return what an entry of a field's list adds to the name of a toolkit.
+    """Return the words that an entry of a field's list adds to the name of a toolkit.
 
     >>> make_entry_name(COLUMNS, "1"), make_entry_name(PEG_RADIUS, "2.5"), make_entry_name(PITCH, "8")
     ('1 column', 'radius 2.5', 'pitch 8')

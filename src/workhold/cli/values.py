@@ -47,7 +47,7 @@ FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]
 def read_unit(name: str | None) -> Unit:
     """Return the unit of lengths typed and shown: the named one, else that of the environment, else mm.
 
-    It is mm, too, for the name of a drawing's pixels, such as px96.
+    For the name of a drawing's pixels, such as px96, it is mm as well.
     """
     name = read_usual_unit() if name is None else name
     return MILLIMETRE if name is None or find_pixels_per_inch(name) is not None else find_unit(name)
@@ -61,8 +61,8 @@ def read_usual_unit() -> str | None:
 
 
 def choose_printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
-    """Return the unit of lengths shown of a fixture:
-    the one named or that of the environment, else that of the holes.
+    """Return the unit of lengths shown of a fixture: the named one, else the environment's, else that of the
+    holes.
 
     Numbers that are typed without a unit stay in the unit of :func:`read_unit`.
     """
@@ -76,7 +76,7 @@ def read_length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     ----------
     option : name of the option, for messages.
     text : a number or a fraction, which may carry a unit of its own.
-    unit : of a number without one.
+    unit : unit of a number that carries none.
 
     Examples
     --------
@@ -108,9 +108,9 @@ def read_length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> fl
 
 
 def read_two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float]:
-    """Return two lengths in mm with a comma between them; raise InputError for anything else.
+    """Return two lengths in mm from text with a comma between them; raise InputError for anything else.
 
-    The message says that the text "is not ``remedy``".
+    ``remedy`` completes the message "… is not <remedy>".
     """
     words = text.split(",")
     if len(words) != 2:
@@ -228,10 +228,10 @@ def read_quantity(
 
     Parameters
     ----------
-    words : pattern of what is typed, with the groups ``number`` and ``unit``.
+    words : pattern of the text, with the groups ``number`` and ``unit``.
     units : factor of each unit, by its name in small letters.
     usual : name of the unit of a number without one.
-    remedy : what the message says that the text is not.
+    remedy : what the text should be; it completes the message "… is not <remedy>".
     """
     match = words.fullmatch(text)
     value = nan if match is None else read_number(match["number"]) * units[(match["unit"] or usual).lower()]
@@ -241,8 +241,7 @@ def read_quantity(
 
 
 def read_choice(option: str, text: str, among: Sequence[str]) -> str:
-    """Return the one of several words that equals the text apart from capitals;
-    raise InputError for anything else.
+    """Return the word in ``among`` that equals the text, capitals ignored; raise InputError where none does.
 
     Examples
     --------

@@ -13,8 +13,7 @@ WORDS = "Compiling the kernels, on the first run only"
 
 
 def compile_kernels(cancel: Event) -> bool:
-    """Compile the kernels of a search if that has not been done on this machine;
-    return whether it was done now.
+    """Compile the kernels of a search if needed on this machine; return whether they were compiled now.
 
     When ``cancel`` is set, the rest is left to the search.
     """
@@ -24,8 +23,9 @@ def compile_kernels(cancel: Event) -> bool:
 
 
 def compile_seating(cancel: Event) -> bool:
-    """Compile the kernels of seating if that has not been done;
-    return whether it was done now, see :func:`compile_kernels`.
+    """Compile the kernels of seating if needed on this machine; return whether they were compiled now.
+
+    For ``cancel`` see :func:`compile_kernels`.
     """
     from workhold.kernels.base.libraries import SEATING_ROOMS
 
@@ -33,8 +33,8 @@ def compile_seating(cancel: Event) -> bool:
 
 
 def compile_rooms(rooms: Sequence[str], cancel: Event) -> bool:
-    """Compile the kernels of some rooms, with a bar,
-    if that has not been done; return whether it was done now.
+    """Compile the kernels in some packages (``rooms``) if needed, with a progress bar; return whether they
+    were compiled now.
     """
     from workhold.kernels.base.libraries import build_libraries, is_built
 

@@ -64,15 +64,16 @@ class WorkbenchOrder:
 
     Parameters
     ----------
-    part : path of the part's STEP file, for a design; None to put in a fixture of the result in the folder.
-    name : what the part is called in the document.
-    axis, peg_height, toolkit, best : as of ``design``; lengths are in mm.
+    part : path of the part's STEP file for a design; None to show another fixture of the result in the
+        folder.
+    name : name of the part in the document.
+    axis, peg_height, toolkit, best : options of ``design``; lengths are in mm.
     avoid, only : faces of the document by name, each with its place in the STEP file.
-    program, tools, z_zero : as of ``design``.
+    program, tools, z_zero : options of ``design``.
     supports : whether three supports and a clamp on top are put in.
-    pictures : whether the first choices and the one that is put in are drawn.
-    marks : of the fixture that was chosen before, see :func:`find_rank_in_file`; empty for none.
-    chosen : rank of the fixture of the result that is put in.
+    pictures : whether pictures of the first choices and of the chosen fixture are drawn.
+    marks : JSON that identifies the fixture chosen before, see :func:`find_rank_in_file`; empty for none.
+    chosen : rank of the fixture whose bodies are returned.
     """
 
     part: str | None = None
@@ -137,8 +138,9 @@ def workbench(
 
 
 def watch_for_cancel(cancel: Event) -> None:
-    """Set the event when a byte comes on stdin or stdin is closed;
-    runs in a thread, so that the search ends and is kept.
+    """Set the event when a byte arrives on stdin or stdin is closed.
+
+    Runs in a thread, so that the search can end and its result be kept.
     """
     # Not through Python's own buffer, whose lock would outlive the end of the process.
     os.read(sys.stdin.fileno(), 1)
@@ -146,8 +148,9 @@ def watch_for_cancel(cancel: Event) -> None:
 
 
 def make_query(order: WorkbenchOrder, part: str) -> Query:
-    """Return the query of an order with the part read;
-    options mean what they mean in ``design``, so both list the same.
+    """Return the query of an order, with the part read.
+
+    Options mean the same as in ``design``, so that both list the same fixtures.
     """
     from workhold.files.part.load import read_workpiece
     from workhold.model.query import Query
@@ -176,11 +179,11 @@ def make_query(order: WorkbenchOrder, part: str) -> Query:
 
 
 def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
-    """Return the numbers, ascending, of the outline's faces
-    that no peg may touch, from the faces named in the order.
+    """Return the numbers, ascending, of the outline's faces that no peg may touch because the order names
+    their faces.
 
-    Raises InputError for a named face that pegs cannot touch anyway, and an outline without face numbers of a
-    solid.
+    Raises InputError for a named face that pegs cannot touch anyway, and for an outline without face numbers
+    of a solid.
     """
     if not (order.avoid or order.only):
         return []
@@ -248,11 +251,11 @@ def read_listed_fixtures(folder: Path, name: str = RESULT) -> list[dict[str, Any
 
 
 def find_rank_in_file(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
-    """Return the rank, from 1, of the fixture with these marks in a result file's entries;
-    None where there is none.
+    """Return the rank, from 1, of the fixture with these marks among a result file's entries; None without
+    one.
 
-    Marks are JSON made by :func:`identify_fixture`. Several fixtures may use the same holes, such as after
-    half a turn of the part; the one whose angle is nearest counts, up to :data:`MOST_TURNED` degrees off.
+    Marks are JSON made by :func:`identify_fixture`. Where several fixtures use the same holes, the one whose
+    part's angle is nearest is returned, if it is at most :data:`MOST_TURNED` degrees off.
     """
     if not marks:
         return None
@@ -276,8 +279,9 @@ def identify_fixture(fixture: Mapping[str, Any]) -> str:
 
 
 def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
-    """Return bodies (all but the part's), pose,
-    holes and marks of the fixture of a rank; write its picture if wanted.
+    """Return the bodies (without the part), pose, holes and marks of the fixture of a rank, as plain data.
+
+    Its picture is written if wanted.
     """
     from workhold.presenting.assembly import Assembly
 

@@ -70,8 +70,8 @@ class CopiesTask:
     Parameters
     ----------
     size : columns and rows of the plate.
-    gap : the least between the copies, in mm.
-    seconds : the time to prove that no more fit.
+    gap : least distance between the copies, in mm.
+    seconds : time limit for the proof that no more copies fit.
     unit : of lengths shown.
     """
 
@@ -110,7 +110,7 @@ def parse_copies(result_file: str, rank: int, words: CopiesOptions) -> CopiesTas
 
 
 def ask_copies(asked: CopiesTask) -> tuple[list[Fixture], PackedCopies]:
-    """Return the copies of a fixture that fit on the plate, and the packing, which tells what is proven."""
+    """Return the copies of a fixture that fit on the plate, and the packing, which says what is proven."""
     from workhold.family.copies import make_copies, pack_copies
 
     result, rank = asked.result, asked.rank

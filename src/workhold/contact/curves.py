@@ -82,18 +82,16 @@ class CurveTable:
 
     @cached_property
     def spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The orientations psi (N,) in radians from and to which curves
-        are of interest, the former in [0, 2 pi).
-        """
+        """The orientations psi in radians from which (N,) and to which (N,) each curve is used; the first in
+        [0, 2 pi)."""
         reals = self.curves.reals
         first = (reals[:, NEAR_FROM] - reals[:, SHIFT]) % tau
         return first, first + (reals[:, NEAR_TO] - reals[:, NEAR_FROM])
 
     @cached_property
     def sectors(self) -> dict[int, NDArray[np.int64]]:
-        """A cache, empty at first: indices of the curves that exist in
-        each sector of orientations (see ``search.cells``).
-        """
+        """A cache, empty at first: by sector of orientations (see ``search.cells``), the indices of the
+        curves that exist there."""
         return {}
 
     @cached_property
@@ -149,20 +147,20 @@ def make_curve_table(
     threads : how many threads share the work; the result does not depend on it.
     cancel : when set, tails that have not begun yet get no curves.
     centers : result of :func:`number_centers`, for callers that ask repeatedly.
-    near : leaves out curves that locators of interest cannot touch.
+    near : which spots locators may touch together; curves whose contacts it rules out are left out.
     within : (K, 2) ranges of psi in radians outside which curves may be left out; (0, 2) for no limit.
     """
     centers = number_centers(rows) if centers is None else centers
 
     def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
-        """Return integers and reals of curves, those of sliding pairs,
-        and stretches, with tails on one feature.
-        """
+        """Return five arrays for the tails on one feature: integers and reals of curves, integers and reals
+        of sliding pairs, and stretches."""
         few = steps if cancel is None or not cancel.is_set() else steps.without_steps
         given = tail, rows, centers, few.lengths, few.starts, few.steps, few.angles, near, within
 
         def write(size: int) -> tuple[NDArray[Any], ...] | None:
-            """Write them to arrays with ``size`` rows each; return None where there is no room."""
+            """Return the five arrays, computed with room for ``size`` rows each; None where that is not
+            enough room."""
             space = make_curve_space(size)
             count, pair_count, stretch_count = write_tail_curves(*given, space)
             if count < 0:

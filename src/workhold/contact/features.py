@@ -61,15 +61,16 @@ class ContactFeature:
 
     @cut_from.default
     def take_own_segment(self) -> Segment:
-        """Return the segment itself, the default of ``cut_from``."""
+        """Return the segment itself: the default of ``cut_from``, for a feature that nothing was cut from."""
         return self.segment
 
 
 def list_contact_features(
     workpiece: Workpiece, peg_radius: float, flat: PegFlat | None = None
 ) -> list[ContactFeature]:
-    """Return the contact features of a workpiece for pegs of a radius
-    in mm, by face; for pegs with a flat if one is given.
+    """Return the contact features of a workpiece for pegs of a radius in mm, in the order of faces.
+
+    ``flat`` is the flat that such pegs have, None for round pegs.
     """
     faces = workpiece.faces
     pieces = list_trimmed_offsets(
@@ -79,10 +80,9 @@ def list_contact_features(
 
 
 def list_features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFeature]:
-    """Return the contact features for the pegs of a carrier, by face,
-    on the outline of the workpiece that it meets.
+    """Return the contact features for the pegs of a carrier, in the order of faces.
 
-    Their face numbers are those through all outlines.
+    They lie on the outline of the workpiece that the carrier meets. Faces are numbered through all outlines.
     """
     own, first = workpiece.find_outline(carrier.role)
     features = list_contact_features(own, carrier.peg_radius, carrier.flat)
@@ -93,8 +93,8 @@ def list_avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[
     """Return the numbers of the faces that nothing may touch: those
     to be avoided, and those that cannot be touched.
 
-    Where carriers have their own outlines, an avoided number stands for faces of the solid above that
-    segment; all faces of any outline under these faces of the solid are avoided with it.
+    Where carriers have their own outlines, the number of a segment to be avoided stands for the faces of the
+    solid above it; the faces of all outlines under these faces of the solid are avoided, too.
 
     Raises
     ------
@@ -127,8 +127,8 @@ def find_allowed_features(
     Parameters
     ----------
     body_radius : of the pegs' bodies, in mm.
-    swept : pairs of swept spans and the distance in mm that a peg's centre keeps from them besides the tool's
-        radius; that of the peg itself first.
+    swept : pairs (swept spans, distance in mm that a peg's centre keeps from them in addition to the tool's
+        radius); the pair for the peg itself comes first, one for its shoulder may follow.
 
     Raises
     ------
@@ -201,8 +201,8 @@ def measure_end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]
     """Return distances (..., 2) in mm along features from the feet of points to the low and to the high end.
 
     Negative past an end, inf on a whole circle, which has no ends.
-    ``kernels.chord.evaluation.measure_end_distance`` is its compiled form for one point; verification, the algebra
-    and the proof in balls have their own on purpose.
+    ``kernels.chord.evaluation.measure_end_distance`` is its compiled form for one point; verification, the
+    algebra and the proof in balls have their own on purpose.
 
     Parameters
     ----------
@@ -225,16 +225,17 @@ def measure_end_slacks(
     """Return how far in mm a contact may lie past the place
     ``margin`` mm inside the low and the high end, shape (F, 2).
 
-    Where two features join tangentially a contact exactly at the joint counts (for both, and is listed once),
-    so rounding is forgiven. Any other end does not count: there the peg also touches a second face or stands
-    on a corner. A margin is met where it is met exactly. A keep-out zone cuts a feature where the peg's body
-    touches it, which is allowed: the margin counts from the ends that the feature has without zones.
+    Where two features join tangentially, a contact exactly at the joint counts as on both and is listed once,
+    so rounding is forgiven there. Any other end does not count: there the peg also touches a second face or
+    stands on a corner. A distance of exactly ``margin`` is enough. A keep-out zone cuts a feature where the
+    peg's body touches it, which is allowed: the margin counts from the ends that the feature has without
+    zones.
 
     Parameters
     ----------
     margin : smallest distance in mm from a contact to the end of its feature.
-    locus : all features, also those that are ruled out, if these are more than ``features``: a joint with one
-        of them is a joint.
+    locus : all features, including those that are ruled out, so that joints with these count as well; None
+        where nothing is ruled out.
     """
     everything = [feature.segment for feature in (features if locus is None else locus)]
     ends = dict(

@@ -1,8 +1,9 @@
-"""The problem that every engine starts from: a query prepared for arithmetic, in the frame of the search.
+"""The problem that every engine starts from: a query prepared for arithmetic, in a frame common to all
+toolkits.
 
-In the frame a toolkit is turned so that its moving carrier slides along +x. Quarter turns alone are used, and
-fixtures found in the frame are carried back. Everything between contact features and placed fixtures works
-there; a vise needs no turning.
+In this frame a toolkit is turned so that its moving carrier slides along +x. Quarter turns alone are used,
+and fixtures found in the frame are carried back. Everything between contact features and placed fixtures
+works there; a vise needs no turning.
 """
 
 from __future__ import annotations
@@ -123,8 +124,8 @@ class SearchFrame:
 
     @property
     def swapped_peg_count(self) -> int:
-        """The number of pegs on each carrier of the arrangement that a
-        half turn of the toolkit keeps; 0 for none.
+        """The number of pegs on each carrier of the arrangement that a half turn of the toolkit maps to
+        itself; 0 for none.
 
         The half turn swaps the carriers.
         """
@@ -133,9 +134,8 @@ class SearchFrame:
 
     @property
     def travel_at_rest(self) -> float:
-        """The travel in mm at which the moving carrier's first column
-        would be in the last column of the standing one.
-        """
+        """The travel in mm at which the moving carrier's first column lies at the x of the standing carrier's
+        last column."""
         (x, _), (first, _) = (
             self.standing.compute_hole_center(self.standing.column_count - 1, 0),
             self.moving.offset,
@@ -143,14 +143,15 @@ class SearchFrame:
         return float(x - first)
 
     def map_step_to_toolkit(self, column: IntArray, row: IntArray) -> tuple[IntArray, IntArray]:
-        """Return differences of columns and rows in the toolkit from those in the frame."""
+        """Return differences of columns and of rows in the toolkit's numbering, given those in the
+        frame's."""
         cosine, sine = QUARTERS[self.quarters]
         return cosine * column - sine * row, sine * column + cosine * row
 
     def map_holes_to_toolkit(
         self, standing: NDArray[np.bool_], column: IntArray, row: IntArray
     ) -> tuple[IntArray, IntArray]:
-        """Return columns and rows (N, 4) in the toolkit from those in the frame.
+        """Return columns and rows (N, 4) of holes in the toolkit's numbering, given those in the frame's.
 
         ``standing`` (N, 4) is True for holes of the carrier that stands still. Where the carriers are endless
         across the travel, the lowest number in that direction is 0.
@@ -173,8 +174,10 @@ def flip_hole_numbers(k: Any, count: int | None) -> Any:
 
 
 def map_hole_to_toolkit(carrier: Carrier, quarters: int, column: Any, row: Any) -> tuple[Any, Any]:
-    """Return the column and row in the toolkit of a hole of a carrier, from its column and row in the
-    frame.
+    """Return the column and row of a hole in the toolkit's numbering, given those in the frame's.
+
+    ``quarters`` (0 to 3) is the number of quarter turns, counter-clockwise, from the frame to the toolkit;
+    ``carrier`` is the carrier as it is in the frame.
     """
     if quarters == 2:
         return flip_hole_numbers(column, carrier.columns), flip_hole_numbers(row, carrier.rows)
@@ -184,7 +187,7 @@ def map_hole_to_toolkit(carrier: Carrier, quarters: int, column: Any, row: Any) 
 
 
 def turn_carrier(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
-    """Return a carrier as it is in the frame, ``quarters`` quarter turns clockwise from the toolkit.
+    """Return a carrier turned by ``quarters`` quarter turns clockwise: from the toolkit to the frame.
 
     A carrier that is endless along the travel gets as many columns as two pegs on the part can be apart.
 
@@ -211,7 +214,7 @@ def turn_carrier(carrier: Carrier, quarters: int, farthest: float) -> Carrier:
 
 
 def map_blocked_holes_to_frame(carrier: Carrier, quarters: int) -> Iterator[HoleSelection]:
-    """Yield the blocked holes of a carrier with columns and rows as in the frame."""
+    """Yield the blocked holes of a carrier of the toolkit, with columns and rows in the frame's numbering."""
     if quarters == 0:
         yield from carrier.blocked
         return
@@ -245,7 +248,7 @@ class Problem:
     outlines : (S, 10) the faces that pegs of the standing carrier keep from, and those of the moving one; one
         array where both meet one outline.
     diameter : largest distance in mm between two peg centres that touch the part.
-    pairing : whether the clamp is one of two, so that it need not hold the part with the locators alone.
+    pairing : whether the clamp is one of two; then one clamp and the locators alone need not hold the part.
     """
 
     query: Query
@@ -333,23 +336,22 @@ class Problem:
         return self.query.restrictions
 
     def find_swept_spans(self, carrier: Carrier) -> tuple[SweptSpans, float] | None:
-        """Return the spans that the program sweeps beside a carrier, and
-        the clearance in mm; None without a program.
+        """Return what the program sweeps at the heights of a carrier's pegs, and the clearance to keep from
+        it in mm.
 
-        Spans are in the part's own coordinates, not about its centre.
+        Return None without a program. The spans are in the part's own coordinates, not about its centre.
         """
         return find_swept_at_pegs(self.query, carrier)
 
     @property
     def wrench_length(self) -> float:
-        """L of the wrenches in mm: half the diameter of the peg-centre locus."""
+        """The length L in mm by which moments of wrenches are divided: half the diameter of the peg-centre
+        locus."""
         return self.diameter / 2
 
     @property
     def backward_error(self) -> float:
-        """A bound in mm of the distance of the features' rows from the
-        drawing, by rounding of a dozen operations.
-        """
+        """A bound in mm of how far rounding puts the features' rows off the drawing."""
         center = self.workpiece.center
         return ROUNDINGS * (
             abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max())

@@ -1,9 +1,10 @@
-"""What a program sweeps at the heights of pegs: pieces of the plane that everything of a fixture keeps from.
+"""What a program sweeps at the heights of pegs: areas of the plane that every element of a fixture keeps
+clear of.
 
-An element of a fixture is clear where the axis of a tool's cylinder keeps the cylinder's radius and the
-clearance from it. So a disc, a capsule and a half plane ask for the least distance less radius over all
-pieces. Pieces of one path count once, with the largest radius. A tree of boxes finds the
-nearest of thousands.
+A swept piece is the path of a cylinder's axis with the cylinder's radius. An element of a fixture is clear
+where its distance from each path is at least the radius plus the clearance. So what matters for a disc, a
+capsule or a half plane is the least value of distance minus radius over all pieces. Pieces of one path count
+once, with the largest radius. A tree of boxes finds the nearest of thousands.
 
 Glossary
 --------
@@ -64,12 +65,13 @@ MORTON_BITS = 16
 
 @define(frozen=True, eq=False)
 class SweptSpans:
-    """The spans of what is swept, in the order of their tree; in mm, in the part's coordinates.
+    """The spans of swept pieces (segments and arcs of their paths) in the order of their tree; in mm, in the
+    part's coordinates.
 
     Parameters
     ----------
     tree : of the spans, with rows that only fill leaves.
-    line, tool : (N,) numbers in the program, -1 for rows that only fill leaves.
+    line, tool : (N,) numbers of the program's line and of the tool, -1 for rows that only fill leaves.
     boxes : (N, 4) box x0, y0, x1, y1 around each span.
     filled : (B, 4) boxes x0, y0, x1, y1 whose whole inside is swept.
     filled_line : (B,) line of the program of each filled box.
@@ -112,7 +114,7 @@ class SweptSpans:
 
     @classmethod
     def within(cls, program: Program, low: float, high: float) -> SweptSpans:
-        """The spans of what a program sweeps between two heights in mm."""
+        """Return the spans of what a program sweeps between the heights ``low`` and ``high`` in mm."""
         if program.find_boxed_moves().any():
             return cls.from_pieces(program.iterate_swept_pieces(low, high))
         one = program.make_arrays(*program.pair_moves_with_cylinders(), low, high)
@@ -146,11 +148,12 @@ class SweptSpans:
         return cls(tree, line, tool, around, inside, filled_lines)
 
     def find_nearest_spans(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
-        """Return the least reach (M,) in mm from straight pieces to the
-        spans, and the number (M,) of the span it is to.
+        """Return (least reach (M,) in mm from each straight piece to the spans, number (M,) of the nearest
+        span).
 
-        Pieces go from ``starts`` to ``ends`` (M, 2). The reach is inf, and the number -1, where nothing is
-        swept. Inside a filled box it is the reach to the border of the box.
+        The reach is distance minus cylinder radius. Pieces go from ``starts`` to ``ends`` (M, 2). The reach
+        is inf, and the number -1, where nothing is swept. Inside a filled box it is the reach to the border
+        of the box.
         """
         least, which = np.full(len(starts), inf), np.full(len(starts), -1)
         starts, ends = (np.ascontiguousarray(points, np.float64) for points in (starts, ends))
@@ -158,10 +161,10 @@ class SweptSpans:
         return least, which
 
     def find_reach_below_line(self, theta: float, height: float) -> tuple[float, int]:
-        """Return the least reach in mm to the half plane below a level
-        line, after turning the part, and the span it is to.
+        """Return (least reach in mm from the half plane below a level line to the spans of the turned part,
+        nearest span).
 
-        It is (inf, -1) where nothing is swept.
+        The reach is distance minus cylinder radius. Return (inf, -1) where nothing is swept.
 
         Parameters
         ----------
@@ -190,12 +193,11 @@ class SweptSpans:
         return np.asarray(find_row_ends(rows)[np.arange(len(rows)), is_clockwise.astype(np.int64)])
 
     def find_reach_to_box(self, corners: Array) -> tuple[float, int]:
-        """Return the least reach in mm to a box (filled, not its border
-        alone), and the program line it is to.
+        """Return (least reach in mm from a filled box to the spans, line of the program that comes nearest).
 
-        ``corners`` (4, 2) are counter-clockwise. The reach is -inf where the two overlap because a path
-        begins inside the box or a filled box holds one of its corners; it is inf, and the line -1, where
-        nothing is swept.
+        The reach is distance minus cylinder radius. ``corners`` (4, 2) of the box are counter-clockwise. The
+        reach is -inf where the two overlap because a path begins inside the box or a filled box holds one of
+        its corners; it is inf, and the line -1, where nothing is swept.
         """
         ahead = np.roll(corners, -1, axis=0)
         sides, off = ahead - corners, self.compute_start_points()[:, None] - corners
@@ -212,15 +214,13 @@ class SweptSpans:
 
 @lru_cache(maxsize=16)
 def find_swept_below(program: Program, height: float) -> SweptSpans:
-    """Return what a program sweeps at heights up to ``height`` in mm,
-    above which no element of a fixture reaches.
-    """
+    """Return the spans that a program sweeps at heights up to ``height`` in mm."""
     return SweptSpans.from_program(program, height)
 
 
 def drop_repeated_paths(spans: Array) -> IntArray:
-    """Return the indices, ascending, of the spans (N, 6) to keep: for
-    each path the one with the largest radius.
+    """Return the indices, ascending, of the spans (N, 6) to keep: for each path the span with the largest
+    radius.
 
     Paths run in either direction are the same. What a smaller cylinder sweeps on a path, the largest sweeps
     as well.
@@ -290,7 +290,7 @@ def find_span_path(row: Array) -> tuple[PathVertex, ...]:
 
 
 def bound_spans(rows: Array) -> Array:
-    """Return boxes (N, 4) around kernel rows (N, 10): x0, y0, x1, y1 in mm, slightly too wide.
+    """Return boxes (N, 4) around kernel rows (N, 10): columns x0, y0, x1, y1 in mm, slightly too wide.
 
     See ``kernels.base.feature`` for the layout of rows.
     """
@@ -308,11 +308,11 @@ def bound_spans(rows: Array) -> Array:
 
 
 def order_tree_leaves(spans: Array, rows: Array) -> tuple[IntArray, Array]:
-    """Return the indices of spans in the order of the tree's leaves,
-    -1 for places left over, and the boxes (N, 4) of all.
+    """Return (indices of spans in the order of the tree's leaves, -1 for places left over; boxes (N, 4)
+    around the spans).
 
-    ``spans`` (N, 6) are given with their kernel rows (N, 10). Indices fill L leaves of ``LEAF`` places, L a
-    power of 2. See ``kernels.base.feature`` for the layout of rows.
+    ``spans`` (N, 6) are given with their kernel rows (N, 10). Indices fill L leaves of ``LEAF`` places each,
+    where L is a power of 2. See ``kernels.base.feature`` for the layout of rows.
     """
     boxes = bound_spans(rows)
     leaves = 1
@@ -334,7 +334,8 @@ def make_tree_nodes(boxes: Array, radius: Array) -> Array:
     """Return the nodes (2 L, 5) of a tree with L leaves: x0, y0, x1,
     y1 and the largest radius of each; row 0 is unused.
 
-    ``boxes`` (N, 4) and ``radius`` (N,) are in the order of the leaves, each of which has ``LEAF`` of them.
+    ``boxes`` (N, 4) and ``radius`` (N,) are those of the spans in the order of the leaves, ``LEAF`` spans in
+    each leaf.
     """
     level = np.column_stack(
         [
@@ -358,11 +359,11 @@ def make_tree_nodes(boxes: Array, radius: Array) -> Array:
 
 
 def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[SweptSpans, float]]:
-    """Return pairs of swept spans and the distance in mm that peg
-    centres of a carrier keep besides the tools' radius.
+    """Return pairs (swept spans, distance in mm that peg centres of a carrier keep from the paths in addition
+    to the tools' radius).
 
-    The first pair is at the heights of the pegs. Where pegs have a shoulder below the part, what is swept
-    there follows, with the distance for the shoulder. Return an empty list without a program.
+    The first pair is for the heights of the pegs. Where pegs have a shoulder below the part, a second pair is
+    for the heights and the radius of the shoulder. Return an empty list without a program.
     """
     swept = find_swept_at_pegs(query, carrier)
     if swept is None or query.program is None:
@@ -375,7 +376,8 @@ def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[SweptSpa
 
 
 def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[SweptSpans, float] | None:
-    """Return what a query's program sweeps at the heights of a carrier's pegs, and the clearance in mm.
+    """Return (what a query's program sweeps at the heights of a carrier's pegs, clearance to keep from it in
+    mm).
 
     Return None without a program.
     """
@@ -386,7 +388,7 @@ def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[SweptSpans, floa
 
 
 def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carrier) -> SweptSpans:
-    """Return what a program sweeps at the heights of a carrier's elements.
+    """Return the spans that a program sweeps at the heights of a carrier's elements.
 
     Parameters
     ----------
@@ -398,5 +400,5 @@ def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carr
 
 @lru_cache(maxsize=16)
 def find_swept_between(program: Program, low: float, high: float) -> SweptSpans:
-    """Return what a program sweeps between two heights in mm."""
+    """Return the spans that a program sweeps between the heights ``low`` and ``high`` in mm."""
     return SweptSpans.within(program, low, high)

@@ -1,16 +1,16 @@
-"""The places of pegs along contact features, less those at which a tool of a program comes too near.
+"""The places of pegs along contact features, without those at which a tool of a program comes too near.
 
 Let R be the radius of a tool's cylinder. A peg of radius r on a feature is clear of a swept piece where its
 centre keeps d = R + clearance + r from the piece's path. A shoulder below the part keeps its own radius from
 what is swept there. So each piece covers an open part of a feature, and what is left is closed: what is
 exactly d away may stay.
 
-Nothing is lost and nothing is let in. Distance from a segment or an arc is continuous along a feature. It is
-d only where the feature meets the parallels of the segment or the circles about the arc's centre, or those of
-radius d about the path's ends. Cut there, a feature has parts on which the distance less d has one sign, that
-of the part's middle. A covered part is the union of those of all pieces. Distance changes by no more than the
-way along a feature. So a part shorter than ``LEAST_PART`` between two covered ones is marginal, within 1e-6
-of the clearance.
+The parts found are exact. Distance from a segment or an arc is continuous along a feature. It is d only where
+the feature meets the parallels of the segment or the circles about the arc's centre, or those of radius d
+about the path's ends. Cut there, a feature has parts on which the distance less d has one sign, that of the
+part's middle. A covered part is the union of those of all pieces. Distance changes by no more than the way
+along a feature. So a part shorter than ``LEAST_PART`` between two covered ones is marginal, within 1e-6 of
+the clearance.
 
 What cutting moves take off the faces needs no rule of its own. Let a cutter's axis come within R of a point q
 of a face at a height of the pegs. A peg that touches the face within the clearance of q has its centre within
@@ -48,9 +48,8 @@ def trim_to_clear_parts(segment: Segment, swept: SweptSpans, beyond: float) -> l
 
 
 def subtract_covered_ranges(segment: Segment, covered: Array) -> list[Segment]:
-    """Return the parts of a segment outside covered ranges (K, 2) of
-    its parameter; parts under ``LEAST_PART`` are dropped.
-    """
+    """Return the parts of a segment outside covered ranges (K, 2) of its parameter, except those under
+    ``LEAST_PART`` mm."""
     half = segment.half_extent
     if not len(covered):
         return [segment]
@@ -84,12 +83,12 @@ def find_line_most_in_the_way(segments: Sequence[Segment], swept: SweptSpans, be
 
 
 def find_covered_parts(segment: Segment, swept: SweptSpans, beyond: float) -> tuple[Array, IntArray]:
-    """Return the ranges of a segment's parameter within the radius
-    plus ``beyond`` of a swept path, or in a filled box.
+    """Return the ranges of a segment's parameter that swept pieces cover, and the program line of each range.
 
     Parameters
     ----------
-    beyond : distance in mm that is kept besides a piece's radius.
+    beyond : a piece covers places nearer to its path than the piece's radius plus this, in mm; a filled box
+        covers its inside.
 
     Returns
     -------
@@ -118,8 +117,8 @@ def find_covered_parts(segment: Segment, swept: SweptSpans, beyond: float) -> tu
 def list_covered_parts_between_cuts(
     own: Array, cuts: Array, is_covered: Callable[[Array, Array], NDArray[np.bool_]]
 ) -> tuple[Array, IntArray]:
-    """Return the ranges between neighbouring cuts of a segment whose
-    middles are covered, and which piece covers each.
+    """Return the ranges between neighbouring cuts of a segment whose middles are covered, and the piece that
+    covers each.
 
     Parameters
     ----------
@@ -175,8 +174,8 @@ def intersect_with_offset_circles(own: Array, rows: Array, keep: Array) -> Array
     """Return parameters (P, 8) at which a segment meets circles of
     kernel rows, NaN for those that it does not meet.
 
-    They are the circles of radii ``keep`` (P,) about both ends, and for arcs the two about the centre that
-    are ``keep`` away from the arc.
+    For each row there are up to four circles: two of radius ``keep`` (P,) about both ends and, for an arc,
+    the two about its centre that are ``keep`` mm outside and inside the arc.
     """
     one, other = compute_ends(rows)
     around, is_arc = rows[:, [X, Y]], rows[:, IS_ARC] != 0.0
@@ -206,7 +205,7 @@ def find_crossings_with_parallels(own: Array, rows: Array, keep: Array) -> Array
     """Return parameters (P, 4) at which a segment meets both
     parallels, ``keep`` (P,) mm away, of straight kernel rows.
 
-    NaN where it does not meet them, and for arcs.
+    NaN where the segment does not meet them, and where a row is an arc.
     """
     normal = np.stack([-rows[:, AXIS_Y], rows[:, AXIS_X]], axis=1)
     level = (normal * rows[:, [X, Y]]).sum(axis=1)

@@ -52,11 +52,11 @@ def draw_dimension_line(
     outside: float = OUTSIDE_ARROW,
     head: float = 11.0,
 ) -> Point:
-    """Draw a dimension line between two page points; return its unit
-    direction on the page, from start to end.
+    """Draw a dimension line between two page points; return its unit direction on the page, from start to
+    end.
 
-    All sizes are in page units. A line shorter than ``tight`` has its arrows outside, which reach ``outside``
-    past the ends. Heads are ``head`` long.
+    All sizes are in page units. On a line shorter than ``tight`` the arrows stand outside and reach
+    ``outside`` beyond its ends. Arrow heads are ``head`` long.
     """
     length = dist(start, end)
     ux, uy = ((end[0] - start[0]) / length, (end[1] - start[1]) / length) if length > 0 else (1.0, 0.0)
@@ -83,11 +83,11 @@ def draw_dimension(
     bold: bool = False,
     past: Literal["upper", "lower"] | None = None,
 ) -> Box:
-    """Draw a dimension line between two page points, its text above it or to
-    its left; return the box of the text.
+    """Draw a dimension line between two page points, with its text above it or to its left; return the text's
+    box.
 
-    The text reads from below, or from the right beside an upright line. ``past`` is the end of an upright
-    line beyond which a text longer than the line is written; None keeps it beside the line.
+    The text of an upright line is turned so that it is read from the right. Where it is longer than the line,
+    ``past`` names the end of the line beyond which it is written; None keeps it beside the line.
     """
     ux, uy = draw_dimension_line(scene, start, end)
     width = measure_text(text, size, bold)
@@ -137,15 +137,16 @@ def draw_scale_bar(
     size: float = 12.0,
     more: str = "",
 ) -> float:
-    """Draw a bar of a round length, its lower left corner at a page point; return
-    its width with the text, in page units.
+    """Draw a bar of a round length, its lower left corner at a page point; return the width of bar and text
+    in page units.
 
     Parameters
     ----------
-    scale : page units for a mm.
+    scale : page units per mm.
     lengths : the unit in which the length is round.
-    longest : page units the bar may take.
-    more : words behind the length.
+    longest : largest length of the bar in page units.
+    size : font size in page units.
+    more : words written after the length.
     """
     scale *= lengths.unit.millimetres
     length = round_length(longest / scale)
@@ -176,11 +177,12 @@ MOST_CANDIDATES = 240
 
 @frozen(eq=False)
 class Label:
-    """A label of a size in page units and its C candidates.
+    """A label with its C candidate places.
 
     Parameters
     ----------
-    centers, anchors : (C, 2) middle of the label and the point its leader runs to, page units.
+    width, height : size in page units.
+    centers, anchors : (C, 2) middle of the label, and the point that its leader runs to, in page units.
     costs : (C,) what each candidate costs by itself.
     """
 
@@ -203,8 +205,9 @@ class Label:
         return np.concatenate([boxes[:, :2].min(axis=0) - GAP, boxes[:, 2:].max(axis=0) + GAP])
 
     def keep_cheapest(self, costs: Array) -> Label:
-        """Return the label with these costs (C,), reduced to its ``MOST_CANDIDATES``
-        cheapest candidates, cheapest first.
+        """Return the label with only its cheapest candidates, ``MOST_CANDIDATES`` at most, cheapest first.
+
+        ``costs`` (C,) take the place of the costs of its C candidates.
         """
         order = np.argsort(costs, kind="stable")[:MOST_CANDIDATES]
         return Label(self.width, self.height, self.centers[order], self.anchors[order], costs[order])
@@ -218,8 +221,8 @@ class PlacedLabel:
     anchor: Point
 
     def compute_leader(self, radius: float = 0.0) -> list[Point]:
-        """Return the two ends of the leader: on a circle of ``radius`` page units
-        about the anchor, and on the box's rim.
+        """Return the two ends of the leader: on a circle of ``radius`` page units about the anchor, and on
+        the rim of the box.
         """
         (x, y), (cx, cy) = self.anchor, self.box.center
         dx, dy = x - cx, y - cy
@@ -238,7 +241,7 @@ def make_label_around(
     extra: float = 0.0,
     turn_cost: float = 6.0,
 ) -> Label:
-    """Return a label with one candidate for each distance and turn around an anchor.
+    """Return a label with one candidate for each combination of a distance and a turn around an anchor.
 
     Parameters
     ----------
@@ -246,8 +249,8 @@ def make_label_around(
     direction : preferred direction from the anchor, in radians on the page (y down).
     size : width and height of the label, page units.
     distances : from the anchor to the label's rim, page units; each unit costs 0.3.
-    turns : away from the direction, in radians; each radian costs ``turn_cost``.
-    extra : what every candidate costs besides.
+    turns : angles away from ``direction``, in radians; each radian costs ``turn_cost``.
+    extra : cost added to every candidate.
     """
     width, height = size
     distance, turn = (grid.ravel() for grid in np.meshgrid(distances, turns, indexing="ij"))
@@ -260,7 +263,7 @@ def make_label_around(
 
 
 def join_labels(labels: Sequence[Label]) -> Label:
-    """Return one label of the first label's size with the candidates of all."""
+    """Return one label, of the size of the first of ``labels``, with the candidates of all of them."""
     return Label(
         labels[0].width,
         labels[0].height,
@@ -271,11 +274,11 @@ def join_labels(labels: Sequence[Label]) -> Label:
 
 
 class LabelPlacer:
-    """Knows what is drawn and places labels where they cost least.
+    """Places labels where they hide least of what is drawn.
 
     Parameters
     ----------
-    bounds : the labels stay inside this page box.
+    bounds : page box that labels stay inside.
     """
 
     def __init__(self, bounds: Box) -> None:
@@ -285,30 +288,30 @@ class LabelPlacer:
         self.wall_starts, self.wall_ends = np.zeros((0, 2)), np.zeros((0, 2))
 
     def avoid_ink(self, points: ArrayLike, price: float) -> None:
-        """Add points (N, 2) in page units; a label pays ``price`` for each of them that it covers."""
+        """Add points (N, 2) in page units, each of which costs a label that covers it ``price``."""
         array = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         self.points = np.vstack([self.points, array])
         self.prices = np.concatenate([self.prices, np.full(len(array), price)])
 
     def avoid_box(self, box: Box) -> None:
-        """Add a page box that labels pay much for covering or crossing with their leaders."""
+        """Add a page box that is costly for labels to cover, and for their leaders to cross."""
         self.boxes = np.vstack([self.boxes, [box.x0, box.y0, box.x1, box.y1]])
 
     def avoid_line(self, start: Point, end: Point, price: float, step: float = 3.0) -> None:
-        """Add a line whose points, ``step`` page units apart, each cost ``price`` when a label covers
-        them.
+        """Add points on a line, ``step`` page units apart, each of which costs a label that covers it
+        ``price``.
         """
         count = max(2, int(np.hypot(end[0] - start[0], end[1] - start[1]) / step))
         shares = np.linspace(0.0, 1.0, count)[:, None]
         self.avoid_ink((1 - shares) * np.array(start) + shares * np.array(end), price)
 
     def avoid_walls(self, points: Array) -> None:
-        """Add an open polyline (N, 2), page units, that costs a leader ``WALL`` for each crossing."""
+        """Add an open polyline (N, 2), page units; each crossing of it costs a leader ``WALL``."""
         self.wall_starts = np.vstack([self.wall_starts, points[:-1]])
         self.wall_ends = np.vstack([self.wall_ends, points[1:]])
 
     def compute_fixed_costs(self, label: Label) -> Array:
-        """Return the costs (C,) of a label's candidates before any other label is placed."""
+        """Return the costs (C,) of a label's candidates when no other label is placed."""
         boxes = label.boxes
         low, high = boxes[:, :2], boxes[:, 2:]
         bounds = self.bounds
@@ -328,10 +331,10 @@ class LabelPlacer:
         return costs
 
     def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[PlacedLabel]:
-        """Return a place for each label, in their order, chosen together.
+        """Return a place for each label, in the order of ``labels``.
 
-        Each label takes its cheapest candidate one after another. Then each is chosen anew among the others
-        until no label moves, or ``sweeps`` times.
+        First each label in turn takes its cheapest candidate beside the labels placed so far. Then each is
+        chosen anew beside all others, at most ``sweeps`` times, until no label moves.
         """
         kept = [label.keep_cheapest(self.compute_fixed_costs(label)) for label in labels]
         reaches = np.array([label.reach for label in kept]).reshape(-1, 4)
@@ -353,8 +356,9 @@ class LabelPlacer:
 
 
 def compute_mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
-    """Return the costs (C,) of a label's candidates beside N placed labels with
-    boxes (N, 4) and leader anchors (N, 2).
+    """Return the costs (C,) that N placed labels add to each candidate of a label.
+
+    ``boxes`` (N, 4) and ``anchors`` (N, 2) are those of the placed labels.
     """
     middles = (boxes[:, :2] + boxes[:, 2:]) / 2
     costs: Array = COLLISION * compute_overlaps(label.boxes, boxes).sum(axis=1)
@@ -365,15 +369,16 @@ def compute_mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
 
 
 def find_boxes_met(box: Array, others: Array) -> NDArray[np.bool_]:
-    """Return (N,) whether each of the boxes (N, 4) touches or overlaps a box (4,)."""
+    """Return (N,) booleans: whether each of the boxes ``others`` (N, 4) touches or overlaps ``box`` (4,)."""
     return np.asarray((others[:, :2] <= box[2:]).all(axis=1) & (others[:, 2:] >= box[:2]).all(axis=1))
 
 
 def compute_overlaps(boxes: Array, others: Array) -> Array:
-    """Return (C, N) 0 where boxes (C, 4) are at least ``GAP`` clear of others
-    (N, 4), else 1 plus the share covered.
+    """Return (C, N): by how much each of C boxes is covered by each of N others, 0 where they are ``GAP``
+    clear.
 
-    The share is of the first box's area, both boxes taken ``GAP`` apart.
+    Where they are not, it is 1 plus the covered share of the first box's area, measured as if the boxes were
+    ``GAP`` closer. ``boxes`` is (C, 4), ``others`` (N, 4).
     """
     low = np.maximum(boxes[:, None, :2], others[None, :, :2])
     high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
@@ -384,10 +389,15 @@ def compute_overlaps(boxes: Array, others: Array) -> Array:
 
 
 def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: Array) -> NDArray[np.bool_]:
-    """Return (C, N) whether straight segments from starts to ends (C, 2) properly cross others (N, 2)."""
+    """Return (C, N) booleans: whether each of C straight segments properly crosses each of N others.
+
+    Segments run from ``starts`` to ``ends`` (C, 2), and from ``other_starts`` to ``other_ends`` (N, 2).
+    """
 
     def side(p: Array, q: Array, r: Array) -> Array:
-        """Return twice the signed area of the triangles p, q, r."""
+        """Return twice the signed areas of the triangles p, q, r: the sign says on which side of the line p q
+        the point r is.
+        """
         cross: Array = (q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0]
         return cross
 
@@ -396,7 +406,9 @@ def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: 
 
 
 def find_entries_into_boxes(starts: Array, ends: Array, boxes: Array) -> NDArray[np.bool_]:
-    """Return (C, N) whether straight segments (C) enter boxes (N, 4), clipped after Liang and Barsky,
+    """Return (C, N) booleans: whether each of C straight segments enters each of N boxes.
+
+    Segments run from ``starts`` to ``ends`` (C, 2); ``boxes`` is (N, 4). Clipped after Liang and Barsky,
     1984.
     """
     step = ends - starts

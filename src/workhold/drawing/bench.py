@@ -65,7 +65,10 @@ LONGEST_SWEEP = 2 * pi / 3
 
 
 def make_segment_path(segment: Segment, view: View, moved: bool = True) -> str:
-    """Return SVG path data of a segment; without the leading move to its start if ``moved`` is False."""
+    """Return SVG path data of a segment.
+
+    With ``moved`` False the move to its start is left out, to continue a path that ends there.
+    """
     start = "M{} {}".format(*map(format_number, view(segment.start))) if moved else ""
     if isinstance(segment, Line):
         return start + "L{} {}".format(*map(format_number, view(segment.end)))
@@ -119,21 +122,25 @@ def find_face(workpiece: Workpiece, number: int) -> Segment:
 
 
 def find_contact(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
-    """Return the point where a contact touches a face, and the face's outward unit normal there.
+    """Return (point where a contact touches a face, outward unit normal of the face there).
 
-    ``center`` is the contact's (a peg's centre, a wall contact's end), in the frame of the face, in mm.
+    ``center`` is a peg's centre, or an end of the contact with a wall, in mm in the frame of the face.
     """
     return CONTACTS[kind](center, face)
 
 
 def find_wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
-    """Return the end of the contact with a wall below the part, and the normal (0, -1)."""
+    """Return (point, normal) of an end of the contact with a wall below the part.
+
+    The point is ``center`` itself, the normal (0, -1).
+    """
     return center, (0.0, -1.0)
 
 
 def find_pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
-    """Return the point of a face nearest to a pin's centre, cut off at the face's
-    ends, and the outward unit normal there.
+    """Return (point, outward unit normal there), for the point of a face nearest to a pin's centre.
+
+    The point is on the face, at one of its ends if need be.
     """
     half = face.half_extent
     parameter = max(-half, min(half, face.find_parameter(center)))
@@ -165,11 +172,11 @@ class BenchDrawing:
     ----------
     loops : the placed outline and holes of the part.
     faces : the placed face that each peg touches.
-    contacts : contact point and outward normal of each peg.
+    contacts : (contact point, outward normal) of each peg.
     shown : the visible parts of the carriers.
     own : the placed outlines that carriers at heights of their own touch.
+    is_exact : whether pegs are drawn at their true radius; otherwise very small ones are drawn larger.
     gripped : the placed faces that flat jaws touch, by their numbers.
-    is_exact : whether pegs are drawn at their radius however small it is; otherwise small ones are drawn larger.
     """
 
     fixture: Fixture
@@ -193,12 +200,15 @@ class BenchDrawing:
 
     @property
     def touching(self) -> list[int]:
-        """The indices of the pegs that touch one face each: all but corners on a wall."""
+        """The indices of the pegs that touch one face each; ends on a wall that are corners of the part are
+        left out.
+        """
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
     def find_touched_piece(self, index: int) -> Segment:
-        """Return the face that contact ``index`` is on; for a contact with a wall, the
-        piece between the wall contact's ends.
+        """Return the face that contact ``index`` touches.
+
+        On a wall it is only the piece of the face between the two ends of the contact with the wall.
         """
         face, walls = self.faces[index], self.on_walls
         if index not in walls or isinstance(face, Arc):
@@ -250,10 +260,10 @@ def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Benc
 
 
 def compute_force_arrow(bench: BenchDrawing, index: int, view: View, longest: float) -> tuple[Point, Point]:
-    """Return tail (the contact) and tip of a contact force's arrow, as page points.
+    """Return (tail, tip) of a contact force's arrow, as page points; the tail is the contact.
 
-    The largest force is ``longest`` page units long, and none is shorter than 0.36 of that. A negative
-    (pulling) force points out of the part.
+    The largest force is ``longest`` page units long, and none is shorter than 0.36 of that. The arrow of a
+    negative (pulling) force points out of the part.
     """
     contact, (nx, ny) = bench.contacts[index]
     forces = [abs(peg.force) for peg in bench.fixture.pegs]
@@ -277,7 +287,7 @@ def draw_bench(
     ----------
     weight : factor on line widths.
     longest : length of the longest force arrow in page units.
-    axes : draw the axes that the travel is measured between as well.
+    axes : whether to draw the axes between which the travel is measured.
     """
     plates = scene.group("jaws")
     for carrier in bench.shown.carriers:
@@ -336,7 +346,7 @@ def draw_part(scene: Scene, bench: BenchDrawing, view: View, weight: float) -> N
 
 
 def draw_grip(scene: Scene, hold: JawHold, view: View, weight: float) -> None:
-    """Draw what flat jaws touch: stretches along the jaws, and single points."""
+    """Draw where flat jaws touch the part: stretches along the jaws, and single points."""
     for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
         for x0, x1, _, _ in patch.rectangles:
             if x1 > x0:
@@ -388,8 +398,8 @@ def draw_inset(
 ) -> None:
     """Draw the part as it was drawn (unturned), with its touched faces and contacts, into a page box.
 
-    ``zero`` is part zero in the part's frame in mm: it is marked if it lies within the part's extent, and
-    holes are numbered. Draws nothing if the box is lower than ``LOWEST``.
+    ``zero`` is part zero in the part's frame in mm. With a ``zero``, it is marked if it lies within the
+    part's extent, and the part's holes are numbered. Draws nothing if the box is lower than ``LOWEST``.
     """
     if box.height < LOWEST:
         return

@@ -1,8 +1,8 @@
-"""A part coloured by how far it is bent, and drawn bent many times as far: seen at a slant, so that the most is seen.
+"""A part coloured by how far it is bent, and drawn with that movement exaggerated, in a slanting view.
 
-The surface of the mesh is drawn from back to front, each triangle in the colour of its middle. What presses on the part
-dents it there, which no mesh tells; such places are grey. The largest movement that counts is marked: the part is seen
-from the first side that shows it, from above if there is one.
+The surface of the mesh is drawn from back to front, each triangle in the colour of its middle. Contacts dent
+the part locally, and the mesh does not resolve that; such places are grey. The place of the largest movement
+is marked, and the part is seen from the first of several directions that shows it.
 """
 
 from __future__ import annotations
@@ -48,11 +48,10 @@ PICTURE = (180.0, 130.0)
 
 
 def choose_exaggeration(bending: Bending) -> float:
-    """Return the factor by which movements are exaggerated in the drawing: 1, 2
-    or 5 times a power of ten, at least 1.
+    """Return the factor by which movements are exaggerated: 1, or a larger 1, 2 or 5 times a power of ten.
 
-    The largest movement is then at most ``LARGEST_SHOWN`` (a twentieth) of the part's size, unless the factor
-    is 1.
+    Exaggerated, the largest movement is at most ``LARGEST_SHOWN`` (a twentieth) of the part's size, unless
+    the factor is 1.
     """
     size = float(np.ptp(bending.surface.nodes, axis=0).max())
     most = bending.clamp_distortion.value
@@ -73,7 +72,7 @@ def compute_node_colours(bending: Bending) -> Array:
 
 
 def interpolate_colours(share: Array) -> Array:
-    """Return the colours (N, 3), 0 to 1, for shares (N,) of the largest movement."""
+    """Return the colours (N, 3), from 0 to 1, for movements given as shares (N,) of the largest movement."""
     places = np.linspace(0.0, 1.0, len(STOPS))
     return np.stack([np.interp(share, places, STOPS[:, k]) for k in range(3)], axis=1)
 
@@ -85,13 +84,13 @@ def to_hex(colour: Array) -> str:
 
 @frozen(eq=False)
 class BentView:
-    """A part as it is drawn, bent, from one side.
+    """A bent part in one view.
 
     Parameters
     ----------
-    frame : (3, 3) directions of right, up and towards the eye.
-    flat : (N, 3) the nodes in that frame, in mm.
-    is_seen : (T,) which triangles face the eye.
+    frame : (3, 3) rows: the unit vectors to the right, up, and towards the eye.
+    flat : (N, 3) coordinates in that frame of the N nodes, moved by the exaggerated movement, in mm.
+    is_seen : (T,) whether each of the T triangles faces the eye.
     is_from_below : whether the eye is below the part.
     """
 
@@ -102,7 +101,11 @@ class BentView:
 
     @classmethod
     def of(cls, bending: Bending, times: float, turn: float, rise: float) -> BentView:
-        """A part bent so many times as far, from an angle about the upright and one above the level, in degrees."""
+        """Return the view of a part bent ``times`` as far as it is.
+
+        ``turn`` is the eye's angle about the upright axis and ``rise`` its angle above the horizontal, in
+        degrees.
+        """
         turn, rise = radians(turn), radians(rise)
         right = np.array([cos(turn), sin(turn), 0.0])
         back = np.array([-sin(turn), cos(turn), 0.0])
@@ -114,7 +117,9 @@ class BentView:
         return cls(frame, flat, np.cross(b - a, c - a)[:, 2] > 0.0, rise < 0.0)
 
     def shows(self, node: int, triangles: NDArray[np.int64]) -> bool:
-        """Whether a node is on a triangle that faces the eye, and no other one is in front of it."""
+        """Return whether a node is visible: on a triangle that faces the eye, with no other triangle in front
+        of it.
+        """
         own = (triangles == node).any(axis=1)
         if not (own & self.is_seen).any():
             return False
@@ -131,7 +136,9 @@ class BentView:
 
 
 def choose_view(bending: Bending, times: float, node: int) -> tuple[BentView, bool]:
-    """The first view that shows a node, and whether there is one; else the first."""
+    """Return (view, is shown): the first view that shows a node, or where none does, the first view and
+    False.
+    """
     views = [BentView.of(bending, times, *angles) for angles in VIEWS]
     for view in views:
         if view.shows(node, bending.surface.triangles):
@@ -140,7 +147,7 @@ def choose_view(bending: Bending, times: float, node: int) -> tuple[BentView, bo
 
 
 def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit) -> None:
-    """Draw the part, bent (exaggerated) and coloured, with its colour scale, into a page box."""
+    """Draw the part, bent with an exaggeration and coloured, and its colour scale, into a page box."""
     surface, times = bending.surface, choose_exaggeration(bending)
     mark = int(np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin())
     view, is_shown = choose_view(bending, times, mark)
@@ -171,7 +178,7 @@ def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit
 
 
 def draw_axes(scene: Scene, at: tuple[float, float], view: BentView) -> None:
-    """The axes of the part, as arrows from a point."""
+    """Draw the axes of the part as arrows from a page point."""
     group = scene.group("axes")
     for name, along in zip("XYZ", view.frame.T, strict=True):
         tip = (at[0] + AXIS * float(along[0]), at[1] - AXIS * float(along[1]))

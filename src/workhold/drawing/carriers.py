@@ -41,8 +41,10 @@ CLOSEST_HOLES = 5.0
 
 
 def limit_holes_drawn(view: View, shown: ShownSetUp) -> float:
-    """Return the number of holes above which only those near the pegs are drawn: inf,
-    or 0 if holes are too close on the page.
+    """Return the number of holes up to which all holes of a carrier are drawn; above it only those near the
+    pegs are.
+
+    It is inf, or 0 where the holes would be too close on the page.
     """
     return 0 if shown.pitch * view.scale < CLOSEST_HOLES else inf
 
@@ -109,8 +111,10 @@ def draw_jaw(scene: Scene, box: Box, face: str, weight: float = 1.0) -> None:
 
 
 def make_zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
-    """Return the points of a zigzag break line between two page points with the same x or y, both
-    included.
+    """Return the points of a zigzag break line from ``start`` to ``end``, which have the same x or the same
+    y.
+
+    ``tooth`` is the size of its teeth in page units.
     """
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = abs(dx) + abs(dy)
@@ -124,7 +128,10 @@ def make_zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
 
 
 def draw_holes(scene: Scene, shown: ShownCarrier, view: View, most: float) -> None:
-    """Draw the visible holes of a carrier; if there are more than ``most``, only those near the pegs."""
+    """Draw the visible holes of a carrier.
+
+    If there are more than ``most``, only those near the pegs are drawn; see :func:`limit_holes_drawn`.
+    """
     radius = max(view.scale * shown.hole_radius, 0.4)
     for hole in shown.list_holes(most):
         scene.add_circle(view(hole.center), radius, "#ffffff", GREY, min(0.9, 0.3 * radius + 0.1))
@@ -140,7 +147,9 @@ def choose_labelled(
 
     Parameters
     ----------
-    names : index and page coordinate of every column or row.
+    names : (index, page coordinate) of every column or row.
+    pegs : indices of the columns or rows with pegs.
+    spacing : smallest distance between labels in page units.
     """
     chosen: list[tuple[int, float, bool]] = []
     for index, at in names:
@@ -170,9 +179,10 @@ THINNEST = 7.0
 def draw_block_arrow(
     scene: Scene, middle: Point, direction: Point, size: float = 1.0, weight: float = 1.0
 ) -> None:
-    """Draw an outlined arrow centred at a page point; ``direction`` is a vector of the plan, whose y runs up.
+    """Draw an outlined arrow centred at a page point.
 
-    ``size`` is a factor on its length and width, ``weight`` on its line.
+    ``direction`` is a vector of the plan, whose y runs up. ``size`` is a factor on its length and width,
+    ``weight`` on its line width.
     """
     turn = atan2(direction[1], -direction[0])
     corners = [rotate_vectors(size * x, size * y, turn) for x, y in ARROW]
@@ -182,8 +192,8 @@ def draw_block_arrow(
 
 
 def compute_clamp_arrow(clamp: ShownClamp, view: View, weight: float = 1.0) -> tuple[Point, float]:
-    """Return the page point at the middle of the arrow behind a clamp, and
-    its size as a factor on ``LENGTH``.
+    """Return (page point of its middle, size) of the arrow behind a clamp; the size is a factor on
+    ``LENGTH``.
     """
     start = max(clamp.carrier.peg_radius * view.scale, THINNEST * weight / 2) + OFF * weight
     length = min(LENGTH * weight, max(SHARE * clamp.pitch * view.scale - start, 0.3 * LENGTH * weight))
@@ -200,8 +210,8 @@ def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
 
 
 def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View, weight: float) -> None:
-    """Draw a clamp: its body with the bolt, or if it is in no known hole, the
-    dashed line of holes on which its tip lies.
+    """Draw a clamp: in a known hole its body and bolt, otherwise the dashed line of holes along which its tip
+    moves.
     """
     group = scene.group("clamp")
     tip = view((clamp.tip.x, clamp.tip.y))

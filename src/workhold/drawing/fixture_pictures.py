@@ -58,8 +58,9 @@ HIGHEST_INSET = 320.0
 
 
 def place_drawing_on_page(page: tuple[float, float], extent: Box) -> tuple[Box, View]:
-    """Return the page box of the drawing beside the panel, and the largest view of an
-    extent (mm) that leaves room for words.
+    """Return (page box of the drawing, view): the box is beside the panel of words.
+
+    The view is the largest in which an extent (mm) leaves room in the box for lettering.
     """
     box = Box(EDGE, EDGE, page[0] - EDGE - PANEL - GUTTER, page[1] - EDGE)
     inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
@@ -83,7 +84,7 @@ def draw_fixture(
     Parameters
     ----------
     title : what to call the fixture, such as ``Fixture 3 of 70``.
-    path : of a program's tools, to draw as well.
+    path : the paths of a program's tools, to draw as well.
 
     Returns
     -------
@@ -115,8 +116,9 @@ def draw_panel(
     lengths: LengthUnit,
     path: PlannedPath | None,
 ) -> None:
-    """Write the panel of words, with the part as drawn at its foot; ``view``
-    is that of the drawing beside it.
+    """Write the panel of words, and draw the part as it was drawn at the panel's lower end.
+
+    ``view`` is the view of the drawing beside the panel.
     """
     group, fixture = scene.group("panel"), bench.fixture
     group.add_line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
@@ -172,14 +174,14 @@ def draw_thumbnails(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Return up to twelve fixtures on an A4 sheet to one scale, as SVG text.
+    """Return pictures of up to twelve fixtures, all to one scale, on an A4 sheet, as SVG text.
 
-    Each has its title (such as its rank), type, a figure and its openings.
+    Each has its title (such as its rank), its type, a figure of quality and its openings below it.
 
     Raises
     ------
     InputError
-        For no fixture, more than twelve, or another number of titles.
+        For no fixture, more than twelve, or another number of titles than of fixtures.
     """
     count = len(fixtures)
     if not 1 <= count <= MOST_THUMBNAILS:
@@ -200,8 +202,8 @@ def draw_thumbnails(
 
 
 def draw_heading(scene: Scene, name: str, words: str) -> None:
-    """Write the name of what a page of small pictures shows at its upper left, and words at its upper
-    right.
+    """Write a heading on a page of small pictures: ``name`` at the upper left,
+    ``words`` at the upper right.
     """
     width = LANDSCAPE[0]
     name = shorten_text(name, 24, width - 2 * EDGE - measure_text(words, 14) - 20, bold=True)
@@ -210,8 +212,8 @@ def draw_heading(scene: Scene, name: str, words: str) -> None:
 
 
 def arrange_cells(extents: Sequence[Box]) -> list[tuple[Box, View]]:
-    """Return a page cell for each extent (mm), and a view of the extent in it
-    above its caption, all to one scale.
+    """Return (page cell, view) for each extent (mm); all views have one scale and leave room for a caption
+    below.
     """
     cells = make_grid(len(extents))
     rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
@@ -221,14 +223,14 @@ def arrange_cells(extents: Sequence[Box]) -> list[tuple[Box, View]]:
 
 
 def draw_best_thumbnails(result: Result, shown: ShownEntries, unit: Unit = MILLIMETRE) -> str:
-    """Return the thumbnails of the first twelve shown entries of a result as SVG text.
+    """Return the thumbnails of the first twelve shown entries of a result, as SVG text.
 
-    Their titles are the ranks and the numbers of near duplicates.
+    The title of each is its rank, with the number of its near duplicates.
 
     Raises
     ------
     InputError
-        For no entry.
+        For a result without entries.
     """
     indices, like = (numbers[:MOST_THUMBNAILS].tolist() for numbers in (shown.index, shown.like))
     titles = [
@@ -256,8 +258,10 @@ def make_grid(count: int) -> list[Box]:
 
 
 def caption_hold(fixture: Fixture, lengths: LengthUnit) -> str:
-    """Return the caption of a part held by friction: the clamping force
-    needed, "unfit", "a seat", or the grip.
+    """Return the caption of a part held by friction.
+
+    It is the clamping force needed, if known. Otherwise it is "unfit" or "a seat" under straps, and the grip
+    between flat jaws.
     """
     hold = fixture.hold
     assert hold is not None

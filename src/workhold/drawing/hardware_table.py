@@ -1,4 +1,4 @@
-"""What to take from the drawer for a set-up, counted, and the block of a setup sheet that lists it."""
+"""The hardware that a set-up needs, counted, and the block of a setup sheet that lists it."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ SHORTER = 2.0
 
 
 def list_sheet_hardware(sheet: SetupSheet) -> list[HardwareItem]:
-    """Return the hardware of a sheet's set-up; lengths of pegs are None where
-    only assumed heights would give them.
+    """Return the hardware of a sheet's set-up.
+
+    The length of pegs is None where it would follow from assumed heights only.
     """
     chosen, heights, details = sheet.details.supports, sheet.heights, sheet.details
     length = details.peg_length if heights is None else heights.peg_length
@@ -45,7 +46,7 @@ def list_sheet_hardware(sheet: SetupSheet) -> list[HardwareItem]:
 
 
 def write_hardware(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the table of hardware to take from the drawer, and notes on how peg lengths add up."""
+    """Write the table of the hardware that the set-up needs, and notes on how the lengths of pegs add up."""
     lengths, heights, details, items = sheet.lengths, sheet.heights, sheet.details, list_sheet_hardware(sheet)
     write_heading(column, "To take from the drawer")
     rows = [
@@ -91,8 +92,9 @@ def write_hardware(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def describe_length(item: HardwareItem, sheet: SetupSheet) -> str:
-    """Return the length of an item in the sheet's unit; for pegs of unknown
-    length the usual dowel's name, else "–".
+    """Return the length of an item in the sheet's unit.
+
+    Where the length of pegs is unknown, the result is the name of the usual dowel; where there is none, "–".
     """
     if item.length is not None:
         return sheet.lengths.format_number(item.length)
@@ -102,11 +104,11 @@ def describe_length(item: HardwareItem, sheet: SetupSheet) -> str:
 
 
 def find_highest_press(sheet: SetupSheet, heights: SheetHeights) -> float | None:
-    """Return the height in mm above which no peg presses, where pegs as high as
-    the part could be shorter; else None.
+    """Return the greatest height in mm at which any peg presses, if pegs that end there would be enough.
 
-    Returns None also where it would shorten them by less than ``SHORTER``. Shorter pegs press on all that
-    they did, and stand in the way of less.
+    Shorter pegs press at the same places, and are less in the way. Returns None where they would be shorter
+    by less than ``SHORTER`` or not at all, for a part that is no solid, and for pegs that end below the
+    part's top.
     """
     solid, carriers = sheet.workpiece.solid, {one.name: one for one in sheet.toolkit.carriers}
     if solid is None or heights.peg_top < solid.height or any(one.heights for one in carriers.values()):
@@ -121,15 +123,15 @@ def find_highest_press(sheet: SetupSheet, heights: SheetHeights) -> float | None
 
 @frozen
 class HardwareItem:
-    """Things of one kind and size.
+    """Hardware of one kind and size.
 
     Parameters
     ----------
     count : how many.
-    name : what they are.
+    name : what they are, such as "locators".
     diameter : in mm; None if not round.
-    length : of pegs, or height of supports, in mm; None where it is unknown or there is none.
-    note : what else to know, in a few words.
+    length : length of pegs, or height of supports, in mm; None where it is unknown or there is none.
+    note : a remark of a few words.
     of_pegs : whether they stand in holes of a plate, as dowels do.
     """
 
@@ -152,9 +154,10 @@ def list_hardware(
 
     Parameters
     ----------
-    peg_length : in mm.
-    supports : diameter and height in mm of three supports.
-    top_tip : diameter in mm of the tip of a clamp on top.
+    peg_length : in mm; None where it is unknown.
+    supports : (diameter, height) in mm of three supports, the height None where unknown; None without
+        supports.
+    top_tip : diameter in mm of the tip of the clamp on top; None without one.
 
     Examples
     --------

@@ -36,8 +36,9 @@ MOST_LOADS = 6
 def draw_hold_panel(
     column: TextColumn, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, lengths: LengthUnit
 ) -> None:
-    """Write the settings and figures of a part held by friction into a column,
-    with a view from the end of the jaws.
+    """Write the settings and figures of a part held by friction into a column.
+
+    For flat jaws a view from the end of the jaws is drawn below them.
     """
     if isinstance(fixture.hold, StrappedHold):
         draw_strap_panel(column, fixture, lengths)
@@ -65,7 +66,7 @@ def draw_hold_panel(
 
 
 def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
-    """Write the known figures of a hold by flat jaws, those of forces first."""
+    """Write the known figures of a part held by flat jaws, those about forces first."""
     hold, unit = fixture.hold, lengths.unit
     assert isinstance(hold, JawHold)
     if hold.clamp_needed is not None:
@@ -88,18 +89,18 @@ def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> 
 
 
 def format_pressure(pressure: float, lengths: LengthUnit) -> str:
-    """Return a pressure given in MPa as words in the unit, with a decimal below 20 MPa."""
+    """Return a pressure, given in MPa, as a number with the unit's sign; below 20 MPa with one decimal."""
     unit = lengths.unit
     return f"{pressure:.1f} MPa" if unit.pressure == "MPa" and pressure < 20 else unit.format_stress(pressure)
 
 
 def find_query(fixture: Fixture) -> Query | None:
-    """Return the query of the result that lists a fixture; None if it is in no result."""
+    """Return the query of the result that lists a fixture; None for a fixture of no result."""
     return None if fixture.listed is None else fixture.listed.result.query
 
 
 def list_hold_blocks(sheet: SetupSheet) -> tuple[list[Writer], list[Writer]]:
-    """Return the blocks that a sheet of flat jaws or straps needs beside the plan, and its other blocks."""
+    """Return (blocks that must be beside the plan, other blocks) of a sheet of flat jaws or straps."""
     if isinstance(sheet.fixture.hold, StrappedHold):
         return list_strap_writers()
     needed: list[Writer] = [write_setting, write_side, write_force]
@@ -107,14 +108,16 @@ def list_hold_blocks(sheet: SetupSheet) -> tuple[list[Writer], list[Writer]]:
 
 
 def find_sheet_query(sheet: SetupSheet) -> Query:
-    """Return the query of the result that lists the sheet's fixture, which must be in one."""
+    """Return the query of the result that lists the sheet's fixture; the fixture must belong to a result."""
     query = find_query(sheet.fixture)
     assert query is not None
     return query
 
 
 def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block of what to set: parallels, opening, faces, work stop and place along the jaws."""
+    """Write the block of what to set: parallels, opening, touched faces, work stop, and place of the part
+    along the jaws.
+    """
     hold, jaws, lengths = sheet.fixture.hold, sheet.toolkit.flat_jaws, sheet.lengths
     assert isinstance(hold, JawHold) and jaws is not None
     write_heading(column, "Set up")
@@ -218,7 +221,7 @@ def write_hold_loads(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_hold_quality(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block that says why this fixture was chosen, and its figures."""
+    """Write the block on why this fixture is the first choice, with its figures of quality."""
     write_heading(column, "Why this one")
     if sheet.details.why_first:
         column.write_paragraph(sheet.details.why_first, NOTE)

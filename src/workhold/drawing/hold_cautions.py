@@ -13,7 +13,7 @@ __all__ = ["list_hold_cautions"]
 
 
 def list_hold_cautions(fixture: Fixture) -> list[tuple[str, str]]:
-    """Return the cautions of a fixture held by friction, as (kind, sentence)."""
+    """Return (kind, sentence) of each caution of a fixture held by friction."""
     hold = fixture.hold
     if isinstance(hold, JawHold):
         return list_jaw_cautions(hold)

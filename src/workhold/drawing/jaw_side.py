@@ -26,10 +26,10 @@ JAW_SHARE, PARALLEL_SHARE, WIDEST_PARALLEL = 0.28, 0.2, 8.0
 def draw_jaw_side(
     column: TextColumn, fixture: Fixture, jaws: JawPair, height: float | None, lengths: LengthUnit
 ) -> None:
-    """Draw the view from the left end of the jaws into a text column, the fixed
-    jaw at the left; move the column on.
+    """Draw the view from the left end of the jaws into a text column, the fixed jaw at the left.
 
-    ``height`` is the part's in mm; nothing is drawn where it is None, or the part is not held by flat jaws.
+    The column continues below the view. ``height`` is the part's in mm. Nothing is drawn where it is None, or
+    the part is not held by flat jaws.
     """
     hold = fixture.hold
     if not isinstance(hold, JawHold) or height is None:
@@ -75,10 +75,11 @@ def draw_bodies(
     bed: float,
     low: float,
 ) -> None:
-    """Draw the bed, both jaws and the parallels; all lengths in mm.
+    """Draw the bed, both jaws and the parallels; all lengths are in mm, heights from the part's lower side.
 
-    ``top`` is the height of the jaws, ``thick`` their drawn thickness, ``bed`` that of the bed, ``low`` the
-    bed's height.
+    ``parallels`` is their height, ``opening`` the distance between the jaws, ``top`` the height of the jaws'
+    upper side and ``thick`` their drawn thickness. ``low`` is the height of the bed's upper side and ``bed``
+    its drawn thickness.
     """
     scene.add_rectangle(view.map_box(Box(-thick, low - bed, opening + thick, low)), "#dfe3e8", GREY, 1.0)
     draw_jaw(scene, view.map_box(Box(-thick, low, 0.0, top)), "right")
@@ -102,7 +103,9 @@ def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) ->
 def draw_heights(
     scene: Scene, view: View, fixture: Fixture, top: float, height: float, lengths: LengthUnit
 ) -> None:
-    """Draw dimensions at the right: what stands above the jaws, the grip, and the parallels."""
+    """Draw dimensions at the right: how far the part stands above the jaws, the grip, and the height of the
+    parallels.
+    """
     hold = fixture.hold
     assert isinstance(hold, JawHold)
     edge = view((hold.opening * 1.28, 0.0))[0]

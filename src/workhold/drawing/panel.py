@@ -75,7 +75,7 @@ class TextColumn:
     def write_line(
         self, content: str, size: float, bold: bool = False, fill: str = BLACK, gap: float = 0.55
     ) -> None:
-        """Write one line, shortened to fit, and leave ``gap`` times ``size`` below it."""
+        """Write one line, shortened to fit the width; leave a gap of ``gap`` times ``size`` below it."""
         self.y += 0.75 * size
         content = shorten_text(content, size, self.width, bold)
         self.scene.add_text((self.x, self.y), content, size, bold=bold, fill=fill, middle=False)
@@ -84,7 +84,7 @@ class TextColumn:
     def write_paragraph(
         self, content: str, size: float, bold: bool = False, fill: str = BLACK, indent: float = 0.0
     ) -> None:
-        """Write a text wrapped to the width, ``indent`` page units further in."""
+        """Write a text wrapped to the column's width, all its lines indented by ``indent`` page units."""
         for line in wrap_text(content, size, self.width - indent, bold):
             self.y += 0.75 * size
             self.scene.add_text((self.x + indent, self.y), line, size, bold=bold, fill=fill, middle=False)
@@ -112,8 +112,9 @@ class TextColumn:
         self.y += 9
 
     def write_row(self, cells: Sequence[str], ends: Sequence[float], size: float, bold: bool = False) -> None:
-        """Write a table row: the first cell at the left, the others right-aligned at
-        ``ends``, shares of the column's width.
+        """Write a table row: the first cell at the left, the others right-aligned.
+
+        ``ends`` gives their right ends as shares of the column's width.
         """
         self.y += 0.75 * size
         self.scene.add_text((self.x, self.y), cells[0], size, bold=True, middle=False)
@@ -213,8 +214,9 @@ def describe_move(move: tuple[int, int]) -> str:
 
 
 def format_count(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
-    """Return a count and its noun with a plural s unless the count is 1;
-    ``numbers`` are words for the counts from 0 on.
+    """Return a count and its noun, with a plural s unless the count is 1.
+
+    ``numbers`` are words that replace the counts 0, 1, 2 and so on, as far as given.
 
     >>> format_count(1, "face"), format_count(2, "face")
     ('1 face', '2 faces')
@@ -224,8 +226,8 @@ def format_count(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
 
 
 def describe_row_offset(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
-    """Return the offset of the moving carrier's rows from the first plate's rows,
-    in words; None where they are level.
+    """Return in words by how much the moving carrier's rows are offset from those of the first plate; None
+    where they are level.
     """
     offset = toolkit.moving.offset[1] - toolkit.plates[0].offset[1]
     return f"{lengths.format_length(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None
@@ -243,7 +245,7 @@ def draw_title(
 
 
 def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, lengths: LengthUnit) -> None:
-    """Write what to set (lengths, tightening), the part's turn and origin, and the data of plates and
+    """Write the lengths to set and how to tighten, the part's turn and origin, and the data of plates and
     pegs.
     """
     first, settings, several = (
@@ -352,7 +354,7 @@ def draw_push_sign(scene: Scene, at: Point) -> None:
 
 
 def draw_line_sign(scene: Scene, at: Point) -> None:
-    """Draw the dashed line of holes of a clamp's tip for the legend."""
+    """Draw, for the legend, the dashed line of holes along which a clamp's tip moves."""
     scene.add_line([(at[0] - 15, at[1]), (at[0] + 16, at[1])], BLACK, 1.0, stroke_dasharray="7 4")
 
 
@@ -393,7 +395,10 @@ OF_CONTACTS: Mapping[ContactKind, tuple[tuple[Sign, str], ...]] = {
 def draw_legend(
     column: TextColumn, toolkit: Toolkit, fill: str = GREY, more: Sequence[tuple[Sign, str]] = ()
 ) -> None:
-    """Write the legend of the signs, ``more`` (sign, words) last; ``fill`` is the colour of the words."""
+    """Write the legend of the signs.
+
+    ``more`` are further (sign, words), written last; ``fill`` is the colour of the words.
+    """
     first = toolkit.plates[0]
     named = f"{first.noun}, column, row" if first.letter else "column, row"
     signs: list[tuple[Sign, str]] = [

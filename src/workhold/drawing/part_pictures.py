@@ -56,11 +56,12 @@ LEADER = "#6b4a00"
 
 
 def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit: Unit = MILLIMETRE) -> str:
-    """Return the part with numbered faces, overall size and scale on A4, as SVG; on A3 or A2 above 80 faces.
+    """Return a picture of the part with numbered faces, overall size and scale, on A4; above 80 faces on A3
+    or A2.
 
     Parameters
     ----------
-    peg_radius : draw the contact features for pegs of this radius in mm as well.
+    peg_radius : radius in mm of the pegs whose contact features are drawn as well; None draws none.
 
     Returns
     -------
@@ -93,8 +94,9 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
 
 
 def choose_page_size(faces: int, page: tuple[float, float]) -> tuple[float, float]:
-    """Return the size of a page in page units: ``page`` (A4), or A3 or A2 of
-    that shape where many faces need room.
+    """Return (width, height) in page units for a part with this number of faces.
+
+    It is ``page`` itself, which is A4, or for many faces A3 or A2 of the same orientation.
     """
     larger = 1.0 if faces <= VERY_MANY_FACES else 2**0.5 if faces <= 2 * VERY_MANY_FACES else 2.0
     return round(larger * page[0]), round(larger * page[1])
@@ -108,7 +110,7 @@ def draw_header(scene: Scene, page: tuple[float, float], name: str, words: str) 
 
 
 def describe_part(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
-    """Return the line below the name: numbers of faces and holes, size, and what else to know."""
+    """Return the line of words below the part's name: numbers of faces and holes, size, and other remarks."""
     faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
     words = [format_count(faces, "face"), format_count(holes, "hole") if holes else "no holes"]
     words.append(f"{lengths.format_number(bounds.width)} × {lengths.format_length(bounds.height)}")
@@ -140,17 +142,16 @@ def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
 
 
 def compute_first_parameter(segment: Segment) -> float:
-    """Return the parameter of a segment at its start; the parameter at its end is the negative of it."""
+    """Return the parameter at which a segment starts; it ends at the negative of that."""
     return -segment.sign * segment.half_sweep if isinstance(segment, Arc) else -segment.half_extent
 
 
 def draw_numbers(
     scene: Scene, workpiece: Workpiece, view: View, bounds: Box, features: Sequence[Segment]
 ) -> None:
-    """Write the number of every face on the side away from the material,
-    with a leader; keep off ``features``.
+    """Write the number of every face on the side away from the material, with a leader.
 
-    ``bounds`` is the page box that numbers must stay in.
+    Numbers keep off the contact features ``features`` and inside the page box ``bounds``.
     """
     count = len(workpiece.faces)
     size = 15.0 if count <= MANY_FACES else 12.0
@@ -184,11 +185,11 @@ def draw_number_beside(scene: Scene, place: PlacedLabel, number: int, size: floa
 
 
 def make_number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
-    """Return the label of a face's number: best along its normal, at greater cost
-    turned, further off or inside the material.
+    """Return the label of a face's number, with its candidate places.
 
-    Candidates start at ``shares`` of the face's half extent from its middle. ``outer`` says that the face is
-    on the outer loop; in a hole, places inside the material cost less.
+    A place along the outward normal is cheapest; turned, farther away or inside the material costs more.
+    Leaders start at the parameters ``shares`` times the face's half extent, 0 being its middle. In a hole
+    (``outer`` False) a place inside the material costs less than on the outer loop.
     """
     height = size + 6
     width = max(height, measure_text(str(face.number), size, bold=True) + 10)
@@ -231,12 +232,12 @@ MOST_NUMBERS = 60
 def draw_parts(
     name: str, parts: Sequence[Sequence[NDArray[np.float64]]], chosen: int, *, unit: Unit = MILLIMETRE
 ) -> str:
-    """Return the parts of a file where they lie, each with its number, on A4, as SVG text.
+    """Return a picture of the parts of a file where they lie, each with its number, on A4, as SVG text.
 
     Parameters
     ----------
-    parts : for each part its loops, (N, 3) vertices in mm; part k + 1 is called by that number.
-    chosen : the number of the part that is used, which has another colour.
+    parts : for each part its loops, (N, 3) vertices in mm; the part at index k has the number k + 1.
+    chosen : the number of the part that is used; it is drawn in another colour.
 
     Returns
     -------

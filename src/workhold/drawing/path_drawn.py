@@ -1,7 +1,7 @@
-"""Paths of tools on a page: cutting moves by tool and by height, and rapid moves dashed.
+"""Paths of tools on a page: cutting moves in colours for tool and height, and rapid moves dashed.
 
 On the plan of a fixture the path is turned with the part. The move that comes nearest to what holds the part
-is marked with its line and its distance.
+is marked with its program line and its distance.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ MOST_GROWN = 1.4
 
 @frozen(eq=False)
 class PagePaths:
-    """The moves of a program on a page.
+    """The M moves of a program on a page.
 
     Parameters
     ----------
@@ -73,12 +73,13 @@ class PagePaths:
     def from_moves(
         cls, moves: Moves, view: View, pose: Pose | None = None, box: Box | None = None
     ) -> PagePaths:
-        """Return the moves as a view shows them, cut off at a page box.
+        """Return the moves as a view shows them.
 
         Parameters
         ----------
-        pose : of the part, whose coordinates the moves are in; None where the view shows these.
-        box : of the page, at which straight moves end, and beyond which arcs are left out.
+        pose : of the part, in whose frame the moves are; None where the view shows the part's frame itself.
+        box : page box at which straight moves are cut off, and beyond which arcs are not shown; None for no
+            limit.
         """
         ends = []
         for points in (moves.start, moves.end):
@@ -100,8 +101,9 @@ class PagePaths:
         return cls(ends[0], ends[1], moves.bulge, shown, view.scale)
 
     def make_path_data(self, rows: NDArray[np.int64]) -> str:
-        """Return SVG path data of the moves numbered ``rows``, "" for none; a move that
-        continues the last one starts no new line.
+        """Return SVG path data of the moves with the indices ``rows``; "" for none.
+
+        A move that starts where the previous one ended continues its line.
         """
         rows = rows[self.shown[rows]]
         middle = compute_path_points(
@@ -152,9 +154,11 @@ def are_in_box(points: Floats, box: Box) -> NDArray[np.bool_]:
 
 
 def clip_to_box(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
-    """Return the shares (N,) and (N,) of straight lines (N, 2) at which they enter and leave a box.
+    """Return (shares (N,), shares (N,)) at which N straight lines enter and leave a box, 0 at the start and 1
+    at the end.
 
-    The first share is larger than the second where a line is nowhere inside (Y.-D. Liang, B. A. Barsky 1984).
+    ``start`` and ``end`` are (N, 2). The first share is larger than the second where a line is nowhere inside
+    (Y.-D. Liang, B. A. Barsky 1984).
     """
     first, last = np.zeros(len(start)), np.ones(len(start))
     for axis, (low, high) in enumerate(((box.x0, box.x1), (box.y0, box.y1))):
@@ -174,9 +178,11 @@ class PathStyle:
 
     Parameters
     ----------
-    kind : "band" as wide as the flute, "rapid", "cut" for the axis, or "dot" for upright moves.
-    place, tool : of the tool in the order in which tools move first, and its number; -1 for rapid moves.
-    level : of height, 0 the lowest; -1 where it does not show.
+    kind : "band" as wide as the flute, "rapid" for rapid moves, "cut" for the tool's axis, "dot" for upright
+        moves.
+    place : index of the tool, in the order in which tools first move; -1 for rapid moves.
+    tool : number of the tool; -1 for rapid moves.
+    level : of height, 0 the lowest; -1 where the look does not depend on height.
     """
 
     kind: str
@@ -186,8 +192,8 @@ class PathStyle:
 
 
 def group_moves_by_look(program: Program) -> Iterator[tuple[PathStyle, NDArray[np.int64]]]:
-    """Yield (style, move numbers) in drawing order: bands by tool, rapid moves, then
-    cuts and dots from the highest level.
+    """Yield (style, move indices) in drawing order: bands tool by tool, rapid moves, then cuts and dots,
+    highest level first.
     """
     moves, figures = program.moves, measure_tools(program)
     for place, one in enumerate(figures):
@@ -205,10 +211,9 @@ def group_moves_by_look(program: Program) -> Iterator[tuple[PathStyle, NDArray[n
 
 
 def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float = 1.0) -> None:
-    """Draw bands as wide as the flutes, rapid moves dashed, and the tool axes
-    of cutting moves, high ones first.
+    """Draw bands as wide as the flutes, rapid moves dashed, and the paths of the tool axes at cutting moves.
 
-    Upright cutting moves are dots.
+    Higher levels are drawn first. Upright cutting moves are dots.
     """
     for look, rows in group_moves_by_look(program):
         colour = COLOURS[look.place % len(COLOURS)]
@@ -226,16 +231,17 @@ def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float =
 def add(
     group: Scene, paths: PagePaths, rows: NDArray[np.int64], colour: str, wide: float, name: str, **more: str
 ) -> None:
-    """Draw some moves as one SVG path of the class ``name``; nothing where none is shown."""
+    """Draw the moves with the indices ``rows`` as one SVG path; nothing where none of them is shown.
+
+    ``wide`` is the line width in page units and ``name`` the class.
+    """
     d = paths.make_path_data(rows)
     if d:
         group.add_path(d, colour, wide, stroke_linecap="round", **{"class": name}, **more)
 
 
 def find_heights_cut(program: Program) -> tuple[float, float]:
-    """Return the least and the greatest height in mm of the tool tip at
-    cutting moves and of the program's Z0.
-    """
+    """Return (least, greatest) height in mm of the tool tip over all cutting moves and the program's Z0."""
     cut = program.moves.cutting
     heights = np.concatenate([program.moves.start[cut, 2], program.moves.end[cut, 2], [program.z_zero]])
     return float(heights.min()), float(heights.max())
@@ -264,8 +270,8 @@ class PlannedPath:
     ----------
     program : what the machine does while the fixture holds the part.
     fixture : in whose pose the part lies.
-    passing : where its tools come nearest to what holds the part; None where none comes down to it.
-    peg_height : up to which anything holds the part, in mm; None where nobody knows.
+    passing : the nearest approach of its tools to what holds the part; None where no tool comes down to it.
+    peg_height : height in mm of the highest thing that holds the part; None where it is unknown.
     """
 
     program: Program
@@ -274,8 +280,9 @@ class PlannedPath:
     peg_height: float | None = None
 
     def enlarge_extent(self, extent: Box) -> Box:
-        """Return an extent (mm) in the vise frame enlarged to all that is cut, or
-        unchanged where that makes it much larger.
+        """Return an extent (mm, vise frame) enlarged to contain all cutting moves with their tools.
+
+        Returns it unchanged where that would make it more than ``MOST_GROWN`` times as large.
         """
         program = self.program
         moves, cut = program.moves, program.moves.cutting
@@ -292,8 +299,8 @@ class PlannedPath:
         return union if small else extent
 
     def find_nearest_place(self) -> tuple[float, float]:
-        """Return the point of the nearest move that is nearest to the contact
-        it passes, in mm in the vise frame.
+        """Return the point, on the move that comes nearest, that is nearest to the contact passed; in mm in
+        the vise frame.
 
         ``passing`` must not be None.
         """
@@ -363,7 +370,9 @@ class PlannedPath:
 
 
 def make_planned_path(result: Result, index: int) -> PlannedPath | None:
-    """Return the program of a result over its fixture at ``index`` (from 0); None without a program."""
+    """Return the program of a result over the fixture with this index, from 0; None where the result has no
+    program.
+    """
     query = result.query
     if query.program is None:
         return None

@@ -53,12 +53,12 @@ def convert_svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
     Parameters
     ----------
     pages : texts written by :meth:`workhold.drawing.scene.Scene.to_svg`.
-    created : the day the document is dated; the bytes depend on nothing else than it and the pages.
+    created : the date written in the document. The bytes depend on it and on ``pages`` alone.
 
     Raises
     ------
     ValueError
-        For SVG of another origin, which may hold what is not understood here.
+        For SVG with elements or attributes that :class:`workhold.drawing.scene.Scene` does not write.
     """
     pdf = FPDF(unit=POINTS_PER_UNIT)
     pdf.set_margin(0.0)
@@ -77,7 +77,7 @@ def convert_svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
 
 
 def draw_children(pdf: FPDF, group: ET.Element) -> None:
-    """Draw the elements of a group in order; neighbouring shapes share one drawing context."""
+    """Draw the elements of a group in order; successive shapes share one drawing context."""
     shapes: list[PaintedPath] = []
     for element in group:
         tag = element.tag.rpartition("}")[2]
@@ -109,7 +109,7 @@ def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
 
 
 def refuse_unknown(tag: str, attributes: dict[str, str], known: set[str]) -> None:
-    """Raise ValueError for attributes that are not known and would be lost on paper."""
+    """Raise ValueError if an element has attributes outside ``known``, which the PDF would not show."""
     unknown = sorted(set(attributes) - known)
     if unknown:
         raise ValueError(f"no way to print the attributes {', '.join(unknown)} of the SVG element {tag}")
@@ -159,9 +159,10 @@ def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
     """Append a circular arc of at most half a turn to a path as two Bezier curves.
 
     ``values`` are those of the SVG command A: two equal radii, no rotation, no large arc, the direction, and
-    the end point. A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the
-    tangents (A. Riskus, *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two
-    quarter turns are off by 3e-4 radii. Raises ValueError for other arcs.
+    the end point; otherwise ValueError is raised. Each curve takes half of the arc. With sweep s, its inner
+    control points are 4/3 tan(s/4) radii from its ends along the tangents (A. Riskus, *Approximation of a
+    cubic Bezier curve by circular arcs and vice versa*, 2006). For half a turn the curves are off by 3e-4
+    radii.
     """
     radius, other, turn, large, positive, x1, y1 = values
     if radius != other or turn or large:

@@ -82,10 +82,10 @@ def draw_labels(
     path: PlannedPath | None,
     lengths: LengthUnit,
 ) -> None:
-    """Draw the labels of pegs (hole names), touched faces (numbers), the part's turn and marked page points.
+    """Draw the labels of pegs (hole names), touched faces (numbers), marked page points, and the part's turn.
 
-    ``names`` are boxes of lettering to keep off, ``marks`` page points with their names, ``angle`` the words
-    at the turn.
+    ``names`` are boxes of lettering that labels keep off. ``marks`` holds (page point, name). ``angle`` is
+    written at the part's turn.
     """
     center = view(bench.fixture.pose.apply(*workpiece.center))
     placer = LabelPlacer(Box(bounds.x0, bounds.y0 + 62, bounds.x1, bounds.y1 - 30))
@@ -154,7 +154,7 @@ def avoid_drawing(placer: LabelPlacer, bench: BenchDrawing, view: View) -> None:
 
 
 def avoid_turn(placer: LabelPlacer, bench: BenchDrawing, center: Point) -> None:
-    """Mark the drawing of the part's turn around a page point for the label placer to avoid."""
+    """Mark the area in which the part's turn is drawn, around a page point, for the label placer to avoid."""
     turn = radians(bench.fixture.pose.written_deg)
     x, y = center
     placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
@@ -164,14 +164,16 @@ def avoid_turn(placer: LabelPlacer, bench: BenchDrawing, center: Point) -> None:
 
 
 def list_turns_around(count: int) -> list[float]:
-    """Return ``count`` equally spaced turns in radians from above -pi to pi, smallest first."""
+    """Return ``count`` equally spaced angles in radians, above -pi up to pi, sorted by size with 0 first."""
     turns = [2 * pi * k / count for k in range(-count // 2 + 1, count // 2 + 1)]
     return sorted(turns, key=lambda turn: (abs(turn), turn))
 
 
 def make_peg_label(bench: BenchDrawing, index: int, view: View) -> Label:
-    """Return the label of a peg's hole name: best on the side away from the
-    part, close by; a clamp's at its hole.
+    """Return the label of a peg's hole name, with its candidate places.
+
+    The cheapest are close to the peg, on the side away from the part. A clamp's label stands at the clamp's
+    hole.
     """
     peg = bench.fixture.pegs[index]
     nx, ny = bench.contacts[index][1]
@@ -189,7 +191,9 @@ def make_mark_label(point: Point, name: str) -> Label:
 
 
 def make_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
-    """Return the label of a touched face's number: inside the part, best beside the contacts on the face."""
+    """Return the label of a touched face's number: inside the part; beside the face's contacts it costs
+    least.
+    """
     index = next(k for k in bench.touching if bench.fixture.pegs[k].face == face_number)
     face = bench.faces[index]
     size = (max(TAG_HEIGHT, measure_text(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
@@ -213,8 +217,8 @@ def make_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
 
 
 def make_gripped_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
-    """Return the label of the number of a face that a flat jaw touches: inside
-    the part, beside the face's middle.
+    """Return the label of the number of a face that a flat jaw touches: inside the part; beside the face's
+    middle it costs least.
     """
     face = bench.gripped[face_number]
     hold = bench.fixture.hold
@@ -227,7 +231,9 @@ def make_gripped_face_tag(bench: BenchDrawing, face_number: int, view: View) -> 
 
 
 def draw_flag(scene: Scene, place: PlacedLabel, radius: float, name: str) -> None:
-    """Write a peg's hole name at its place, with a leader to the rim of a peg of ``radius`` page units."""
+    """Write a peg's hole name at its place, with a leader that ends at the rim of the peg, ``radius`` page
+    units from its centre.
+    """
     leader = place.compute_leader(radius)
     if dist(*leader) > 2:
         scene.add_line(leader, PEG_FILL, 1.4)
@@ -281,10 +287,10 @@ def draw_plan(
 
     Parameters
     ----------
-    angle : what to write at the part's turn; its size if not given.
-    marks : points in the vise frame (mm) to mark, each with its name.
-    supports : what stands under the part and presses on it, to draw as well.
-    path : of the program's tools, to draw as well.
+    marks : (point in the vise frame in mm, name) of each point to mark.
+    angle : words at the part's turn; None writes the size of the turn.
+    supports : supports and the clamp on top, to draw as well.
+    path : the paths of the program's tools, to draw as well.
     """
     frame = view.map_box(reduce(Box.unite, (Box(*point, *point) for point, _ in marks), bench.extent))
     names = draw_hole_names(scene, bench, view, frame, supports)
@@ -338,11 +344,10 @@ def draw_hole_names(
 
 
 def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> list[Box]:
-    """Write column letters and row numbers, given as (page point, name, has
-    a peg, anchor); return their boxes.
+    """Write column letters and row numbers; return their page boxes.
 
-    Names with pegs are written first, and move aside where another name stands. The others are left out where
-    there is no room.
+    ``names`` holds (page point, name, has a peg, SVG anchor). Names with pegs are written first, and move
+    aside where another name stands. The others are left out where there is no room.
     """
     boxes: list[Box] = []
     for at, name, used, wanted in sorted(names, key=lambda each: not each[2]):
@@ -366,8 +371,9 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
 
 
 def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
-    """Write "row" and "column" at the left rim of the frame unless a name is
-    there; return the boxes of the words.
+    """Write "row" and "column" at the left rim of the frame; return the boxes of the words.
+
+    A word is left out where one of ``names`` stands.
     """
     boxes = []
     for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
@@ -380,10 +386,10 @@ def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
 
 
 def choose_letter_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
-    """Return the SVG anchor of a column's letter: "middle", or away from the gap at
-    columns next to a nearly closed gap.
+    """Return the SVG anchor of a column's letter: "start", "middle" or "end".
 
-    ``gap`` is the distance between the plates in page units.
+    It is "middle" but at the columns beside a gap between plates that is narrower than 20 page units: there
+    the letter is moved away from the gap. ``gap`` is the distance between the plates in page units.
     """
     if gap >= 20:
         return "middle"
@@ -401,7 +407,7 @@ def draw_ruling(scene: Scene, rim: Point, plate: Point) -> None:
 
 
 def compute_name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
-    """Return the page box of a column letter or row number."""
+    """Return the page box of a column letter or row number; ``used`` says whether a peg stands there."""
     size = NAME_SIZE[used]
     width = measure_text(name, size, used)
     left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
@@ -411,10 +417,10 @@ def compute_name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
 def draw_travel(
     scene: Scene, bench: BenchDrawing, view: View, frame: Box, bounds: Box, lengths: LengthUnit
 ) -> list[Box]:
-    """Draw the lengths to set as dimensions, above the plates or at their right;
-    return the boxes of words and lines.
+    """Draw the lengths to set as dimensions, above the plates or at their right; return the boxes of words
+    and lines.
 
-    All words are within ``bounds``. Of two lengths in one direction the second stands farther out.
+    All words are within ``bounds``. The second of two lengths in the same direction is drawn farther out.
     """
     group, boxes, lines = scene.group("opening"), [], []
     for place, measured in enumerate(bench.shown.measured):
@@ -447,10 +453,10 @@ def draw_travel(
 
 
 def draw_captions(scene: Scene, bench: BenchDrawing, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Write the names of the carriers below them, with an arrow in the
-    direction of closing; return their boxes.
+    """Write the names of the carriers below them, with an arrow in the direction of closing; return their
+    boxes.
 
-    Where clamps are drawn, nothing is written.
+    Writes nothing and returns [] where clamps are drawn.
     """
     if bench.shown.clamps:
         return []
@@ -511,8 +517,9 @@ def draw_jaw_captions(scene: Scene, jaws: ShownJaws, view: View) -> list[Box]:
 
 
 def place_side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) -> list[float]:
-    """Return the left ends of pieces with these widths, moved apart by
-    ``CAPTION_GAP`` and kept left of ``right``.
+    """Return the left ends of pieces of these widths, moved so that ``CAPTION_GAP`` is free between them.
+
+    ``lefts`` are the wanted left ends. All pieces end left of ``right``.
 
     >>> place_side_by_side([0.0, 10.0], [20.0, 20.0], 100.0)
     [0.0, 36.0]
@@ -530,8 +537,8 @@ def place_side_by_side(lefts: Sequence[float], widths: Sequence[float], right: f
 
 
 def draw_angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
-    """Draw the turn from the vise's x axis (a dashed line) to the part's x
-    axis (an arrow) about a page point.
+    """Draw the part's turn about a page point: from the vise's x axis (a dashed line) to the part's x axis
+    (an arrow).
 
     ``radius`` of the arc and ``reach`` of the axes are in page units.
     """

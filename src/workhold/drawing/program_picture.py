@@ -1,6 +1,8 @@
-"""A program from above, by tool and by height with rapid moves dashed, and the block about it beside a plan.
+"""A program from above, in colours for tool and height with rapid moves dashed, and its block of words beside
+a plan.
 
-The block has the program's zero, its tools with their lines, and the move that comes nearest.
+The block has the program's zero, its tools with their lines, and the move that comes nearest to what holds
+the part.
 """
 
 from __future__ import annotations
@@ -43,11 +45,11 @@ SIZE = 12.0
 
 
 def draw_program(program: Program, *, workpiece: Workpiece | None = None, unit: Unit = MILLIMETRE) -> str:
-    """Return the paths of a program's tools from above on A4.
+    """Return a picture of the paths of a program's tools from above, on A4.
 
     Parameters
     ----------
-    workpiece : the part, drawn below them.
+    workpiece : the part, drawn below the paths; None draws no part.
 
     Returns
     -------
@@ -131,7 +133,7 @@ def draw_legend(scene: Scene, program: Program, lengths: LengthUnit, box: Box) -
 
 
 def write_program(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block on a sheet's program: its path, tools and cutting forces."""
+    """Write a sheet's block about its program: its path, tools and cutting forces."""
     details = sheet.details
     assert details.program is not None
     write_heading(column, "Program")
@@ -177,7 +179,9 @@ def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill:
 
 
 def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill: str) -> None:
-    """Write the table of tools: colour, number, diameter, lines and lowest cut; at most ``MOST_TOOLS``."""
+    """Write the table of tools: colour, number, diameter, program lines and lowest cut; at most
+    ``MOST_TOOLS`` rows.
+    """
     ends = [column.x + SWATCH + 8 + share * (column.width - SWATCH - 8) for share in COLUMNS]
     figures = measure_tools(program)
     header = ("", "tool", f"Ø {lengths.sign}", "lines", "lowest cut z")
@@ -212,8 +216,9 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
 
 
 def list_tools_above_pegs(path: PlannedPath) -> list[str]:
-    """Return the names ("T3") of tools that never come down to the pegs; [] if the pegs' height is not
-    known.
+    """Return the names ("T3") of the tools that never come down to the pegs' height.
+
+    Returns [] where that height is not known.
     """
     if path.peg_height is None:
         return []

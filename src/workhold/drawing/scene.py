@@ -53,8 +53,9 @@ UNKNOWN_WIDTH = 1.0
 
 
 def format_degrees(turn: float, decimals: int) -> str:
-    """Return a turn in degrees with ``decimals`` decimals and the sign °, with a
-    real minus sign and no negative zero.
+    """Return a turn in degrees as text with ``decimals`` decimals and the sign °.
+
+    It has a true minus sign (−) and no negative zero.
 
     >>> format_degrees(-0.31, 1), format_degrees(-0.01, 1)
     ('−0.3°', '0.0°')
@@ -97,7 +98,7 @@ def has_character(character: str) -> bool:
 
 
 def shorten_text(content: str, size: float, width: float, bold: bool = False) -> str:
-    """Return the text, or its beginning and an ellipsis when the text is wider than ``width`` page units.
+    """Return the text, cut off and with an ellipsis at its end where it is wider than ``width`` page units.
 
     >>> shorten_text("a plate", 10, 200), shorten_text("a very long plate", 10, 50)
     ('a plate', 'a very l…')
@@ -108,10 +109,10 @@ def shorten_text(content: str, size: float, width: float, bold: bool = False) ->
 
 
 def count_fitting_letters(content: str, size: float, width: float, bold: bool, behind: str = "") -> int:
-    """Return the largest number of leading letters that, followed by ``behind``,
-    are at most ``width`` page units wide.
+    """Return how many letters from the start of ``content``, followed by ``behind``, fit in ``width`` page
+    units.
 
-    It measures few more letters than fit, however long the text is.
+    Takes little time even for a long text.
     """
     most = 1
     while most < len(content) and measure_text(content[:most] + behind, size, bold) <= width:
@@ -190,7 +191,7 @@ class View:
     def fit_box(cls, model: Box, page: Box, scale: float | None = None) -> View:
         """Return the view that centres a model box (mm) in a page box.
 
-        It is as large as fits, or at ``scale`` in page units per mm.
+        Its scale is the largest at which the model box fits, or ``scale`` in page units per mm if given.
         """
         if scale is None:
             scale = min(page.width / model.width, page.height / model.height)
@@ -259,9 +260,10 @@ class Scene:
     def add(
         self, tag: str, attributes: Attributes, stroke: str = "none", width: float = 1.0, **more: str
     ) -> ET.Element:
-        """Add an SVG element and return it; in the names of further attributes ``_`` stands for ``-``.
+        """Add an SVG element and return it.
 
-        ``attributes`` may be changed in place.
+        Further attributes are given in ``more``, with ``_`` in their names for ``-``. ``attributes`` may be
+        changed in place.
         """
         if stroke != "none":
             attributes |= {"stroke": stroke, "stroke-width": format_number(width)}
@@ -351,10 +353,11 @@ class Scene:
 
         Parameters
         ----------
-        at : where it stands; ``anchor`` is which end ("start", "middle", "end").
+        at : page point of the text.
+        anchor : which point of the text is at ``at``: its "start", "middle" or "end".
         size : font size in page units.
         halo : width of a white rim that keeps it readable over lines, in page units.
-        middle : whether ``at`` is at half the height of the figures rather than on the baseline.
+        middle : whether ``at`` is at half the height of the figures; otherwise it is on the baseline.
         turned : degrees counter-clockwise.
         """
         x, y = at[0], at[1] + (CAP_HEIGHT * size / 2 if middle else 0.0)
@@ -421,12 +424,14 @@ class LengthUnit:
 
     @classmethod
     def in_mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
-        """Return millimetres with this number of decimals."""
+        """Return the unit millimetre with this number of decimals."""
         return cls(MILLIMETRE, decimals)
 
     @classmethod
     def from_typical_length(cls, unit: Unit, length: float) -> LengthUnit:
-        """Return the unit with decimals for a picture in which ``length`` mm is typical, such as the pitch."""
+        """Return a unit with the number of decimals for a picture in which ``length`` mm is typical, such as
+        the pitch.
+        """
         return cls(unit, unit.decimals + choose_decimals(length) - choose_decimals(1.0))
 
     @property
@@ -435,18 +440,20 @@ class LengthUnit:
         return self.unit.abbreviation
 
     def format_number(self, length: float) -> str:
-        """Return a length in mm as a number in this unit, without the unit's name, with a
-        real minus sign and no negative zero.
+        """Return a length in mm as text: its number in this unit, without the unit's sign.
+
+        It has a true minus sign (−) and no negative zero.
         """
         return self.unit.format_number(length, self.decimals).replace("-", "−")
 
     def format_length(self, length: float) -> str:
-        """Return a length in mm as a number in this unit, followed by the unit's abbreviation."""
+        """Return a length in mm as text with the unit's sign, such as '24.125 mm'."""
         return f"{self.format_number(length)} {self.sign}"
 
     def format_short(self, length: float, digits: int = 6) -> str:
-        """Return a length in mm, such as a pitch, in this unit with at most ``digits``
-        significant digits and no trailing zeros.
+        """Return a length in mm as text with the unit's sign, without trailing zeros.
+
+        It has at most ``digits`` significant digits; for lengths such as a pitch.
 
         >>> LengthUnit.in_mm().format_short(12.7), LengthUnit.in_mm().format_short(10.0)
         ('12.7 mm', '10 mm')
@@ -454,5 +461,5 @@ class LengthUnit:
         return f"{self.format_short_number(length, digits)} {self.sign}"
 
     def format_short_number(self, length: float, digits: int = 6) -> str:
-        """Return a length in mm as :meth:`format_short` does, without the unit's abbreviation."""
+        """Return a length in mm as text like :meth:`format_short`, without the unit's sign."""
         return f"{length / self.unit.millimetres:.{digits}g}"

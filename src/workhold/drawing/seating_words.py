@@ -27,8 +27,9 @@ STOPPED: Mapping[Measure, str] = {"opening": JAWS_STOP, "stroke": CLAMP_STOPS, "
 
 
 def round_down_in_words(value: float, digits: int = 2) -> str:
-    """Return a number, to be used as an upper bound, rounded down to ``digits``
-    significant digits, as text; "0" below 0.
+    """Return a number as text, rounded down to ``digits`` significant digits, to be used as an upper bound.
+
+    A negative number gives "0".
 
     >>> [round_down_in_words(value) for value in (0.4475, 12.99, 123.4, 0.02999, 0.0)]
     ['0.44', '12', '120', '0.029', '0']
@@ -62,26 +63,26 @@ class SeatingSentences:
 
     @property
     def sign(self) -> str:
-        """The sign of the length that is read, such as S."""
+        """The letter of the length that is read, such as "S"."""
         return self.gauge.setting.sign
 
     def compute_reading(self, seat: Seat) -> float:
-        """Return the length in mm that is read in a seat."""
+        """Return the length in mm that the machinist reads when the part is in a seat."""
         return self.gauge.compute_reading(seat.jaw_separation)
 
     def format_reading(self, length: float) -> str:
-        """Return a reading given in mm in words, such as "S = 24.125 mm"."""
+        """Return a reading in mm as text, such as "S = 24.125 mm"."""
         return f"{self.sign} = {self.lengths.format_length(length)}"
 
     def bound(self, length: float) -> str:
-        """Return a length in mm that must not be exceeded, rounded down, in words with its unit."""
+        """Return a length in mm that must not be exceeded as text with the unit's sign, rounded down."""
         unit = self.lengths.unit
         return f"{round_down_in_words(length / unit.millimetres)} {unit.abbreviation}"
 
     def format_reading_short_of(self, opened: float) -> float:
-        """Return the reading in mm when the jaws are opened by ``opened`` mm from the own seat.
+        """Return the reading in mm at which the jaws are opened by ``opened`` mm from the fixture's own seat.
 
-        It is rounded to what is displayed, so that the jaws open no further.
+        It is rounded to the displayed decimals in the direction in which the jaws are opened less.
         """
         step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
         reading = self.gauge.compute_reading(self.own.jaw_separation + self.seating.clamping * opened) / step
@@ -89,12 +90,14 @@ class SeatingSentences:
 
     @cached_property
     def own(self) -> Seat:
-        """The fixture's own seat."""
+        """The seat in which the part lies as in the fixture."""
         return next(seat for seat in self.seating.seats if seat.is_own)
 
     @cached_property
     def wrong(self) -> list[Seat]:
-        """The wrong seats that the opening reaches, those nearest to the right reading first."""
+        """The wrong seats within the opening asked about, sorted by how near their reading is to the right
+        one.
+        """
         return sorted(
             self.seating.list_wrong_seats(),
             key=lambda seat: (abs(seat.difference), seat.mirrored, seat.pose.theta_deg),
@@ -102,15 +105,15 @@ class SeatingSentences:
 
     @property
     def alike(self) -> int:
-        """The number of other seats in which the part covers its own place."""
+        """The number of other seats in which the part covers the same place as in the fixture."""
         return sum(seat.same_place and not seat.is_own for seat in self.seating.seats)
 
     def compute_safe_start(self, workpiece: Workpiece) -> tuple[float, float] | None:
-        """Return the shift in mm and the turn in degrees off its place from
-        which the part certainly settles there.
+        """Return (shift in mm, turn in degrees) by which the part may be off its place and certainly settles
+        there.
 
-        None where nothing bounds them. Half of ``seating.placing`` is for the shift, half for 2 R sin(turn /
-        2), R the distance of the part's farthest point from its middle.
+        Returns None where no such bound is known. Half of ``seating.placing`` is the shift. The other half is
+        2 R sin(turn / 2), with R the distance of the part's farthest point from its middle.
         """
         if self.seating.placing is None:
             return None
@@ -126,8 +129,8 @@ class SeatingSentences:
         return f"{self.lengths.format_length(abs(seat.difference))} {'more' if more else 'less'}"
 
     def list_steps(self, workpiece: Workpiece) -> list[str]:
-        """Return sentences on how far to open, where to put the part, and what to read, in the order of
-        work.
+        """Return sentences, in the order of work, on how far to open, where to put the part, and what to
+        read.
         """
         seating, right = self.seating, self.format_reading(self.compute_reading(self.own))
         ways = self.gauge.opening_words
@@ -166,7 +169,7 @@ class SeatingSentences:
         return steps
 
     def describe_wrong_seats(self) -> list[str]:
-        """Return sentences on how many wrong seats there are, and on what the reading does not show."""
+        """Return sentences on the number of wrong seats, and on which of them the reading does not reveal."""
         seating, reach = self.seating, ""
         if seating.opening is not None:
             reach = (
@@ -191,8 +194,8 @@ class SeatingSentences:
     def describe_ending(self, ending: str, seat: Seat | None, travelled: float) -> str:
         """Return a sentence on how a simulated closing ended, with the reading.
 
-        ``ending`` is one of ``seating.closing_simulation.ENDINGS``, ``seat`` the seat reached or None,
-        ``travelled`` the separation in mm.
+        ``ending`` is one of ``seating.closing_simulation.ENDINGS``, ``seat`` is the seat reached (None for no
+        seat), and ``travelled`` is the separation in mm at the end.
         """
         read, stop = (
             self.format_reading(self.gauge.compute_reading(travelled)),
@@ -241,5 +244,5 @@ class SeatingSentences:
 
 
 def capitalize_sentence(words: str) -> str:
-    """Return a text with its first letter as a capital."""
+    """Return a text with its first letter capitalized."""
     return f"{words[:1].upper()}{words[1:]}"

@@ -44,8 +44,9 @@ def draw_seats(
     title: str = "Fixture",
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Return up to twelve seats of a fixture's pegs on an A4 sheet to one
-    scale, with their readings, as SVG text.
+    """Return a picture of up to twelve seats of a fixture's pegs on an A4 sheet, with their readings.
+
+    All seats are drawn to one scale.
 
     Parameters
     ----------
@@ -76,12 +77,12 @@ class PlacedSeat:
     Parameters
     ----------
     seat : the seat.
-    loops : of the part.
-    pegs : places, radii, and whether each touches.
-    reading : what is read there, and in the fixture's own pose.
-    extent : of all of it.
-    walls : how many straight walls there are, along x at y = 0.
-    touching : how the part lies in the fixture, in two words.
+    loops : of the placed part.
+    pegs : (centre, radius, whether it touches) of each peg.
+    reading : (reading in this seat, reading in the fixture's own pose).
+    extent : box around part and pegs.
+    walls : number of straight walls, which run along x at y = 0.
+    touching : two words on how the part lies in the fixture.
     """
 
     seat: Seat
@@ -112,7 +113,10 @@ class PlacedSeat:
 
 
 def draw_lying(scene: Scene, placed: PlacedSeat, view: View, weight: float = 1.2) -> None:
-    """Draw the part of a seat and the pegs, those that touch filled; lines are ``weight`` page units wide."""
+    """Draw the part of a seat, and the pegs, those that touch the part filled.
+
+    ``weight`` is the line width in page units.
+    """
     for _ in range(placed.walls):
         x0, x1 = placed.extent.x0, placed.extent.x1
         scene.add_polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
@@ -158,8 +162,9 @@ LINE, READING, SMALL = 12.5, 11.0, 9.5
 
 
 def write_seating(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block on opening, placing the part and reading; with two
-    clamps, on putting the part in by hand.
+    """Write the block on opening the jaws, placing the part and reading the length.
+
+    With two clamps it is on putting the part in by hand.
     """
     write_heading(column, "Does the part end up there?")
     put_in, steps = sheet.details.by_hand, list[str]()
@@ -176,7 +181,9 @@ def write_seating(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_wrong_seats(column: TextColumn, sheet: SetupSheet) -> None:
-    """Draw the right seat and the wrong seats that read most like it, each with its reading."""
+    """Draw the right seat and those wrong seats whose readings are nearest to its reading, each with its
+    reading.
+    """
     words = sheet.seating
     assert words is not None
     write_heading(column, "What it looks like")
@@ -215,8 +222,8 @@ def write_wrong_seats(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_caption(words: SeatingSentences, seat: Seat) -> list[str]:
-    """Return the lines below a seat's picture: its reading, the difference from the
-    right one, and what is wrong, if any.
+    """Return the lines below a seat's picture: its reading, the difference from the right reading, and what
+    is wrong.
     """
     notes = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
     notes += ["not settled"] * (seat.kind == "unsettled")

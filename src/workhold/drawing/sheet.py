@@ -8,6 +8,8 @@ needlessly small.
 
 Glossary
 --------
+block : some lines of words or a table under one heading, written by one function, of a known height.
+run : blocks that stand one below the other in a column.
 lying, upright : a page wider than high, or higher than wide.
 panel : columns of words at the right of a page, beside the plan.
 strip : columns of words below the plan, two on an upright page and three on a lying one.
@@ -155,7 +157,7 @@ def make_side_figure(sheet: SetupSheet, bench: BenchDrawing) -> SideFigure | Non
 
 
 def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
-    """Write blocks of words into their columns (box, blocks) of a page."""
+    """Write blocks of words on a page; ``columns`` holds (box, blocks) of each column."""
     group = scene.group("words")
     for box, blocks in columns:
         column = TextColumn(group, box.x0, box.y0, box.width)
@@ -164,7 +166,7 @@ def write_columns(scene: Scene, columns: tuple[Filled, ...]) -> None:
 
 
 def draw_foot(scene: Scene, layout: PageLayout, sheet: SetupSheet, page: str) -> None:
-    """Draw the line of cells at a page's lower edge; ``page`` is the page's number in words."""
+    """Draw the row of cells at a page's lower edge; ``page`` is the page's number as text."""
     details, (width, height) = sheet.details, layout.page
     box = Box(MARGIN, height - MARGIN - FOOT + 10, width - MARGIN, height - MARGIN)
     cells = [
@@ -206,8 +208,8 @@ class StandardScale:
 
     Parameters
     ----------
-    name : "paper:model", the smaller of them 1.
-    factor : millimetres on paper for one of the model.
+    name : "paper:model", such as "1:2"; the smaller number is 1.
+    factor : mm on paper for one mm of the model.
     """
 
     name: str
@@ -252,16 +254,16 @@ Filled = tuple[Box, tuple[Block, ...]]
 
 @frozen
 class PageLayout:
-    """The places of plan and blocks on the pages of a sheet.
+    """Where the plan and the blocks stand on the pages of a sheet.
 
     Parameters
     ----------
     page : width and height, page units.
-    plan : the box of the drawing.
-    columns : columns of words beside or below the plan, each with its blocks.
-    more : columns of each further page, if there are some.
+    plan : the page box of the drawing.
+    columns : (box, blocks) of each column beside or below the plan.
+    more : such columns of each further page; empty for a sheet of one page.
     scale : of the plan.
-    figure : the box of the side view at the top of the second page, and its scale; None without one.
+    figure : (page box, scale) of the side view at the top of the second page; None without one.
     """
 
     page: Page
@@ -281,9 +283,10 @@ def arrange_sheet(
 ) -> PageLayout:
     """Return the best layout of blocks and a plan of an extent (mm) on paper.
 
-    ``paper`` is its width and height when upright, page units. The blocks ``needed`` stand on the page of the
-    plan; where they leave no room for it, the last ones go to the second page. A view from the side stands at
-    the top of that page. A layout of one page is preferred where its drawing is as large, or large enough.
+    ``paper`` is its (width, height) in page units when upright. The blocks ``needed`` stand on the page of
+    the plan; where they leave no room for it, the last of them go to the second page. A view from the side
+    (``figure``) stands at the top of the second page. A layout of one page is chosen where its drawing is as
+    large as on two pages, or large enough.
     """
     lying_page, blocks = (paper[1], paper[0]), [*needed, *others]
     least = len(needed)
@@ -311,7 +314,7 @@ def arrange_sheet(
 
 
 def overflows_page(choice: PageLayout) -> bool:
-    """Return whether the words of a further page run over its foot."""
+    """Return whether the words on a further page of a layout run below the page."""
     columns = (column for page in choice.more for column in page)
     return any(
         sum(measure_block_height(block, box.width) for block in blocks) > box.height
@@ -332,9 +335,10 @@ def make_layout(
     rest: Sequence[Block],
     figure: SideFigure | None = None,
 ) -> PageLayout | None:
-    """Return a layout with the blocks ``rest`` on further pages; None where the plan would be too small.
+    """Return a layout with a plan in the box ``plan``; None where the plan would be too small.
 
-    ``columns`` are the filled columns beside or below the plan.
+    ``columns`` are the filled columns beside or below the plan. The blocks ``rest`` go to further pages,
+    below the view from the side (``figure``), if any.
     """
     room = compute_plan_room(plan)
     if min(room.width, room.height) < SMALLEST_PLAN:
@@ -361,17 +365,17 @@ def make_layout(
 def lay_out_under_figure(
     inner: Box, rest: Sequence[Block], figure: SideFigure, scale: StandardScale
 ) -> tuple[float, tuple[tuple[Filled, ...], ...]]:
-    """Return the lower edge of a side view at a scale, and the pages of
-    words, the first of them below the view.
+    """Return (lower edge of a side view drawn at a scale, pages of words).
 
-    ``inner`` is a page without margins and foot.
+    The words of the first of these pages stand below the view. ``inner`` is a page's box without margins and
+    foot.
     """
     foot = inner.y0 + figure.compute_height(inner.width, scale.factor)
     return foot, fill_pages(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
 
 
 def list_scales_between(least: float, most: float) -> list[StandardScale]:
-    """Return the standard scales below the factor ``most`` down to ``least``, largest first."""
+    """Return the standard scales with a factor of at least ``least`` and below ``most``, largest first."""
     found = list[StandardScale]()
     scale = choose_standard_scale(most * (1 - 1e-6))
     while scale.factor >= least * (1 - ROUNDING):
@@ -385,7 +389,7 @@ def lay_out_beside_plan(
 ) -> PageLayout | None:
     """Return a layout with the plan at the left and ``count`` columns at the right; None if it does not fit.
 
-    The first ``least`` blocks must fit in the columns.
+    At least the first ``least`` of the blocks must fit in these columns; the others may go to further pages.
     """
     inner, width = compute_inner_box(page), PANELS[count]
     heights = [measure_block_height(block, width) for block in blocks]
@@ -406,10 +410,10 @@ def lay_out_beside_plan(
 def lay_out_below_plan(
     page: Page, extent: Box, blocks: Sequence[Block], first: int, figure: SideFigure | None = None
 ) -> PageLayout | None:
-    """Return a layout with the ``first`` blocks in columns below the plan;
-    None where the plan would be too small.
+    """Return a layout with the first ``first`` of the blocks in columns below the plan; None where the plan
+    would be too small.
 
-    There are two columns, or three on a landscape page.
+    There are two columns, or three on a landscape page. The other blocks go to further pages.
     """
     inner, count = compute_inner_box(page), 3 if page[0] > page[1] else 2
     width = (inner.width - (count - 1) * GUTTER) / count
@@ -425,10 +429,11 @@ def lay_out_below_plan(
 def fill_pages(
     inner: Box, blocks: Sequence[Block], first: Box | None = None
 ) -> tuple[tuple[Filled, ...], ...]:
-    """Return the pages, each a tuple of filled columns, on which the blocks fit in as few pages as possible.
+    """Return the pages that hold the blocks, as few as possible; each is a tuple of filled columns (box,
+    blocks).
 
-    A landscape page has three columns, a portrait page two. ``inner`` is a page without margins and foot,
-    ``first`` the free part of the first page (None: all of ``inner``).
+    A landscape page has three columns, a portrait page two. ``inner`` is a page's box without margins and
+    foot; ``first`` is the free part of it on the first page (None: all of ``inner``).
     """
     if not blocks:
         return ()
@@ -451,10 +456,10 @@ def fill_pages(
 def fill_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int, height: float
 ) -> list[Sequence[Block]] | None:
-    """Return ``count`` runs that hold all blocks, each at most ``height``
-    high; None where that is not possible.
+    """Return ``count`` runs, at most ``height`` high, that hold all blocks; None where that is not possible.
 
-    The first blocks keep their order, and the rest go where a column has room below.
+    ``heights`` are those of the blocks. As many as possible of the first blocks keep their order from run to
+    run. Each of the others is added below the first run with room for it.
     """
     for last in range(len(blocks), 0, -1):
         runs, most = balance_runs(blocks[:last], heights[:last], count)
@@ -475,7 +480,7 @@ def fill_runs(
 
 
 def place_in_columns(box: Box, runs: Sequence[Sequence[Block]]) -> list[Filled]:
-    """Return the runs of blocks as (box, blocks) in columns of equal width side by side in a box."""
+    """Return (box, blocks) for each run of blocks, in columns of equal width side by side in a page box."""
     width = (box.width - (len(runs) - 1) * GUTTER) / len(runs)
     lefts = [box.x0 + k * (width + GUTTER) for k in range(len(runs))]
     return [(Box(x0, box.y0, x0 + width, box.y1), tuple(run)) for x0, run in zip(lefts, runs, strict=True)]
@@ -489,8 +494,10 @@ def compute_inner_box(page: Page) -> Box:
 def balance_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int
 ) -> tuple[list[Sequence[Block]], float]:
-    """Return the blocks in order, cut into ``count`` runs of nearly equal
-    height, and the height of the highest run.
+    """Return (runs, height of the highest run) for blocks cut, in their order, into ``count`` runs of nearly
+    equal height.
+
+    ``heights`` are those of the blocks.
     """
     if count == 1:
         return [blocks], sum(heights)

@@ -1,4 +1,5 @@
-"""The blocks of words and tables on a setup sheet, and which there are: title, settings, steps, quality, loads.
+"""The blocks of words and tables on a setup sheet, and which there are: title, settings, steps, quality,
+loads.
 
 The block of the pegs says where each stands and which face it touches. Two jaws have a block about their
 opening and how to measure it. A plate with locators and clamps has blocks about the clamps instead. The block
@@ -131,7 +132,7 @@ def write_flush(column: TextColumn, sheet: SetupSheet, wall: Carrier) -> None:
 
 
 def put_words(sheet: SetupSheet) -> str:
-    """Return the step that says in which holes to put the pegs."""
+    """Return the sentence of the step "put the pegs in", with their holes."""
     plates, holes = sheet.toolkit.plates, list[str]()
     for plate in plates:
         there = join_words([peg.hole for peg in sheet.fixture.pegs if peg.carrier == plate.name])
@@ -147,7 +148,7 @@ def put_words(sheet: SetupSheet) -> str:
 
 
 def describe_touch(sheet: SetupSheet) -> str:
-    """Return a sentence on which face each peg touches, and how to check it."""
+    """Return a sentence on which face each peg touches, and on how to check that."""
     touch = join_words([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
     return f"{touch}. A strip of paper must not pull out at any of them."
 
@@ -181,7 +182,7 @@ def write_opening(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def list_opening_steps(sheet: SetupSheet) -> list[str]:
-    """Return the steps of setting up between jaws that slide."""
+    """Return the steps of setting up a fixture between sliding jaws, one or two sentences each."""
     fixture, lengths, moving = sheet.fixture, sheet.lengths, sheet.toolkit.moving
     words, force = sheet.toolkit.setup_words, sheet.details.jaw_force
     there, more, back = "Open", "wider", "Close"
@@ -205,8 +206,9 @@ OPENING = MovingBlocks(lambda sheet: [write_opening], list_opening_steps)
 
 
 def list_clamp_blocks(sheet: SetupSheet) -> list[Writer]:
-    """Return the blocks about the clamp; with two clamps one block for each,
-    and one on the order of tightening.
+    """Return the functions that write the blocks about clamps.
+
+    There is a block for each clamp, and with two clamps one on the order of tightening.
     """
     shares = compute_clamp_shares(sheet.fixture)
     each: list[Writer] = [
@@ -250,8 +252,8 @@ def write_clamp(column: TextColumn, sheet: SetupSheet, setting: LengthSetting, s
 
 
 def compute_needed_clamp_force(sheet: SetupSheet) -> float:
-    """Return the clamp force in N that the loads and the program need, the
-    sum of both clamps' if there are two.
+    """Return the clamp force in N that the loads and the program need; with two clamps the sum of both
+    forces.
     """
     cutting = sheet.details.cutting
     needs = [case.needed.value for case in sheet.details.loads]
@@ -274,7 +276,7 @@ def write_order(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def list_clamp_steps(sheet: SetupSheet) -> list[str]:
-    """Return the steps of setting up with clamps."""
+    """Return the steps of setting up with clamps, one or two sentences each."""
     toolkit, lengths, alone = sheet.toolkit, sheet.lengths, sheet.is_closed_at_once
     plate, noun = toolkit.plates[0], toolkit.moving.noun
     bolts, ups = [], []
@@ -300,7 +302,7 @@ def list_clamp_steps(sheet: SetupSheet) -> list[str]:
 
 
 def describe_clamping(sheet: SetupSheet) -> str:
-    """Return a sentence on clamping, with the forces that are known."""
+    """Return a sentence on clamping, with those forces that are known."""
     fixture, force, unit = sheet.fixture, sheet.details.jaw_force, sheet.lengths.unit
     if sheet.is_closed_at_once:
         return f"Clamp{'' if force is None else f' with {unit.format_force(force)}'}."
@@ -362,8 +364,9 @@ def write_plate(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def describe_place(sheet: SetupSheet) -> str:
-    """Return a sentence on how far the whole set-up is moved on its plate; ""
-    where it stands as listed or on supports.
+    """Return a sentence on how far the whole set-up is moved on its plate from where it is listed.
+
+    Returns "" where it is not moved, or stands on supports.
     """
     if sheet.details.supports is not None or sheet.details.moved == (0, 0):
         return ""
@@ -374,7 +377,7 @@ def describe_place(sheet: SetupSheet) -> str:
 
 
 def describe_moving(sheet: SetupSheet) -> str:
-    """Return a sentence on how far the whole set-up may be moved along columns and rows."""
+    """Return a sentence on how far the whole set-up may be moved along columns and rows of the plate."""
     ways = []
     spares = count_spare_holes(sheet.fixture, sheet.toolkit)
     words = (("column", "left", "right"), ("row", "down", "up"))
@@ -404,8 +407,8 @@ WIDEST_LOAD = 0.3
 
 
 def write_quality(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the figures of quality that are known and that no other block
-    shows, and why this is the first choice.
+    """Write why this fixture is the first choice, and the known figures of quality that
+    no other block shows.
     """
     write_heading(column, "Quality")
     for figure in (FIGURES[number] for number in ON_THE_SHEET):
@@ -462,8 +465,8 @@ def describe_load(load: Load, lengths: LengthUnit) -> str:
 
 
 def write_loads(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the table of loads, the hardest first: the clamping force each
-    needs, and each peg's largest force.
+    """Write the table of loads, the hardest first, with the clamping force each load needs and each peg's
+    largest force.
     """
     details, unit, moving = sheet.details, sheet.lengths.unit, sheet.toolkit.moving
     write_heading(column, f"Loads and reactions, {unit.force}")
@@ -555,7 +558,7 @@ MOVING: Mapping[Measure, MovingBlocks] = {"opening": OPENING, "stroke": CLAMPS, 
 
 
 def make_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
-    """Return all blocks of a sheet in reading order: those needed beside the plan, and the others."""
+    """Return (blocks needed beside the plan, other blocks) of a sheet, each in reading order."""
     if sheet.fixture.hold is not None:
         return make_hold_blocks(sheet)
     moving = MOVING[sheet.toolkit.moving.measure]
@@ -581,20 +584,20 @@ def make_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
     others += [write_quality, write_counting, write_legend]
 
     def bound(writer: Writer) -> Block:
-        """Return a block that writes this sheet."""
+        """Return the block that a function writes for this sheet."""
         return lambda column: writer(column, sheet)
 
     return list(map(bound, needed)), list(map(bound, others))
 
 
 def make_hold_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
-    """Return the blocks of a sheet of flat jaws or straps: those needed beside the plan, and the others."""
+    """Return (blocks needed beside the plan, other blocks) of a sheet of flat jaws or straps."""
     setting, rest = list_hold_blocks(sheet)
     needed = [write_title, *setting, write_zero, *([write_cautions] if sheet.cautions else [])]
     others = [*rest, *([write_program] if sheet.details.program is not None else []), write_part]
 
     def bound(writer: Writer) -> Block:
-        """Return a block that writes this sheet."""
+        """Return the block that a function writes for this sheet."""
         return lambda column: writer(column, sheet)
 
     return list(map(bound, needed)), list(map(bound, others))
@@ -657,7 +660,7 @@ def write_zero(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_cautions(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write what to beware of."""
+    """Write the cautions."""
     write_heading(column, "Beware")
     for caution in sheet.cautions:
         column.write_item("▲", caution.sentence, BODY)

@@ -67,41 +67,43 @@ class SheetDetails:
 
     Parameters
     ----------
-    number, count : the fixture's rank in its result and how many there are.
+    number, count : the fixture's rank in its result, and the number of fixtures listed there.
     day : the date written on the sheet.
     result_hash : SHA-256 of the result file in hexadecimal; empty for a result of no file.
     version : of the program.
     paper : "a4" or "letter"; None is letter for lengths in inches, else A4.
     unit : of lengths.
-    part_name : written instead of the workpiece's own name.
-    tolerance : how far pegs and faces may be off, which the location error is for.
+    part_name : written instead of the workpiece's own name; None for that name.
+    tolerance : tolerances of pegs and faces, for which the location error is computed.
     jaw_force : in N; None when it is left open.
     friction : coefficient of friction that was asked for with the loads.
-    loads : what acts on the part, and the peg forces that answer it.
-    zero : what the machinist programs from; the drawing's origin if None.
-    machine_position : of the hole that places are measured from, in mm in the machine's own coordinates; None
-        when not known.
-    thickness : of the part, in mm; None where it is to be written on the paper, as are the next three.
-    peg_length, peg_height : of the pegs, and how far they stand out of the jaws, in mm.
-    dowel : what the pegs are and how they fit their holes, in the user's words instead of the tolerance's.
-    others : how many other fixtures of the result use the same holes.
+    loads : loads on the part, and the peg forces under each.
+    zero : part zero; the drawing's origin if None.
+    machine_position : place, in mm in the machine's own coordinates, of the hole that places are measured
+        from; None when not known.
+    thickness : of the part, in mm. This and the next two are None where they are to be written on the paper
+        by hand.
+    peg_length, peg_height : length of the pegs, and how far they stand out of the jaws, in mm.
+    dowel : the pegs and their fit in the user's words; None takes the words of the tolerance.
+    others : number of other fixtures of the result that use the same holes.
     why_first : why this is the first choice, in a sentence; empty for others.
-    seating : where else the pegs can hold the part; None where the sheet does not show it.
-    by_hand : how the part is put into two clamps; None where the sheet does not show it.
+    seating : other places in which the pegs can hold the part; None where the sheet does not show them.
+    by_hand : how the part is put between two clamps; None where the sheet does not show it.
     not_seated : why there is no seating though it was asked for, in a sentence.
     supports : three supports under the part and a clamp on top; None where there are none.
-    support_height : of these supports, in mm; None where nobody said.
-    plate_thickness : of the plates that pegs stand through, in mm; None where nobody said.
-    first_side : the set-up before this one, which had another side of the part up; None where there was none.
-    program, passing : what the machine does while the part is held, and where its tools come nearest to what
-        holds it; None where that is not known.
+    support_height : of these supports, in mm; None where it is not given.
+    plate_thickness : of the plates that pegs stand through, in mm; None where it is not given.
+    first_side : the set-up before this one, in which another side of the part was up; None where there was
+        none.
+    program : what the machine does while the part is held; None without a program.
+    passing : where its tools come nearest to what holds the part; None where that is not known.
     cutting : the jaw force that the program's tools ask for; None where their forces are not known.
-    bending : how far clamping bends the part; None where nobody asked.
-    bend : beyond which a part that bends or gives is warned of, in mm.
-    bent : how far the pegs bend; None where nobody knows how high they press.
-    listed_as : what ``number`` counts.
-    moved : by how many columns and rows all stands further on than the fixture is listed.
-    is_asked_place : whether somebody said where.
+    bending : how far clamping bends the part; None where it was not asked for.
+    bend : largest bending or movement of the part in mm without a caution.
+    bent : how far the pegs bend; None where it is not known how high they press.
+    listed_as : noun of what ``number`` counts.
+    moved : (columns, rows) by which the set-up is moved from where the fixture is listed.
+    is_asked_place : whether the place on the plate was asked for.
     """
 
     number: int
@@ -143,8 +145,9 @@ class SheetDetails:
 
     @property
     def paper_size(self) -> str:
-        """The key of the paper, "a4" or "letter": the one asked for, else
-        "letter" for inch units and "a4" for mm.
+        """The key of the paper, "a4" or "letter".
+
+        It is the paper asked for; if none is, "letter" for lengths in inches and "a4" for mm.
         """
         return self.paper or ("letter" if self.unit.force == "lbf" else "a4")
 
@@ -162,8 +165,8 @@ class Caution:
 
     Parameters
     ----------
-    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "bending", "load", "capture", "reading" or
-        "pose".
+    kind : "unfit", "zero", "edge", "closure", "amplification", "location", "bending", "load", "capture",
+        "reading" or "pose".
     sentence : for people; lengths in it are in mm or inch as asked for.
     """
 
@@ -177,7 +180,7 @@ class CaliperCheck:
 
     Parameters
     ----------
-    left, right : (column, row) of the hole on the first carrier and on the other.
+    left, right : (column, row) of a hole on the first carrier, and of a hole on the other.
     distance : between their centres, in mm.
     placed : how many of the two hold a peg of the fixture.
     """
@@ -189,11 +192,11 @@ class CaliperCheck:
 
 
 def choose_caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
-    """Return the pair of holes to measure the opening between: one in each carrier's column at the opening.
+    """Return the pair of holes between which to measure the opening.
 
-    These are the first carrier's last column and the other carrier's first. The holes are as level as
-    possible, so that calipers held square to the plates span them. Among those, pairs with most pegs of the
-    fixture come first, then the lowest rows.
+    One is in the first carrier's last column and one in the other carrier's first, which face each other. The
+    holes are as level as possible, so that calipers square to the plates span them. Among equally level
+    pairs, those with most pegs of the fixture come first, then those in the lowest rows.
     """
     first, second = toolkit.carriers
     rows = sorted({peg.row for peg in fixture.pegs})
@@ -218,10 +221,10 @@ def choose_caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
 
 
 def measure_edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
-    """Return for each peg the distance in mm from its centre to the nearer edge that
-    ends its path along the touched face.
+    """Return for each peg the distance in mm along the touched face from its centre to the nearer edge.
 
-    It is inf where there is no edge (a whole circle, tangent joints).
+    An edge ends the peg's path along the face. The distance is inf where there is none (a whole circle,
+    tangent joints).
     """
     return [
         float(edge)
@@ -234,10 +237,11 @@ def measure_edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Tool
 def list_cautions(
     fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """Return the cautions of a fixture: unfit, program zero, contacts, forces, bending, loads, then seating.
+    """Return the cautions of a fixture, in this order: unfit, program zero, contacts, forces, bending, loads,
+    seating.
 
     ``distances`` are those of :func:`measure_edge_distances`. Where the seating is not known, the last
-    caution is about other fixtures in the same holes.
+    caution is instead about other fixtures in the same holes.
     """
     found: list[Caution] = []
     margin, error = fixture.quality.get("closure_margin", inf), fixture.quality.get("location_error", 0.0)
@@ -306,8 +310,9 @@ def list_cautions(
 
 
 def find_placing(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
-    """Return the columns and rows by which a fixture is moved on its plate: to
-    ``at``, or if None to the plate's middle.
+    """Return (columns, rows) by which a fixture is moved on its plate from where it is listed.
+
+    It is moved to the hole ``at``, or if that is None to the plate's middle.
     """
     if at is None:
         return find_move_to_middle(fixture, result.toolkit, result.workpiece)
@@ -315,8 +320,8 @@ def find_placing(fixture: Fixture, result: Result, at: str | None) -> tuple[int,
 
 
 def find_part_lift(supports: ChosenSupports | None, support_height: float | None) -> float:
-    """Return the height in mm of the part's lower side above the plates: that
-    of its supports, or 0 without any.
+    """Return the height in mm of the part's lower side above the plates: that of its supports, or 0 without
+    supports.
     """
     if supports is None:
         return 0.0
@@ -327,11 +332,11 @@ def find_part_lift(supports: ChosenSupports | None, support_height: float | None
 def find_pressed_height(
     thickness: float | None, peg_height: float | None, supports: ChosenSupports | None, lift: float
 ) -> float | None:
-    """Return the height in mm above the part's lower side up to which pegs press on
-    a prism; None where nothing is known.
+    """Return the height in mm, above the part's lower side, up to which pegs press on a prism; None where it
+    is unknown.
 
-    It is the lesser of the part's thickness (or that asked for with supports) and of ``peg_height``, above
-    the plates, less ``lift``.
+    It is the lesser of two: the part's thickness (if that is None, the thickness that supports were asked
+    with), and ``peg_height``, which counts from the plates, minus ``lift``. Either may be unknown.
     """
     if thickness is None and supports is not None:
         thickness = supports.supports.request.thickness
@@ -342,8 +347,9 @@ def find_pressed_height(
 def choose_zero_to_set(
     program: Program | None, workpiece: Workpiece, question: SheetQuestion, unit: Unit
 ) -> PartZero:
-    """Return the part zero to set at the machine: the program's if there is one and
-    none is asked for, else the asked one.
+    """Return the part zero to set at the machine.
+
+    It is the one asked for; if none is, that of the program, and without a program the usual one.
     """
     if program is not None and question.zero is None:
         return PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
@@ -360,8 +366,10 @@ def collect_hold_details(
     count: int | None,
     listed_as: str,
 ) -> tuple[Fixture, SheetDetails]:
-    """Return a fixture held by friction (``rank`` from 1) and the details of its
-    setup sheet, without those of pegs.
+    """Return (fixture, details of its setup sheet) for the fixture with this rank, from 1, which friction
+    holds.
+
+    The details are without those of pegs.
     """
     query = result.query
     details = SheetDetails(
@@ -381,8 +389,9 @@ def collect_hold_details(
 
 
 def list_result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
-    """Return the cautions of the setup sheet of one fixture; arguments as of
-    :func:`collect_sheet_details`.
+    """Return the cautions of the setup sheet of the fixture with this rank.
+
+    Arguments are those of :func:`collect_sheet_details`.
     """
     fixture, details = collect_sheet_details(result, rank, **asked)
     if fixture.hold is not None:
@@ -409,23 +418,23 @@ def collect_sheet_details(
     bending: Bending | None = None,
     **asked: Any,
 ) -> tuple[Fixture, SheetDetails]:
-    """Return one fixture with all its figures of quality, and the details of its setup sheet.
+    """Return (fixture with all its figures of quality, details of its setup sheet).
 
     Parameters
     ----------
     rank : of the fixture, from 1.
-    loads : instead of those of the result, if given.
-    others : how many other fixtures use the same holes; counted in the result if None.
-    number, count : the rank in a larger result and how many that lists, for a fixture taken out of it.
-    supports : see :class:`SheetDetails`; with these the sheet is of their fixture in holes that all have
-        names.
+    loads : taken instead of those of the result; None takes these.
+    others : how many other fixtures use the same holes; None counts them in the result.
+    number, count : for a fixture taken out of a larger result, its rank there and how many that result lists.
+    supports : see :class:`SheetDetails`. The sheet then shows the fixture of the supports, moved so that all
+        its holes have names.
     result_hash, unit, first_side, listed_as, bending : see :class:`SheetDetails`.
     asked : the fields of a :class:`workhold.asking.sheet.SheetQuestion`.
 
     Raises
     ------
     InputError
-        For a jaw force, a coefficient of friction, a part zero or a place on the plate that cannot be.
+        For an impossible jaw force, coefficient of friction, part zero or place on the plate.
     """
     from workhold.seating.solver import SeatingSolver
     from workhold.statics.quality import measure_fixture

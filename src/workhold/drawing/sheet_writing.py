@@ -73,20 +73,21 @@ Block = Callable[[TextColumn], None]
 
 @frozen
 class SheetHeights:
-    """Heights in mm, z upward from the plane on which the part lies.
+    """Heights of a set-up in mm, z upward from the plane on which the part lies.
 
     Parameters
     ----------
     thickness : of the part.
-    peg_top : up to which pegs reach.
-    head_room : kept free above the pegs; None for a part that is no solid.
+    peg_top : of the pegs' upper ends.
+    head_room : height kept free above the pegs; None for a part that is no solid.
     supported_by : height of the supports, 0 without them.
-    plate_thickness : of the plates, through which pegs stand.
+    plate_thickness : of the plates through which pegs stand.
     peg_length : of the pegs.
     bands : for each peg the heights (low, high) at which it presses; None where they are unknown.
-    assumed : names of the fields above whose values nobody gave.
+    assumed : names of the fields above whose values were not given, but assumed.
     clamped_height : of the face on which the clamp on top presses; None without one.
-    dowel : the dowel on sale that stands out far enough, where no peg length was given; None where there is none.
+    dowel : where no peg length was given, a dowel on sale that stands out far enough; None where there is
+        none.
     """
 
     thickness: float
@@ -107,19 +108,19 @@ class SheetHeights:
 
     @property
     def known_up_to(self) -> float:
-        """The height in mm up to which the part's outline is known to hold."""
+        """The height in mm up to which the part is known to have its outline."""
         top = self.thickness if self.head_room is None else self.peg_top + self.head_room
         return min(top, self.thickness)
 
     def note_if_assumed(self, name: str) -> str:
-        """Return " (assumed)" for a height that nobody gave, else ""."""
+        """Return " (assumed)" if the height with this field name was not given; otherwise ""."""
         return " (assumed)" if name in self.assumed else ""
 
 
 def find_sheet_heights(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
 ) -> SheetHeights | None:
-    """Return the heights of a set-up; None if the thickness of the part is not known.
+    """Return the heights of a set-up; None where the part's thickness is not known.
 
     Raises
     ------
@@ -185,10 +186,11 @@ def find_clamped_height(supports: ChosenSupports | None, thickness: float) -> fl
 def find_peg_bands(
     fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
 ) -> tuple[Band | None, ...]:
-    """Return for each peg the heights (low, high) in mm at which it may press, None where unknown.
+    """Return for each peg the heights (low, high) in mm at which it may press; None for a peg where they are
+    unknown.
 
-    They are those that supports were asked with, else those of the solid, else of a prism; none is above
-    ``top``, the pegs' top.
+    They are those that the supports were asked with; without supports those of the solid, and without a solid
+    those of a prism. None is above ``top``, the pegs' top.
     """
     supports, solid = details.supports, number_solid(workpiece)
     if supports is not None:
@@ -210,13 +212,14 @@ class SetupSheet:
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : what the sheet is of.
+    fixture, workpiece, toolkit : what the sheet shows.
     details : what does not follow from these.
     lengths : how lengths are written.
-    cautions : what to beware of.
-    edge_distances : of the contacts from edges, in mm; inf where there are none.
-    heights : those that are known; None where the part's thickness is unknown.
-    zero_shown, origin_shown : whether part zero, and the point that places are measured from, are on the plan.
+    cautions : to be written on the sheet.
+    edge_distances : distance in mm of each contact from the nearest edge; inf where there is none.
+    heights : of the set-up; None where the part's thickness is unknown.
+    zero_shown, origin_shown : whether part zero, and the point that places are measured from, are on the
+        plan.
     """
 
     fixture: Fixture
@@ -247,14 +250,16 @@ class SetupSheet:
 
     @property
     def seating(self) -> SeatingSentences | None:
-        """The sentences on where else the pegs can hold the part; None where the sheet does not show them."""
+        """The sentences on other places in which the pegs can hold the part; None where the sheet does not
+        show them.
+        """
         if self.details.seating is None:
             return None
         return SeatingSentences(self.details.seating, self.fixture, self.toolkit, self.lengths)
 
     @property
     def datum(self) -> Datum:
-        """The point and lines that places are measured from."""
+        """The point and the lines from which places are measured."""
         return self.toolkit.datum
 
     @property
@@ -271,7 +276,9 @@ class SetupSheet:
 
     @property
     def is_closed_at_once(self) -> bool:
-        """Whether one thing is set and tightened, rather than two clamps in turn."""
+        """Whether a single length is set and tightened; False with two clamps that are tightened one after
+        the other.
+        """
         return len(self.fixture.travels) == 1
 
     @property
@@ -284,12 +291,13 @@ Writer = Callable[[TextColumn, SetupSheet], None]
 
 @frozen
 class MovingBlocks:
-    """The blocks and steps of a sheet about what moves.
+    """The blocks and steps of a sheet about the carriers that move.
 
     Parameters
     ----------
-    settings : the blocks about the lengths to set.
-    steps : what to do, one or two sentences each, up to the machine's zero.
+    settings : returns the functions that write the blocks about the lengths to set.
+    steps : returns the steps of setting up, one or two sentences each, up to the setting of the machine's
+        zero.
     """
 
     settings: Callable[[SetupSheet], list[Writer]]
@@ -312,7 +320,7 @@ def write_heading(column: TextColumn, words: str) -> None:
 
 
 def write_fact_or_field(column: TextColumn, name: str, value: str | None) -> None:
-    """Write a fact; where its value is None, a line to write it on."""
+    """Write a name with its value; where the value is None, with a line to write it on by hand."""
     if value is not None:
         column.write_fact(name, value, bold=True)
         return
@@ -328,8 +336,10 @@ def write_fact_or_field(column: TextColumn, name: str, value: str | None) -> Non
 
 
 def make_peg_rows(sheet: SetupSheet) -> tuple[list[str], list[list[str]], str]:
-    """Return the header and the rows of the table of the pegs, and a clause
-    on its forces that ends before "of".
+    """Return (header, rows, clause) of the table of the pegs.
+
+    The clause explains the forces, such as "N per kN: N of the pegs on the part for each kN"; the caller
+    continues it with "of" and the force that is meant.
     """
     force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.format_number
     per = "N per kN" if unit.newtons == 1 else f"per {KILO:.0f} {unit.force}"
@@ -347,7 +357,7 @@ def make_peg_rows(sheet: SetupSheet) -> tuple[list[str], list[list[str]], str]:
 
 
 def write_flats(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write what the table's flat angles mean, where pegs have flats."""
+    """Write the meaning of the table's flat angles; nothing where no peg has a flat."""
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.write_paragraph(
@@ -366,8 +376,8 @@ def describe_lie(sheet: SetupSheet) -> str:
 
 
 def describe_pegs_in_holes(sheet: SetupSheet) -> str:
-    """Return a sentence, with a leading space, on pegs that stand in holes of the part; "" where none
-    does.
+    """Return a sentence, with a leading space, on the pegs that stand in holes of the part; "" where there
+    are none.
     """
     faces = sheet.workpiece.numbered.inside
     inside = [peg.hole for peg in sheet.fixture.pegs if peg.face in faces]
@@ -379,8 +389,8 @@ def describe_pegs_in_holes(sheet: SetupSheet) -> str:
 
 
 def write_dowel(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write what the pegs are, their fit, length and height above the
-    plates, with fields for what is unknown.
+    """Write what the pegs are, their fit, length and height above the plates; unknown values get a line to
+    write on.
     """
     details, lengths, fit = sheet.details, sheet.lengths, sheet.details.tolerance.fit
     column.y += 3
@@ -413,8 +423,9 @@ def write_dowel(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def find_usual_dowel(sheet: SetupSheet, heights: SheetHeights) -> SoldDowel | None:
-    """Return the shortest dowel on sale that stands out as far as usual, but not
-    above ``heights.peg_top``; None for none.
+    """Return the shortest dowel on sale that stands out of the plates as far as usual.
+
+    Its top must not be above ``heights.peg_top``. Returns None where no dowel on sale fits.
     """
     diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT

@@ -59,7 +59,7 @@ class SideFigure:
 
     @property
     def levels(self) -> list[tuple[float, str]]:
-        """(height in mm, words) of the levels to mark, from the lowest up."""
+        """(height in mm, words) of each level to mark, from the lowest to the highest."""
         heights, number = self.view.heights, self.lengths.format_number
         marks: dict[float, list[str]] = {0.0: ["the part lies here"]}
         marks.setdefault(heights.thickness, []).append("top of the part")
@@ -78,7 +78,7 @@ class SideFigure:
 
     @property
     def is_clamped_lower(self) -> bool:
-        """Whether the clamp on top presses below the top of the part."""
+        """Whether the clamp on top presses on a face that is lower than the top of the part."""
         return self.view.clamp is not None and self.view.clamped_height < self.view.heights.thickness
 
     @property
@@ -88,7 +88,9 @@ class SideFigure:
 
     @property
     def dimensions(self) -> list[tuple[float, float, str]]:
-        """(from, to, words) of the heights in mm to dimension; the last stands outermost."""
+        """(from, to, words) of each dimension at the left, heights in mm; the last of
+        them stands outermost.
+        """
         heights, words = self.view.heights, self.lengths.format_length
         low, found = -heights.supported_by, list[tuple[float, float, str]]()
         if heights.supported_by:
@@ -99,18 +101,18 @@ class SideFigure:
 
     @property
     def left_room(self) -> float:
-        """The room for the dimensions at the left, page units."""
+        """The width of the room for the dimensions at the left, page units."""
         lines = self.dimensions
         return OUT + BETWEEN * len(lines) + BEND + max(measure_text(words, WORDS) for _, _, words in lines)
 
     @property
     def right_room(self) -> float:
-        """The room for the words of levels at the right, page units."""
+        """The width of the room for the words of levels at the right, page units."""
         return BEND + 8 + max(measure_text(words, WORDS) for _, words in self.levels)
 
     @property
     def top_room(self) -> float:
-        """The room above the drawing for the title and the clamp on top, page units."""
+        """The height of the room above the drawing for the title and the clamp on top, page units."""
         return TITLE_ROOM + (ABOVE if self.view.clamp is None else CLAMP_ROOM)
 
     @property
@@ -155,13 +157,14 @@ class SideFigure:
         return notes
 
     def compute_largest_scale(self, width: float, most: float, plan: float) -> float:
-        """Return the largest scale factor, paper over model, that fits and is at
-        most ``LARGER`` times the plan's.
+        """Return the largest scale factor, mm on paper per mm, at which the view fits.
+
+        It is at most ``LARGER`` times the plan's.
 
         Parameters
         ----------
         width, most : width and largest height on the page, page units.
-        plan : factor of the plan's scale.
+        plan : scale factor of the plan.
         """
         extent = self.view.extent
         across = (width - self.left_room - self.right_room) / extent.width
@@ -169,8 +172,9 @@ class SideFigure:
         return min(LARGER * plan, across / UNITS_PER_MM, high / UNITS_PER_MM)
 
     def compute_height(self, width: float, factor: float) -> float:
-        """Return the height in page units of the view with its lettering, ``width``
-        page units wide, at a scale factor.
+        """Return the height in page units of the view with its lettering, drawn ``width`` page units wide.
+
+        ``factor`` is the scale factor, mm on paper per mm.
         """
         notes = TextColumn(Scene.make_page((1.0, 1.0), ""), 0.0, 0.0, width)
         notes.write_paragraph(" ".join(self.notes), NOTE)
@@ -178,7 +182,10 @@ class SideFigure:
         return self.top_room + drawn + NAMES_ROOM + (notes.y + NOTE_GAP)
 
     def draw(self, scene: Scene, box: Box, name: str, factor: float) -> None:
-        """Draw the view with its lettering into a page box, at a scale with this name and factor."""
+        """Draw the view with its lettering into a page box.
+
+        ``name`` is that of the scale, such as "1:2", and ``factor`` its mm on paper per mm.
+        """
         head = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
         head.draw_rule(1.4)
         head.write_line(f"{self.title}, scale {name}", TITLE, bold=True)
@@ -228,8 +235,9 @@ class SideFigure:
             self.draw_top_clamp(scene, page)
 
     def draw_part(self, scene: Scene, page: View) -> None:
-        """Draw the part up to the height where its outline is known; above,
-        pale, with its level faces dashed.
+        """Draw the part up to the height up to which its outline is known.
+
+        Above that height it is drawn pale, with its level faces dashed.
         """
         view, heights = self.view, self.view.heights
         known = page.map_box(Box(view.part[0], 0.0, view.part[1], heights.known_up_to))
@@ -270,8 +278,8 @@ class SideFigure:
             )
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
-        """Draw the heights at which a peg presses, as a thick line on the
-        part; nothing where they are unknown.
+        """Draw the heights at which a peg presses as a thick line on the part; nothing where they are
+        unknown.
         """
         if one.band is None:
             return
@@ -318,8 +326,9 @@ class SideFigure:
             scene.add_text((left - BEND + 4, at), words, WORDS, "end")
 
     def draw_names(self, scene: Scene, page: View, row: Box) -> None:
-        """Write the names of pegs, clamps and supports below the plates, each with a
-        leader; names of one place are joined.
+        """Write the names of pegs, clamps and supports below the plates, each with a leader.
+
+        Names of things at the same horizontal place are joined to one.
         """
         view = self.view
         found: dict[tuple[float, str], list[str]] = {}
@@ -351,12 +360,13 @@ def make_box_path(box: Box) -> str:
 def move_apart(
     wanted: Sequence[float], sizes: Sequence[float], gap: float, low: float, high: float
 ) -> list[float]:
-    """Return the middles of names with these sizes on a line, at least ``gap``
-    apart, nearest to the wanted places.
+    """Return the middles of names on a line, at least ``gap`` apart, as near to their wanted middles as
+    possible.
 
-    The result is in the order of ``wanted``. Names keep their order along the line. Where they do not all fit
-    between ``low`` and ``high``, they begin at ``low``. The sum of squares of the moves is least: runs of
-    names that touch move together (pool adjacent violators).
+    ``wanted`` are the wanted middles and ``sizes`` the names' lengths; the result has the order of
+    ``wanted``. Along the line the names stand in the order of their wanted middles. They lie between ``low``
+    and ``high``, or begin at ``low`` where there is too little room. The sum of squares of the moves is
+    least: runs of names that touch move together (pool adjacent violators).
 
     Examples
     --------

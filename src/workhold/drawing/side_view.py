@@ -1,11 +1,12 @@
-"""What there is in a view of a set-up from the side: spans across the view, and what the part hides.
+"""The contents of a view of a set-up from the side: spans across the view, and what the part hides.
 
-Only what is known is drawn. Of a drawing the part is a prism. Of a solid the outline holds up to the pegs'
-head room; above it the view knows the part's height alone, and how far its level upper faces reach.
+Only what is known is drawn. A part from a drawing is a prism. A part from a solid has its outline up to the
+pegs' head room; above it only the part's height is known, and how far its level upper faces reach.
 
 Glossary
 --------
 across : along the view's horizontal axis, from left to right, in mm.
+span : (least, greatest) horizontal coordinate of a thing in the view, in mm.
 hidden : behind the part, as seen by the viewer.
 """
 
@@ -75,14 +76,15 @@ class SideContact:
 
     Parameters
     ----------
-    name : its hole.
+    name : name of its hole.
     at, radius : its horizontal coordinate and its radius, in mm.
     touches : horizontal coordinate of the point where it touches the part.
-    band : the heights at which it presses; None where they are unknown.
-    is_hidden : whether the part stands before it.
+    band : the heights (low, high) at which it presses; None where they are unknown.
+    is_hidden : whether the part is between it and the viewer.
     hole : for a clamp with a known hole, the hole's horizontal coordinate; None for pegs.
     is_clamp : whether it is the tip of a clamp.
-    heights : from which to which height it reaches, where these are its own; None if it reaches as pegs do.
+    heights : heights (low, high) of its carrier, where these are its own; None if it reaches as high as pegs
+        do.
     """
 
     name: str
@@ -114,14 +116,15 @@ class SideView:
     heights : of everything.
     part : span of the part's outline.
     upper : span of the part above ``heights.known_up_to``, as far as it is known.
-    tops : spans of its level upper faces above ``heights.known_up_to``, each with its height.
-    feet : spans on which it lies; the whole outline where no level face below is known.
+    feet : spans on which the part lies; the whole outline where no level lower face is known.
     plates, walls : their spans.
     contacts : pegs and clamps.
-    pads, pad_radius : the supports.
-    clamp, tip_radius : the clamp on top; None without one.
-    clamped_height : at which it presses.
-    wall_heights : from which to which height walls reach, where these are their own.
+    pads, pad_radius : the supports, and the radius of each.
+    clamp, tip_radius : horizontal coordinate of the clamp on top (None without one), and the radius of its
+        tip.
+    clamped_height : height at which the clamp on top presses.
+    wall_heights : heights (low, high) of walls, where these are their own; otherwise None.
+    tops : (span, height) of each level upper face above ``heights.known_up_to``.
     """
 
     way: ViewDirection
@@ -160,9 +163,9 @@ def choose_side_view(
     heights: SheetHeights,
     supports: ChosenSupports | None = None,
 ) -> SideView:
-    """Return the side view in which no wall stands before the part and most pegs stand clear of each other.
+    """Return the best side view: no wall stands before the part, and most pegs stand clear of each other.
 
-    Among equal ones the widest least gap between pegs counts.
+    Among equally good views, the one with the widest least gap between pegs is chosen.
     """
     way = max(
         WAYS, key=lambda one: (sees_past_walls(bench, one), *measure_peg_spread(bench, one), -WAYS.index(one))
@@ -206,15 +209,15 @@ def choose_side_view(
 
 
 def sees_past_walls(bench: BenchDrawing, way: ViewDirection) -> bool:
-    """Return whether every wall covers less than half of the part's width in the view."""
+    """Return whether every wall hides less than half of the part's width in the view."""
     low, high = way.project_box(bench.shown.part)
     walls = [way.project_box(wall.bar) for wall in bench.shown.walls]
     return all(min(high, b) - max(low, a) < 0.5 * (high - low) for a, b in walls)
 
 
 def measure_peg_spread(bench: BenchDrawing, way: ViewDirection) -> tuple[int, float]:
-    """Return the number of gaps between neighbouring pegs in the view, and
-    the least gap in mm (0 without gaps).
+    """Return (number of gaps between neighbouring pegs in the view, least gap in mm); the least gap is 0
+    without gaps.
     """
     pegs = [bench.fixture.pegs[k] for k in bench.placed]
     places = sorted(
@@ -243,7 +246,10 @@ def merge_spans(spans: Iterable[Span]) -> list[Span]:
 def collect_spans(
     loops: Iterable[Sequence[Sequence[float]]], bench: BenchDrawing, way: ViewDirection
 ) -> list[Span]:
-    """Return the disjoint horizontal spans in the view of level faces, given as loops in the part's frame."""
+    """Return the disjoint horizontal spans that level faces have in the view.
+
+    ``loops`` are the borders of the faces, in the part's frame.
+    """
     found = []
     for number, loop in enumerate(loops):
         rows = [list(vertex) for vertex in loop]
@@ -286,7 +292,7 @@ def list_side_contacts(
 
 
 def hides_point(outline: NDArray[np.float64], at: Point, way: ViewDirection) -> bool:
-    """Return whether a loop of the part lies between a plan point and the viewer.
+    """Return whether the part's loop ``outline`` lies between a point of the plan and the viewer.
 
     ``outline`` (N, 2) has its points in mm with y downward, as on a page.
     """

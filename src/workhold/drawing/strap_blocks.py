@@ -24,14 +24,14 @@ MOST_LOADS = 6
 
 
 def get_hold(fixture: Fixture) -> tuple[StrappedHold, StrapQuestion]:
-    """Return the straps of a fixture of a list, and what was asked of them."""
+    """Return (straps of a fixture of a result, what was asked about straps)."""
     hold = fixture.hold
     assert isinstance(hold, StrappedHold)
     return hold, make_question(fixture.listing.result.query)
 
 
 def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
-    """Writes what to set and what follows, for a picture."""
+    """Write the settings and figures of a part under straps into a column, for a picture."""
     hold, asked = get_hold(fixture)
     write_force_needed(column, hold, lengths, 30)
     column.write_fact("Locators in", ", ".join(peg.hole for peg in fixture.pegs), bold=True)
@@ -49,7 +49,9 @@ def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) 
 
 
 def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUnit, size: float) -> None:
-    """Writes the force of each strap, large, where it is known."""
+    """Write the force that each strap needs, in large type, and how it compares with the rated force, as far
+    as known.
+    """
     unit = lengths.unit
     if hold.clamp_needed is not None:
         column.write_line("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
@@ -65,7 +67,7 @@ def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUn
 
 
 def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit, size: float) -> None:
-    """Writes what the tools of the program ask of each strap, where they do."""
+    """Write the force that the program's tools ask of each strap; nothing where they ask none."""
     hold, _ = get_hold(fixture)
     program = fixture.listing.result.query.program
     if hold.program_need is not None and program is not None:
@@ -73,7 +75,9 @@ def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit
 
 
 def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
-    """Writes where each strap is bolted, where its tip presses, and how high its heel stands."""
+    """Write the table of the straps: where each is bolted, where its tip presses, and
+    the height of its heel.
+    """
     hold, asked = get_hold(fixture)
     if not hold.straps:
         return
@@ -86,7 +90,7 @@ def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit)
 
 
 def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> None:
-    """Writes where and in which direction a hand seats the part."""
+    """Write at which point and in which direction a hand pushes the part against the locators."""
     if hold.push is None:
         return
     x, y = (lengths.format_number(value) for value in hold.push.at)
@@ -95,11 +99,14 @@ def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> N
 
 
 def list_strap_writers() -> tuple[list[Writer], list[Writer]]:
-    """Return the blocks that a sheet of straps needs beside the plan, and the others."""
+    """Return (functions that write the blocks needed beside the plan, functions for the other blocks) of a
+    sheet of straps.
+    """
     return [write_places, write_straps, write_strap_force], [write_strap_steps, write_strap_loads, write_seat]
 
 
 def write_places(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the locators: hole, x, y and touched face of each, and the part's turn."""
     write_heading(column, "Locators")
     sign = sheet.lengths.sign
     rows = [
@@ -111,6 +118,7 @@ def write_places(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_straps(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the straps and of the push by hand."""
     hold, _ = get_hold(sheet.fixture)
     write_heading(column, "Straps")
     if hold.straps:
@@ -121,6 +129,7 @@ def write_straps(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_strap_force(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the force of each strap."""
     hold, asked = get_hold(sheet.fixture)
     if not hold.needs:
         return
@@ -132,6 +141,7 @@ def write_strap_force(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_strap_steps(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the numbered steps of setting up."""
     hold, asked = get_hold(sheet.fixture)
     write_heading(column, "Setting up")
     steps = ["Clean plate, locators and part", *list_steps(hold, sheet.fixture, asked, sheet.lengths.unit)]
@@ -143,6 +153,7 @@ def write_strap_steps(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the table of loads with the force of each strap that each load needs."""
     hold, _ = get_hold(sheet.fixture)
     query, unit = sheet.fixture.listing.result.query, sheet.lengths.unit
     if not hold.clamp_needed_each:
@@ -161,6 +172,7 @@ def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_seat(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the seat: location error and distance of the nearest edge."""
     quality, lengths = sheet.fixture.quality, sheet.lengths
     write_heading(column, "The seat")
     column.write_fact("location error", lengths.format_length(quality["location_error"]))

@@ -19,7 +19,10 @@ ARROW_LENGTH = 46.0
 
 
 def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, weight: float) -> None:
-    """Draws the straps and supports of a seat, the holes of their bolts where these are their own, and the push by hand."""
+    """Draw the straps and supports of a seat, and the push by hand.
+
+    Where straps are bolted in holes of their own, these holes are drawn too.
+    """
     straps = toolkit.strap_set
     assert straps is not None
     radius = max(straps.tip_radius * view.scale, 3.0)
@@ -58,7 +61,10 @@ def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, 
 
 
 def locate_heel(start: Point, tip: Point, radius: float) -> Point:
-    """Return where a bar ends behind its bolt, on the page."""
+    """Return the page point at which a strap's bar ends behind its bolt.
+
+    ``start`` is the bolt, ``tip`` the strap's tip, ``radius`` the half width of the bar, in page units.
+    """
     far = hypot(start[0] - tip[0], start[1] - tip[1]) or 1.0
     behind = 1.0 + 2.0 * radius / far
     return tip[0] + (start[0] - tip[0]) * behind, tip[1] + (start[1] - tip[1]) * behind

@@ -52,10 +52,10 @@ class PlannedSupports:
 
     Parameters
     ----------
-    names, places : of the three supports' holes.
-    holes : their carriers, columns and rows.
-    pad_radius : of the pads.
-    clamp, tip_radius : of the clamp on top.
+    names, places : of the holes of the three supports.
+    holes : (carrier, column, row) of each of these holes.
+    pad_radius : of the supports' pads.
+    clamp, tip_radius : place of the clamp on top, and the radius of its tip.
     """
 
     names: tuple[str, ...]
@@ -116,7 +116,10 @@ class PlannedSupports:
 
 
 def choose_lettering_size(radius: float, view: View) -> float:
-    """Return the drawn radius in page units of a pad or tip of this radius in mm, at least ``SMALLEST``."""
+    """Return the radius in page units at which a pad or tip is drawn, at least ``SMALLEST``.
+
+    ``radius`` is its true radius in mm.
+    """
     return max(radius * view.scale, SMALLEST)
 
 
@@ -173,7 +176,7 @@ def write_supports(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_forces(column: TextColumn, sheet: SetupSheet, chosen: ChosenSupports) -> None:
-    """Write the clamp force wanted on top, and the largest force on a support."""
+    """Write the clamp force on top that is wanted, and the largest force on any support."""
     supports, clamp, unit = chosen.supports, chosen.clamp, sheet.lengths.unit
     noun = sheet.toolkit.moving.noun
     if supports.loads:
@@ -198,9 +201,9 @@ def write_forces(column: TextColumn, sheet: SetupSheet, chosen: ChosenSupports) 
 
 
 def describe_tipping(chosen: ChosenSupports, unit: Unit) -> str:
-    """Return a sentence on the largest moment that the clamp on top resists alone.
+    """Return a sentence on the largest tipping moment that the clamp on top resists alone.
 
-    The moment is the clamp's force times its distance from the nearest side of the triangle.
+    This moment is the clamp's force times its distance from the nearest side of the supports' triangle.
     """
     force = chosen.clamp.clamp_needed if chosen.supports.loads else 0.0
     what = "that force" if force > 0 else f"each {ROUND_FORCE:.0f} {unit.force}"
@@ -228,8 +231,9 @@ def describe_supports(sheet: SetupSheet, chosen: ChosenSupports) -> str:
 
 
 def explain_hole_names(sheet: SetupSheet, chosen: ChosenSupports) -> list[str]:
-    """Return sentences on a shift of the set-up or a changed opening, after which
-    holes differ from the list of fixtures.
+    """Return sentences on why holes have other names here than in the list of fixtures.
+
+    It may be a shift of the set-up, or another opening.
     """
     recounted, sentences = chosen.recounted, list[str]()
     if recounted.move != (0, 0):
@@ -248,7 +252,9 @@ def explain_hole_names(sheet: SetupSheet, chosen: ChosenSupports) -> list[str]:
 
 
 def list_support_steps(sheet: SetupSheet, steps: list[str]) -> list[str]:
-    """Return the steps of setting up with those about supports added; unchanged without supports."""
+    """Return the steps of setting up, with those about supports added to ``steps``; without supports
+    ``steps`` itself.
+    """
     chosen = sheet.details.supports
     if chosen is None:
         return steps

@@ -1,10 +1,10 @@
 """The blocks of a setup sheet about the part: which side of it is up, and how it was drawn.
 
-A part turned over shows the mirror image of its outline. Where that is the outline itself, nothing
-distinguishes the sides. Else two marks do that look like no others: the way from one to the other,
-counter-clockwise about the middle, is less than half a turn on one side only. Turning the part round does not
-change that. Of a solid the side is known, and which of its faces a
-set-up before has cut or located on.
+A part turned over shows the mirror image of its outline. Where that is the same outline, nothing
+distinguishes the sides. Otherwise two marks do (holes or faces, each unlike any other): on one side only, the
+way from one to the other, counter-clockwise about the middle, is less than half a turn. Turning the part in
+the plane does not change that. For a solid it is known which side is up, and which faces a set-up before this
+one has cut or located on.
 """
 
 from __future__ import annotations
@@ -79,11 +79,11 @@ class OutlineMark:
 
     Parameters
     ----------
-    hole : its number, counted from 1; 0 for a face.
-    place : its middle, from that of the part's outside dimensions, in the part's coordinates.
+    hole : number of the hole, from 1; 0 for a face.
+    place : its middle, in the part's coordinates, measured from the middle of the part's bounding box.
     length : of its outline.
     radius : of a round hole or an arc; 0 for what is straight or has several faces.
-    bend : 1 where it bulges out of the part, -1 into it, 0 where it is straight; 2 for holes.
+    bend : of a face, 1 where it bulges out of the part, -1 into it, 0 where it is straight; 2 for holes.
     """
 
     hole: int
@@ -93,7 +93,9 @@ class OutlineMark:
     bend: int
 
     def is_like(self, other: OutlineMark) -> bool:
-        """Return whether two marks look the same: equal bend, length and radius to a share of ``SEEN``."""
+        """Return whether two marks look the same: equal bend, and equal length and radius to within a share
+        of ``SEEN``.
+        """
         sizes = ((self.length, other.length), (self.radius, other.radius))
         return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
 
@@ -110,8 +112,8 @@ class OutlineMark:
 
 
 def list_marks(workpiece: Workpiece) -> list[OutlineMark]:
-    """Return at most ``MOST_MARKS`` marks: the holes, then the faces of the
-    outer outline, longest first of each.
+    """Return at most ``MOST_MARKS`` marks: first the holes, then the faces of the outer outline, each longest
+    first.
     """
     outer, (x, y) = workpiece.outer_count, workpiece.center
     segments = {face.number: face.segment for face in workpiece.faces}
@@ -135,10 +137,11 @@ def list_marks(workpiece: Workpiece) -> list[OutlineMark]:
 
 
 def find_distinguishing_marks(workpiece: Workpiece) -> tuple[OutlineMark, OutlineMark] | None:
-    """Return the two marks, each unlike any other, that are plainest to see; None where there are no two.
+    """Return the two most visible marks that are unlike any other mark; None where there are no two such
+    marks.
 
-    They span the largest triangle with the part's middle. A triangle counts twice with one hole and three
-    times with two.
+    They are the pair that spans the largest triangle with the part's middle. The triangle's area counts twice
+    if one of them is a hole, three times if both are.
     """
     marks = list_marks(workpiece)
     x0, y0, x1, y1 = workpiece.bounds
@@ -187,7 +190,9 @@ def describe_upper_side(workpiece: Workpiece, fixture: Fixture, lengths: LengthU
 
 
 def write_side_up(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write which side of the solid is up, and which of its faces the set-up before cut or located on."""
+    """Write which side of the solid is up, and which of its faces the set-up before this one cut or located
+    on.
+    """
     solid, before = sheet.workpiece.solid, sheet.details.first_side
     assert solid is not None
     write_heading(column, "Which side is up" if before is None else "Second set-up of the same part")
@@ -198,7 +203,10 @@ def write_side_up(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def describe_solid_side_up(solid: SolidOutline, before: FirstSide | None) -> list[str]:
-    """Return sentences on which side of the solid is up, and on the set-up before this one, if any."""
+    """Return sentences on which side of a solid is up, and on the set-up before this one.
+
+    ``before`` is None where there was no set-up before.
+    """
     up = solid.axis.replace("-", "−")
     sentences = [f"{up} of the file points up."]
     if before is None:
@@ -217,7 +225,7 @@ def describe_solid_side_up(solid: SolidOutline, before: FirstSide | None) -> lis
 
 
 def describe_faces_before(before: FirstSide) -> list[str]:
-    """Return sentences on faces that the first set-up cuts, and faces that both set-ups touch."""
+    """Return sentences on the faces that the first set-up cuts, and on those that both set-ups touch."""
     cut, found = list_face_numbers(before.cut_of_solid), list[str]()
     if before.cut:
         found.append(
@@ -240,7 +248,7 @@ def describe_faces_before(before: FirstSide) -> list[str]:
 
 
 def list_face_numbers(numbers: Sequence[int]) -> str:
-    """Return face numbers in words, such as ``faces 1, 2 and 5``; "" without any."""
+    """Return face numbers in words, such as "faces 1, 2 and 5"; "" if there are none."""
     if not numbers:
         return ""
     return f"{'face' if len(numbers) == 1 else 'faces'} {join_words([str(number) for number in numbers])}"

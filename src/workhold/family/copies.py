@@ -59,8 +59,8 @@ class PackedCopies:
 
     Parameters
     ----------
-    shifts : columns and rows by which each copy is moved, from the lowest row up, from left to right.
-    at_most : it is proven that there is room for no more copies than this.
+    shifts : (columns, rows) by which each copy is moved, from the lowest row up, from left to right.
+    at_most : proven upper bound of the number of copies that the plate holds.
     """
 
     shifts: tuple[Shift, ...]
@@ -73,8 +73,8 @@ class CopyOutlines:
 
     Parameters
     ----------
-    outline : (S, 2, 2) chords of the part's outline, as pairs of points.
-    cores : (B, 2, 2) axes of the bodies, from a clamp's hole to its tip; both ends are equal for a locator.
+    outline : (S, 2, 2) start and end points of the S chords of the part's outline.
+    cores : (B, 2, 2) ends of the axes of the B bodies: from a clamp's hole to its tip; equal for a locator.
     radius : (B,) of the bodies.
     """
 
@@ -105,8 +105,9 @@ def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> 
 
 
 def measure_distances(one: Array, other: Array) -> Array:
-    """Return the distances (N, M) of segments (N, 2, 2) from others (M, 2, 2), each
-    a pair of points; 0 where they cross.
+    """Return the distances (N, M) of N straight segments from M others; 0 where two cross.
+
+    ``one`` is (N, 2, 2) and ``other`` (M, 2, 2), each segment a pair of points.
     """
 
     def from_ends(ends: Array, pieces: Array) -> Array:
@@ -118,8 +119,9 @@ def measure_distances(one: Array, other: Array) -> Array:
         return np.asarray(np.hypot(*np.moveaxis(off - share[:, :, None] * way, 2, 0)))
 
     def side(pieces: Array, points: Array) -> Array:
-        """Return (N, M) the sign of the side of each segment (N, 2, 2) on which points
-        (M, 2) lie: 1 left, -1 right, 0 on it.
+        """Return (N, M) on which side of N lines M points lie: 1 left, -1 right, 0 on the line.
+
+        ``pieces`` (N, 2, 2) are two points of each line, ``points`` is (M, 2).
         """
         way, off = (pieces[:, 1] - pieces[:, 0])[:, None], points[None] - pieces[:, 0][:, None]
         return np.asarray(np.sign(way[:, :, 0] * off[:, :, 1] - way[:, :, 1] * off[:, :, 0]))
@@ -132,11 +134,11 @@ def measure_distances(one: Array, other: Array) -> Array:
 
 
 def is_clear(bodies: CopyOutlines, move: Array, gap: float) -> bool:
-    """Return whether a copy and another one, moved by ``move`` (2,) in mm, keep clear of each other.
+    """Return whether two copies, the second one moved by ``move`` (2,) in mm, keep clear of each other.
 
-    Bodies must not overlap; parts must be ``gap`` mm from each other and from the other copy's bodies.
-    Comparing boundaries is enough: neither copy fits within the other, so where they overlap, their outlines
-    cross.
+    Bodies (pegs and clamps) must not overlap. The part of each copy must be ``gap`` mm from the part and the
+    bodies of the other copy. Comparing boundaries is enough: no copy fits within another, so where they
+    overlap, their outlines cross.
     """
     outline, cores = bodies.outline + move, bodies.cores + move
     slack = GAP_SLACK
@@ -153,10 +155,10 @@ def is_clear(bodies: CopyOutlines, move: Array, gap: float) -> bool:
 def find_too_near_shifts(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, gap: float, spread: Shift
 ) -> set[Shift]:
-    """Return all shifts, up to ``spread`` columns and rows in each direction,
-    at which two copies are not clear.
+    """Return all shifts (columns, rows) at which two copies are not clear, up to ``spread`` in each
+    direction.
 
-    The set contains (0, 0), and with each shift its negative.
+    The set contains (0, 0), and with each shift its negative. ``gap`` is in mm.
     """
     bodies, pitch = collect_bodies(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
     points = np.concatenate([bodies.outline.reshape(-1, 2), bodies.cores.reshape(-1, 2)])
@@ -173,7 +175,9 @@ def find_too_near_shifts(
 
 
 def list_places_on_plate(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
-    """Return the shifts at which a fixture stands on a plate with this many columns and rows, row by row.
+    """Return the shifts (columns, rows) at which a fixture stands on a plate of this size, row by row.
+
+    ``columns`` and ``rows`` are the numbers of the plate's holes.
 
     Raises
     ------
@@ -210,15 +214,15 @@ def pack_copies(
 
     Parameters
     ----------
-    columns, rows : of holes of the plate.
+    columns, rows : numbers of the plate's holes.
     gap : smallest distance in mm between a part and anything of another copy.
-    seconds : time limit, after which the best packing known is returned; None proves it.
+    seconds : time limit, after which the best packing found so far is returned; None runs until it is proven.
 
     Raises
     ------
     InputError
-        For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without
-        SciPy.
+        For a vise (its one jaw cannot press several parts alike), for a plate that holds no copy, and when
+        SciPy is not installed.
     """
     if toolkit.strap_set is not None:
         raise InputError(
@@ -243,7 +247,10 @@ def pack_copies(
 
 
 def place_first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
-    """Return the places that remain when each is taken in turn unless it is too near to one taken before."""
+    """Return a greedy packing: the places in order, each taken unless it is too near to a place taken before.
+
+    ``near`` are the shifts that are too near.
+    """
     taken: list[Shift] = []
     for i, j in places:
         if all((i - a, j - b) not in near for a, b in taken):
@@ -257,9 +264,9 @@ def sort_by_rows(places: list[Shift]) -> tuple[Shift, ...]:
 
 
 def find_crowds(near: set[Shift]) -> list[list[Shift]]:
-    """Return sets of shifts that are pairwise too near, each set beginning with (0, 0).
+    """Return sets of shifts, each a list that begins with (0, 0), whose members are pairwise too near.
 
-    Every shift that is too near is the difference of two members of some set.
+    Every shift in ``near`` is the difference of two members of some set.
     """
     left, out = near - {(0, 0)}, []
     ordered = sorted(left, key=lambda shift: (abs(shift[0]) + abs(shift[1]), shift))
@@ -281,7 +288,8 @@ def solve_packing(
 ) -> PackedCopies:
     """Return the largest set of places no two of which are too near, found by integer programming.
 
-    ``known`` is a packing to fall back on, ``seconds`` the time limit (None: until proven).
+    ``near`` are the shifts that are too near, ``known`` a packing that is returned if no better one is found,
+    and ``seconds`` the time limit (None: until proven).
     """
     from scipy.optimize import LinearConstraint
     from scipy.sparse import csr_array
@@ -321,7 +329,9 @@ WEIGHT = 0.6
 def make_copies(
     row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: PackedCopies
 ) -> list[Fixture]:
-    """Return a fixture, given as a table of one row, at each shift of a packing."""
+    """Return the copies of a fixture at all shifts of a packing; the fixture is given
+    as a table of one row.
+    """
     moved = (shift_fixture(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
     return [make_fixture_of_row(one, toolkit, 0, workpiece) for one in moved]
 

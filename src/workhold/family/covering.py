@@ -4,11 +4,13 @@ Set cover is solved exactly (``family.solver``). An answer is taken as the least
 bound, rounded up, is the number of sets it found.
 
 The curve gives for each number of set-ups the least worst loss among the members, proven. At a bound on the
-loss only the sets of members that patterns hold matter, and of these only the ones inside no other: few, even
-of 10^6 patterns. Let f(bound) be the fewest of them that hold every member. It falls as the bound grows, and
-only at losses that occur. Bisection over the losses between two bounds at which f differs finds where it
-falls. Between two bounds a pattern is left out that at the upper one holds no more than another at the lower
-one, so the work soon gets small.
+loss only the sets of members that patterns hold matter, and of these only those contained in no other: few,
+even of 10^6 patterns. Let f(bound) be the smallest number of them that hold every member. It falls as the
+bound grows, and only at losses that occur. Where f differs between two bounds, bisection over the losses
+between them finds where it falls. In the bisection between two bounds a pattern is left out if it holds at
+the upper bound no more members than another pattern holds at the lower bound, so the work soon gets small.
+
+In shapes, S is the number of sets, M that of members, P that of patterns, and W that of words.
 """
 
 from __future__ import annotations
@@ -53,8 +55,8 @@ class Cover:
 
     Parameters
     ----------
-    sets : numbers of the sets, in order.
-    at_least : no cover has fewer sets than this.
+    sets : indices of the sets, ascending.
+    at_least : proven lower bound of the number of sets in any cover.
     """
 
     sets: tuple[int, ...]
@@ -62,15 +64,14 @@ class Cover:
 
     @property
     def is_least(self) -> bool:
-        """Whether it is proven that there is none with fewer sets."""
+        """Whether it is proven that no cover has fewer sets."""
         return self.at_least == len(self.sets)
 
 
 def find_maximal_sets(masks: WordArray) -> NDArray[np.int64]:
-    """Return the indices (K,) of the sets (S, W), given as bits, that are
-    contained in no other set, largest first.
+    """Return the indices (K,) of the sets that are contained in no other set, largest set first.
 
-    Of equal sets the first is kept.
+    ``masks`` (S, W) holds each set as bits in words. Of equal sets only the first is kept.
     """
     words = list(masks.T)
     by_mask = np.lexsort(words)
@@ -88,10 +89,10 @@ def find_maximal_sets(masks: WordArray) -> NDArray[np.int64]:
 
 
 def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
-    """Return the sorted indices of a cover by the greedy algorithm; sets (S,
-    M) say which members each set holds.
+    """Return the sorted indices of the sets of a cover, found by the greedy algorithm.
 
-    Each step takes the set that holds most members not held yet. Every member must be in some set.
+    ``sets`` (S, M) says which members each set holds; every member must be in some set. Each step takes the
+    set that holds most of the members not yet held.
     """
     left, chosen = np.ones(sets.shape[1], np.bool_), []
     while left.any():
@@ -101,11 +102,10 @@ def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
 
 
 def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
-    """Return the fewest of some sets (S, M) that together hold all M
-    members; every member must be in some set.
+    """Return a cover with the fewest sets: such that together they hold all M members.
 
-    After ``deadline``, on the clock ``time.monotonic``, it is the best cover known, with the lower bound
-    proven so far.
+    ``sets`` (S, M) says which members each set holds; every member must be in some set. After ``deadline``,
+    on the clock ``time.monotonic``, the result is the best cover found, with the lower bound proven so far.
     """
     from scipy.optimize import LinearConstraint
 
@@ -126,8 +126,9 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
 
 
 def bound_cover_size(sets: BoolArray) -> int:
-    """Return a lower bound of the size of any cover: a number of members no two
-    of which share a set, found greedily.
+    """Return a lower bound of the number of sets in any cover.
+
+    It is a number of members, found greedily, no two of which are in the same set. ``sets`` is (S, M).
     """
     beside = sets.T.astype(np.int64) @ sets.astype(np.int64) > 0
     left, count = np.ones(len(beside), np.bool_), 0
@@ -142,9 +143,10 @@ def bound_cover_size(sets: BoolArray) -> int:
 def find_first_cover(
     sets: BoolArray, count: int, known: tuple[int, ...], deadline: float | None = None
 ) -> tuple[int, ...]:
-    """Return the lexicographically first cover of ``count`` of the sets (S, M), as sorted indices.
+    """Return the lexicographically first cover of ``count`` sets, as sorted indices.
 
-    ``known`` is such a cover, sorted. After the deadline it is the first one known.
+    ``sets`` is (S, M); ``known`` is any cover of ``count`` sets, sorted. After the deadline the result is the
+    first cover found so far.
     """
     chosen: list[int] = []
     left = np.ones(sets.shape[1], np.bool_)
@@ -166,8 +168,10 @@ def find_first_cover(
 def complete_cover(
     sets: BoolArray, left: BoolArray, first: int, count: int, deadline: float | None
 ) -> tuple[int, ...] | None:
-    """Return at most ``count`` indices of sets, from ``first`` on, that hold the
-    members ``left`` (M,); None if not found.
+    """Return at most ``count`` indices of sets, none below ``first``, that together hold the members ``left``
+    (M,).
+
+    Returns None where no such sets were found; unless the deadline has passed, there are none.
     """
     if not left.any():
         return ()
@@ -179,7 +183,7 @@ def complete_cover(
 
 
 def convert_bits_to_sets(masks: WordArray, members: int) -> BoolArray:
-    """Return sets given as bits in words (S, W) as booleans (S, M)."""
+    """Return sets as booleans (S, M), from sets as bits in words (S, W)."""
     bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")
     return bits[:, :members].astype(np.bool_)
 
@@ -193,11 +197,11 @@ class Point:
 
     Parameters
     ----------
-    setups : how many set-ups.
-    loss : the worst loss among the members, each held by that of the patterns which suits it best.
-    at_least : no fewer set-ups hold every member within this loss.
-    patterns : their numbers, in the order of their identities.
-    is_least : whether it is proven that so many set-ups lose no less.
+    setups : number of set-ups.
+    loss : the worst loss among the members, each held by the one of ``patterns`` with the least loss on it.
+    at_least : proven lower bound of the number of set-ups that hold every member within this loss.
+    patterns : their numbers, ascending, in the order of their identities.
+    is_least : whether it is proven that no other choice of as many set-ups has a smaller loss.
     """
 
     setups: int
@@ -209,15 +213,15 @@ class Point:
 
 @frozen(eq=False)
 class LossTable:
-    """The loss of each pattern on each member that it holds, sorted by loss.
+    """The loss of each pattern on each member that it holds: E entries, sorted by loss.
 
     Parameters
     ----------
-    members : how many there are.
-    words : (P, W) of the patterns, in lexicographic order.
-    number : (P,) of the patterns among all patterns of the family, from 0 in that order.
-    pattern, member : (E,) rows of ``words``, and numbers of members.
-    loss : (E,) not less than the one before.
+    members : the number M of members.
+    words : (P, W) the patterns, in lexicographic order.
+    number : (P,) number of each pattern among all patterns of the family, from 0, in that order.
+    pattern, member : (E,) the entry's row of ``words``, and its member's number.
+    loss : (E,) ascending.
     """
 
     members: int
@@ -228,7 +232,9 @@ class LossTable:
     loss: NDArray[np.float64]
 
     def make_masks(self, bound: float) -> NDArray[np.uint64]:
-        """Return for each pattern the set of members that it holds within ``bound``, as bits (P, K)."""
+        """Return for each pattern the set of members that it holds within ``bound``, as
+        bits in words (P, K).
+        """
         end = int(np.searchsorted(self.loss, bound, side="right"))
         out = np.zeros((len(self.words), -(-self.members // WORD)), np.uint64)
         member = self.member[:end].astype(np.uint64)
@@ -237,7 +243,9 @@ class LossTable:
         return out
 
     def select_patterns(self, chosen: IntArray) -> LossTable:
-        """Return the table of the patterns at these rows only, rows renumbered in the given order."""
+        """Return the table reduced to the patterns at the rows ``chosen``, with rows renumbered in that
+        order.
+        """
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0
@@ -245,8 +253,8 @@ class LossTable:
         return LossTable(self.members, self.words[chosen], self.number[chosen], *entries)
 
     def list_losses(self, patterns: Sequence[int]) -> NDArray[np.float64]:
-        """Return the losses (K, M) of the patterns at some rows on each member;
-        NaN where a pattern does not hold it.
+        """Return the losses (K, M) of the K patterns at some rows on each member; NaN where the pattern does
+        not hold it.
         """
         out = np.full((len(patterns), self.members), np.nan)
         for row, place in enumerate(patterns):
@@ -256,7 +264,10 @@ class LossTable:
 
 
 def make_loss_table(members: Sequence[Member]) -> LossTable:
-    """Return the loss table of members; there is at least one, and each is held by some pattern."""
+    """Return the loss table of members.
+
+    There must be at least one member, and each must be held by some pattern.
+    """
     words = np.concatenate([one.words for one in members])
     owner = np.repeat(np.arange(len(members)), [len(one.words) for one in members])
     loss = np.concatenate([one.loss for one in members])
@@ -277,11 +288,12 @@ class Search:
 
     Parameters
     ----------
-    table : what is searched.
-    bounds : (B,) the distinct losses that matter, ascending from the least bound at which every member is held.
-    deadline : see ``family.choose_covering_spans.cover``.
+    table : the losses.
+    bounds : (B,) the distinct losses that matter, ascending from the least bound at which every member is
+        held.
+    deadline : on the clock ``time.monotonic``; see :func:`cover`.
     progress : called with the fraction done.
-    covers : found so far: by index into ``bounds``, the numbers of patterns and the proven least number of them.
+    covers : found so far, by index into ``bounds``; the sets of each are given by numbers of patterns.
     """
 
     table: LossTable
@@ -292,8 +304,10 @@ class Search:
     done: float = 0.0
 
     def search_at_bound(self, place: int, table: LossTable) -> None:
-        """Find the fewest patterns of ``table`` that cover all members within
-        ``bounds[place]``; store them in ``covers``.
+        """Find the fewest patterns of ``table`` that together hold all members within the loss
+        ``bounds[place]``.
+
+        They are stored in ``covers``.
         """
         masks = table.make_masks(float(self.bounds[place]))
         kept = find_maximal_sets(masks)
@@ -302,10 +316,11 @@ class Search:
         self.covers[place] = Cover(numbers, found.at_least)
 
     def search_between(self, low: int, high: int, table: LossTable, share: float) -> None:
-        """Find covers at bounds between two indices with known covers, wherever
-        their sizes may differ, by bisection.
+        """Find covers at the bounds between two indices ``low`` and ``high``, by bisection where their sizes
+        differ.
 
-        ``share`` is the fraction of the work that this call stands for.
+        The covers at both indices must be known. ``share`` is the fraction of the work that this call stands
+        for.
         """
         if high - low < 2 or len(self.covers[low].sets) == len(self.covers[high].sets):
             self.done += share
@@ -318,10 +333,10 @@ class Search:
         self.search_between(middle, high, table, share / 2)
 
     def list_worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
-        """Return the rows of patterns that a cover between two bounds may need.
+        """Return the rows of those patterns that a cover at a bound between two indices may need.
 
-        A pattern is left out if the members it holds at the upper bound are all held by another one at the
-        lower bound.
+        A pattern is left out if some other pattern holds, at the lower bound already, all members that the
+        first one holds at the upper bound.
         """
         least, most = (table.make_masks(float(self.bounds[place])) for place in (low, high))
         largest = find_maximal_sets(least)
@@ -340,9 +355,9 @@ def compute_curve(
 ) -> tuple[Point, ...]:
     """Return the points of the curve, fewest set-ups and largest loss first.
 
-    Numbers of set-ups that lose no less than a smaller number are left out. Losses above ``most_loss``,
-    within which every member can be held, are not accepted. After ``deadline``, on the clock
-    ``time.monotonic``, points are what is known by then.
+    A number of set-ups is left out where a smaller number has the same loss. Losses above ``most_loss`` are
+    not accepted; within ``most_loss`` every member must be held by some pattern. After ``deadline``, on the
+    clock ``time.monotonic``, the points are those known by then.
     """
     least = float(np.max([table.loss[table.member == one].min() for one in range(table.members)]))
     bounds = np.unique(table.loss[(table.loss >= least) & (table.loss <= most_loss)])
@@ -368,9 +383,11 @@ def list_curve_points(search: Search) -> Iterator[Point]:
 
 
 def name_patterns(search: Search, place: int) -> tuple[int, ...]:
-    """Return the numbers of the patterns at index ``place`` of the bounds: the lexicographically first cover.
+    """Return the numbers of the patterns of the lexicographically first cover at index ``place`` of the
+    bounds.
 
-    Only sets that no other set contains are used, each named by the first pattern that has it.
+    It is chosen among the sets of members that no other set contains; each set is named by the first pattern
+    that has it.
     """
     table = search.table
     masks = table.make_masks(float(search.bounds[place]))

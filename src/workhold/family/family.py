@@ -54,10 +54,10 @@ class MemberRequest:
 
     Parameters
     ----------
-    name : what it is called among the others.
-    query : what is asked for it: the whole list of its fixtures.
+    name : unique name of the part in the family.
+    query : asks for the whole list of its fixtures.
     path, digest : its file and the file's SHA-256, "" where there is none.
-    zero : its zero; None for the usual one of its part.
+    zero : its part zero; None for the usual one.
     """
 
     name: str
@@ -69,7 +69,8 @@ class MemberRequest:
     def turn_over(self, read: Workpiece | None) -> MemberRequest:
         """Return the request for the other side of the part.
 
-        ``read`` is a solid's other side as its file was read for it; None for a drawing.
+        ``read`` is the workpiece of a solid's other side, as its file was read for it; None for a part from a
+        drawing.
 
         Raises
         ------
@@ -98,25 +99,16 @@ class ExcludedPart:
 
 @define(frozen=True, slots=False, eq=False)
 class Family:
-    """A family.
+    """A family of parts in one toolkit.
 
     Parameters
     ----------
     toolkit : in which all members are held.
-    figure : of which losses are computed.
+    figure : the figure of quality of which losses are computed.
     members : the parts that some pattern holds.
-    left_out : the others.
-    points : of the curve, fewest set-ups first; empty without a member.
-    table : which pattern holds which member; None without a member.
-
-    Parameters
-    ----------
-    toolkit : in which all members are held.
-    figure : of which losses are computed.
-    members : the parts that some pattern holds.
-    left_out : the others.
-    points : of the curve, fewest set-ups first; none without a member.
-    table : which pattern holds which member, None without a member.
+    left_out : the parts that no pattern holds.
+    points : of the curve, fewest set-ups first; empty if there is no member.
+    table : the losses of patterns on members; None if there is no member.
     """
 
     toolkit: Toolkit
@@ -134,13 +126,13 @@ class Family:
         return tuple(make_plan(point, self.table, self.members) for point in self.points)
 
     def plan(self, setups: int | None = None) -> FamilyPlan:
-        """Return the plan with the least loss and at most ``setups`` set-ups; None
-        for the plan with the fewest set-ups.
+        """Return the plan with at most ``setups`` set-ups and the least loss; with None the plan with the
+        fewest set-ups.
 
         Raises
         ------
         InputError
-            When so few set-ups cannot hold all members, or there is none.
+            When so few set-ups cannot hold all members, or there are no members.
         """
         if not self.plans:
             raise InputError("there is no plan: no pattern holds any of the parts.")
@@ -164,18 +156,18 @@ def make_family(
     left_out: Sequence[ExcludedPart] = (),
     progress: Callable[[float, int], None] = lambda fraction, found: None,
 ) -> Family:
-    """Return the family of some parts: all are designed for, then the curve is computed.
+    """Return the family of some parts: fixtures are searched for each part, then the curve is computed.
 
     Parameters
     ----------
     asked : at least one part; all with the same toolkit and the same first figure of the ranking.
     thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
-    most_loss : larger losses are not accepted; None is any.
-    seconds : time limit, after which the curve is what is known by then; None proves all of it.
-    same_zero : whether the zeros of all parts of a set-up must lie at one place, and the parts be turned
+    most_loss : larger losses are not accepted; None accepts any.
+    seconds : time limit, after which the curve is what is known by then; None runs until all of it is proven.
+    same_zero : whether in a set-up the zeros of all parts must lie at the same place, and all parts be turned
         alike.
-    left_out : parts that are left out already.
-    progress : called with the fraction done and how many fixtures were found.
+    left_out : parts that were left out before.
+    progress : called with the fraction done and the number of fixtures found.
 
     Raises
     ------
@@ -252,8 +244,9 @@ def make_family(
 
 
 def explain_missing_member(member: Member, has_patterns: bool) -> str:
-    """Return the reason why a part is no member; ``has_patterns`` says
-    whether some fixture of it may be used.
+    """Return the reason why a part is no member.
+
+    ``has_patterns`` says whether any fixture of the part may be used.
     """
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
@@ -320,7 +313,7 @@ def write_plan_json(plan: FamilyPlan, family: Family) -> str:
 
 
 def make_setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict[str, Any]:
-    """Return a set-up as a JSON object; ``numbers`` are the members' numbers by their ``id()``."""
+    """Return a set-up as a JSON object; ``numbers`` gives a member's number by the ``id()`` of the member."""
     fixture = setup.standing.fixture
     return {
         "pattern": {
@@ -334,8 +327,9 @@ def make_setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) ->
 
 
 def make_peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
-    """Return a peg's place as a JSON object: its hole, or for an unbolted clamp
-    its row or column and "hole": null.
+    """Return a peg's place as a JSON object.
+
+    It names the peg's hole; for an unbolted clamp its row or column, and "hole" is null.
     """
     carrier, place = toolkit.find_carrier(peg.carrier), {"column": peg.column, "row": peg.row}
     key, name = carrier.file_entry
@@ -346,8 +340,9 @@ def make_peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
-    """Return how a member, with this number, lies in a set-up, as a JSON object:
-    mm, degrees, numbers from the lists.
+    """Return as a JSON object how a member lies in a set-up, in mm and degrees.
+
+    ``number`` is the member's number; fixtures have their numbers in the lists.
     """
     fixture = one.fixture
     entry = {
@@ -370,15 +365,15 @@ def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str,
 
 
 def make_opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
-    """Return {"opening": ...} with the length in mm to set for a part, or a
-    list of the lengths of two clamps.
+    """Return {"opening": ...} with the length in mm to set for a part; with two clamps a list of both
+    lengths.
     """
     lengths = [round_length_for_file(setting.length) for setting in list_length_settings(fixture, toolkit)]
     return {"opening": lengths[0] if len(lengths) == 1 else lengths}
 
 
 def round_length_for_file(value: float) -> float:
-    """Return a length in mm rounded as it is written to the file, to 1e-9 mm."""
+    """Return a length in mm rounded to 1e-9 mm, as the file writes it."""
     return float(round_to_steps(np.array([value]), LENGTH_STEPS)[0])
 
 

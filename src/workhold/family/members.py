@@ -76,7 +76,7 @@ LOSS_DECIMALS = 9
 
 @frozen
 class FigureThreshold:
-    """The value of a figure that every fixture used must reach.
+    """A limit of a figure that every fixture used must keep.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class FigureThreshold:
 
 
 def make_threshold(name: str, value: float) -> FigureThreshold:
-    """Return the threshold of a figure named as a user writes it.
+    """Return the threshold of a figure; ``name`` is the figure's name as a user writes it.
 
     Raises
     ------
@@ -105,15 +105,17 @@ def make_threshold(name: str, value: float) -> FigureThreshold:
 
 
 def describe_loss_figure(figure: Figure) -> str:
-    """Return the name of the figure of losses; for the location error, "effective location error"."""
+    """Return the name of the figure of which losses are computed; "effective location error" for the location
+    error.
+    """
     return f"effective {figure.words}" if figure.key == LOCATION else figure.words
 
 
 def compute_losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
-    """Return the losses (N,) of values (N,) of a figure: their ratio to the best value, 1 or more.
+    """Return the losses (N,), 1 or more, of values (N,) of a figure.
 
-    Values equal to the best have a loss of 1. The loss is inf for NaN, and where the ratio is not finite and
-    positive.
+    A loss is the ratio of the value to the best value, or its inverse where more is better. It is 1 for a
+    value equal to the best one, and inf for NaN and where the ratio is not finite and positive.
     """
     values = np.round(values, FIGURE_DECIMALS)
     known = values[~np.isnan(values)]
@@ -129,7 +131,7 @@ def compute_losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.fl
 
 
 def format_loss(loss: float) -> str:
-    """Return a loss with three decimals, rounded up so that the true loss is never larger; "any" if infinite.
+    """Return a loss as text with three decimals, rounded up so that it is never too small; "any" for inf.
 
     >>> format_loss(1.0), format_loss(1.1871), format_loss(float("inf"))
     ('1.000', '1.188', 'any')
@@ -140,9 +142,9 @@ def format_loss(loss: float) -> str:
 def may_be_used(
     table: FixtureTable, thresholds: Sequence[FigureThreshold], tolerance: Tolerance, with_unfit: bool
 ) -> NDArray[np.bool_]:
-    """Return (N,) whether each fixture reaches every threshold and is fit for a workshop.
+    """Return (N,) booleans: whether each fixture reaches every threshold and is fit for a workshop.
 
-    ``with_unfit`` skips the test of fitness.
+    With ``with_unfit`` fixtures need not be fit.
     """
     good = np.ones(len(table), np.bool_) if with_unfit else ~are_unfit(table.quality, tolerance)
     for one in thresholds:
@@ -161,7 +163,7 @@ def mirror_loop(loop: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def mirror_load(load: Load) -> Load:
-    """Return a load on the part in the frame of the part turned over about y."""
+    """Return a load in the frame of the part turned over about its y axis."""
     low, high = load.directions
     directions = ANY_DIRECTION if (low, high) == ANY_DIRECTION else (180.0 - high, 180.0 - low)
     return evolve(
@@ -170,8 +172,8 @@ def mirror_load(load: Load) -> Load:
 
 
 def renumber_segments(workpiece: Workpiece) -> dict[int, int]:
-    """Return a mapping from each segment's number to its number in the part
-    turned over, whose loops run in reverse.
+    """Return by segment number the number that the segment has once the part is turned over, which reverses
+    its loops.
     """
     out, first = dict[int, int](), 0
     for loop in workpiece.loops:
@@ -181,16 +183,16 @@ def renumber_segments(workpiece: Workpiece) -> dict[int, int]:
 
 
 def make_other_side_query(query: Query, read: Workpiece | None = None) -> Query:
-    """Return the query for the part turned over about y; angles in the vise stay as they are.
+    """Return the query for the part turned over about its y axis; angles in the vise stay as they are.
 
     Parameters
     ----------
-    read : the other side of a solid, as its file was read with the opposite axis up; None of a drawing.
+    read : the other side of a solid, as its file was read with the opposite axis up; None for a drawing.
 
     Raises
     ------
     InputError
-        For an outline at the height of pegs alone, which the other side does not have.
+        For an outline taken at the height of the pegs only, because the other side may have another outline.
 
     Examples
     --------
@@ -235,7 +237,7 @@ def make_other_side_query(query: Query, read: Workpiece | None = None) -> Query:
 
 
 def mirror_zero(zero: PartZero) -> PartZero:
-    """Return part zero in the frame of the part turned over: the same point of the part."""
+    """Return part zero, the same point of the part, in the frame of the part turned over about its y axis."""
     x, y = zero.point
     return PartZero((0.0 - x, y), zero.words)
 
@@ -252,19 +254,19 @@ class Member:
 
     Parameters
     ----------
-    name : what it is called among the others.
+    name : unique name of the part in the family.
     path : its file, "" where there is none.
     digest : SHA-256 of that file in hexadecimal, "" where there is none.
     query : what was asked for it.
-    zero : its zero, X0 Y0.
-    fixtures : how many fixtures it has.
-    patterns : how many patterns hold it, one and its half turn counted once.
+    zero : its part zero.
+    fixtures : number of its fixtures.
+    patterns : number of patterns that hold it, a pattern and its half turn counted once.
     best : the best value of the figure of which losses are computed; NaN where it has no fixture.
-    words : (P, W) the patterns that hold it, in lexicographic order.
+    words : (P, W) the P patterns that hold it, in lexicographic order.
     loss : (P,) of each pattern.
-    number : (P,) place of the best fixture with each pattern in the list of all fixtures, from 0.
-    turned : (P,) whether these are after half a turn of everything.
-    table : these P fixtures as they stand in their patterns: as listed, or after half a turn of everything.
+    number : (P,) index, from 0 in the list of all fixtures, of the best fixture that has each pattern.
+    turned : (P,) whether that fixture has the pattern only after half a turn of everything.
+    table : the P fixtures as they stand in their patterns: as listed, or after half a turn of everything.
     """
 
     name: str
@@ -298,7 +300,7 @@ def make_member(
     ----------
     thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
     zero : part zero; None for the usual one.
-    same_zero : whether patterns also differ where the zero lies elsewhere or the part is turned otherwise.
+    same_zero : whether fixtures count as of one pattern only if part zero and the part's turn agree as well.
 
     Raises
     ------
@@ -333,7 +335,8 @@ def make_member(
 def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:
     """Return the number of distinct patterns among rows (N, W), a pattern and its half turn counted once.
 
-    ``number`` (N,) is each row's fixture, and ``turn`` (N,) whether the row is the half turn of it.
+    ``number`` (N,) is the fixture of each row. ``turn`` (N,) says whether the row is the half turn of that
+    fixture.
     """
     ahead = np.full((int(number.max(initial=-1)) + 1, words.shape[1]), np.iinfo(np.int64).max)
     # What comes first is the smaller of the two of each fixture, whatever the order in which they are given.
@@ -348,11 +351,10 @@ def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.
 
 
 def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, IntArray]:
-    """Return the fixtures followed by their images under half a turn of everything,
-    and each row's index (N,) in the list.
+    """Return (table, indices (N,)): the fixtures followed by their images under half a turn of everything.
 
-    A fixture has an image where the half turn leaves its arrangement as it is, no hole is blocked, and the
-    image's angle is allowed.
+    The indices are those of each row's fixture in the given table. A fixture has an image where the half turn
+    leaves its arrangement as it is, no hole is blocked, and the image's angle is allowed.
     """
     toolkit = query.toolkit
     tables, numbers = [table], [np.arange(len(table))]
@@ -373,14 +375,16 @@ def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, Int
 
 
 def are_at_allowed_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
-    """Return (N,) whether angles in degrees lie in an allowed range of the
-    query; all do where there are no ranges.
+    """Return (N,) booleans: whether each angle in degrees lies in an allowed range of the query.
+
+    All are True where the query has no ranges.
     """
     return np.asarray(lie_in_angle_ranges(degrees, query.restrictions.angles))
 
 
 def spill_to_disk(table: FixtureTable) -> FixtureTable:
-    """Return the table, or if it is large an equal one whose columns are mapped from a temporary file.
+    """Return the table, or in place of a large one an equal table whose columns are mapped from a temporary
+    file.
 
     Raises
     ------

@@ -78,7 +78,10 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
 
 
 def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
-    """Draw axes, steps and points of the curve into a page box; points that are not proven are hollow."""
+    """Draw axes, steps and points of the curve into a page box; points that are not proven are hollow.
+
+    ``chosen`` is marked; None marks no point.
+    """
     last, most = points[-1].setups, points[0].loss
     step = choose_axis_step(max(most - 1.0, 0.02) / MOST_LINES)
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
@@ -155,7 +158,7 @@ RULE = "#dfe3e8"
 
 @frozen
 class PageTitles:
-    """What stands on every page of a plan."""
+    """The words common to all pages of a plan."""
 
     count: int
     figure: Figure
@@ -184,8 +187,9 @@ def draw_setups(plan: FamilyPlan, figure: Figure, day: date, unit: Unit = MILLIM
 
 
 def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: PageTitles) -> Iterator[Scene]:
-    """Yield the pages of a set-up without their feet; ``before`` is the set-up before it, None for the
-    first.
+    """Yield the pages of a set-up without their feet.
+
+    ``before`` is the set-up before it, None for the first one; ``number`` is its own, from 1.
     """
     benches = [
         (one, make_bench(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
@@ -206,8 +210,8 @@ def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Pa
 
 
 def begin_page(setup: SetUp, before: SetUp | None, number: int, titles: PageTitles) -> Scene:
-    """Return a page with its heading: the set-up's number, where its pegs stand, and which are moved for
-    it.
+    """Return a page with its heading: the set-up's number, the holes of its pegs, and which pegs are moved
+    for it.
     """
     heading = f"Set-up {number} of {titles.count}: {format_count(len(setup.holdings), 'part')}"
     scene = Scene.make_page(LANDSCAPE, heading)
@@ -226,8 +230,9 @@ def list_holes(setup: SetUp) -> list[str]:
 
 
 def describe_heights(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
-    """Yield sentences on the heights at which carriers with heights of their own
-    touch; none where no part is a solid.
+    """Yield sentences on the heights at which carriers with heights of their own touch.
+
+    Yields nothing where no part is a solid.
     """
     toolkit = setup.standing.member.query.toolkit
     if all(one.member.query.workpiece.solid is None for one in setup.holdings):
@@ -240,8 +245,9 @@ def describe_heights(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
 
 
 def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
-    """Yield a sentence on the pegs to take out and to place after the set-up
-    before; nothing for the first set-up.
+    """Yield a sentence on the pegs to take out and to place after the set-up ``before``.
+
+    Yields nothing for the first set-up, which has none before it.
     """
     if before is None:
         return
@@ -257,7 +263,7 @@ def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
 
 
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
-    """Draw the plan of a set-up, with its standing part, into a page box."""
+    """Draw the plan of a set-up's pegs into a page box, holding one of its parts."""
     one = setup.standing
     workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
     bench = make_bench(one.fixture, workpiece, toolkit)
@@ -271,8 +277,8 @@ def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -
 def draw_parts(
     scene: Scene, benches: Sequence[tuple[Holding, BenchDrawing]], room: Box, titles: PageTitles
 ) -> None:
-    """Draw parts as they lie, each in a cell and all to one scale, above the table of what to set for
-    each.
+    """Draw parts as they lie in a set-up, each in a cell, all to one scale; below them the table of what to
+    set for each.
     """
     rows = [make_table_row(one, titles) for one, _ in benches]
     notes = [
@@ -310,13 +316,13 @@ def draw_parts(
 
 
 def make_grid(count: int, room: Box) -> list[Box]:
-    """Return ``count`` equal cells of a page box, row by row, with the number
-    of columns that makes them largest.
+    """Return ``count`` equal cells of a page box, row by row, in as many columns as
+    make the cells largest.
     """
     ways = [(across, -(-count // across)) for across in range(1, count + 1)]
 
     def size(way: tuple[int, int]) -> float:
-        """Return the size of a cell for a number of columns and rows."""
+        """Return the size of a cell for ``way``, a number of columns and a number of rows."""
         return min(room.width / way[0], 1.2 * room.height / way[1])
 
     across, down = max(ways, key=lambda way: (size(way), -way[0]))
@@ -341,7 +347,9 @@ def make_table_head(one: Holding, titles: PageTitles) -> list[str]:
 
 
 def make_table_row(one: Holding, titles: PageTitles) -> list[str]:
-    """Return the row of a part: what to set, its zero, its angle, its figure, its loss and its fixture."""
+    """Return the table row of a part: what to set, its zero, angle, figure, loss, and the number of its
+    fixture.
+    """
     fixture, number = one.fixture, titles.lengths.format_number
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [
@@ -357,8 +365,8 @@ def make_table_row(one: Holding, titles: PageTitles) -> list[str]:
 
 
 def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
-    """Yield the notes below the table: on the zero and the signs, and on parts
-    whose pegs stand in other columns.
+    """Yield the notes below the table: on part zero, on the signs, and on parts whose pegs stand in other
+    columns.
     """
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit
@@ -376,8 +384,9 @@ def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
 
 
 def compute_column_widths(head: list[str], rows: list[list[str]], width: float) -> list[float]:
-    """Return the widths of the table's columns in page units; the names get
-    what the others leave of ``width``.
+    """Return the widths of the table's columns in page units.
+
+    The column of names gets the width that the others leave of ``width``.
     """
     heads = [split_heading(words) for words in head]
     widths = [
@@ -394,8 +403,9 @@ def compute_column_widths(head: list[str], rows: list[list[str]], width: float) 
 
 
 def name_lines(name: str, width: float, most: int) -> list[str]:
-    """Return a part's name wrapped to at most ``most`` lines, the last one shortened if the name is
-    longer.
+    """Return a part's name wrapped to ``width`` page units, in ``most`` lines at most.
+
+    The last line is shortened where the name is longer.
     """
     room = width - 8
     lines = wrap_text(name, WORDS, room, bold=True) or [""]
@@ -407,8 +417,9 @@ def name_lines(name: str, width: float, most: int) -> list[str]:
 def draw_table(
     scene: Scene, room: Box, head: list[str], rows: list[list[str]], notes: list[str], most: int
 ) -> None:
-    """Draw the table of parts, numbers right-aligned, and the notes below it;
-    names have ``most`` lines at most.
+    """Draw the table of parts, with numbers right-aligned, and the notes below it.
+
+    Names take ``most`` lines at most.
     """
     widths = compute_column_widths(head, rows, room.width)
     heads = [split_heading(words) for words in head]
@@ -433,7 +444,9 @@ def draw_table(
 
 
 def split_heading(words: str) -> tuple[str, str]:
-    """Return a heading as two lines, the longer as short as possible; the first is "" for a single word.
+    """Return a heading in two lines, split so that the longer one is as short as possible.
+
+    The first line is "" for a single word.
 
     >>> split_heading("part"), split_heading("location error mm")
     (('', 'part'), ('location', 'error mm'))

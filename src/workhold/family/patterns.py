@@ -44,17 +44,19 @@ NO_PLACE = 1 << 40
 
 
 def group_carriers_by_columns(toolkit: Toolkit) -> list[int]:
-    """Return a number for each carrier, equal for carriers that shift by columns
-    together: 0, or its own for a sliding jaw.
+    """Return a group number for each carrier; carriers with the same number shift by columns together.
+
+    The number is 0, or for a sliding jaw a number of its own.
     """
     slides = [carrier.has_lattice and carrier.travel is not None for carrier in toolkit.carriers]
     return [number if own else 0 for number, own in enumerate(slides)]
 
 
 def map_carriers_by_half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
-    """Return for each carrier the carrier whose place it takes after half a turn of everything.
+    """Return for each carrier the index of the carrier whose place it takes after half a turn of everything.
 
-    Returns None where the half turn changes the arrangement.
+    ``arrangement`` is the arrangement's index. An entry is negative for a carrier without pegs that takes no
+    such place. Returns None where the half turn changes the arrangement.
     """
     places, one = toolkit.half_turned, toolkit.arrangements[arrangement]
     if places is None:
@@ -68,7 +70,7 @@ def map_carriers_by_half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, 
 
 
 def encode_patterns(table: FixtureTable, toolkit: Toolkit) -> IntArray:
-    """Return the patterns (N, W) of fixtures as rows of packed integers, equal for equal patterns.
+    """Return the patterns (N, W) of N fixtures, each as W whole numbers (words), equal for equal patterns.
 
     Their lexicographic order is that of the patterns' identities.
     """
@@ -89,16 +91,21 @@ def encode_patterns(table: FixtureTable, toolkit: Toolkit) -> IntArray:
 
 
 def find_least_counted(values: IntArray, inside: BoolArray) -> IntArray:
-    """Return the smallest (N, 1) of the values (N, P) where ``inside`` is true, 0 where it is nowhere."""
+    """Return (N, 1): the smallest of each row of ``values`` (N, P) among the entries where ``inside`` (N, P)
+    is True.
+
+    It is 0 in a row where none is True.
+    """
     found = np.where(inside, values, NO_PLACE).min(axis=1, keepdims=True, initial=NO_PLACE)
     return np.where(found == NO_PLACE, 0, found)
 
 
 def encode_zeros(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArray:
-    """Return part zero relative to the pegs, and the turn of the part, as whole steps (N, 3).
+    """Return (N, 3) whole numbers: part zero relative to the pegs (x, y), and the part's turn, each rounded
+    to steps.
 
-    Fixtures of one pattern have equal steps where the parts' zeros are at one place and their turns are
-    equal.
+    For fixtures of one pattern they are equal where the parts' zeros are at the same place and their turns
+    are equal.
     """
     carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
     counts = np.array([one.counted for one in toolkit.carriers])[carriers]
@@ -128,10 +135,10 @@ NOTHING = 1 << 40
 
 
 def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
-    """Return a fixture, a table of one row, moved by whole columns and rows;
-    the part moves with carrier group 0.
+    """Return a fixture (a table of one row) moved by whole columns and rows.
 
-    ``columns`` are by group of carriers, see :func:`group_carriers_by_columns`; ``rows`` apply to all.
+    ``columns`` gives the columns by group of carriers, see :func:`group_carriers_by_columns`; the part moves
+    with group 0. ``rows`` is the same for all.
     """
     carriers = toolkit.find_peg_carriers(one.arrangement)[0]
     groups, pitch = group_carriers_by_columns(toolkit), toolkit.carriers[0].pitch
@@ -149,10 +156,10 @@ def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], 
 
 
 def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
-    """Return the fixtures after half a turn of everything about z.
+    """Return the fixtures after everything is turned by half a turn about z.
 
-    All must be of one arrangement that the half turn leaves as it is. They are in the same rows and in
-    mirrored columns. Figures stay those before the turn.
+    All must be of one arrangement that the half turn leaves as it is. The pegs take up the same range of rows
+    as before, in reverse, and mirrored columns. Figures are those before the turn.
     """
     if not len(table):
         return table
@@ -194,14 +201,16 @@ def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
 
 
 def find_tips(table: FixtureTable, toolkit: Toolkit) -> NDArray[np.float64]:
-    """Return the places (N, K, 2) in mm of the tips of the fixtures' K clamps."""
+    """Return the places (N, K, 2) in mm of the tips of the K clamps of each of N fixtures."""
     x, y = toolkit.compute_hole_places(table.arrangement, table.column, table.row, table.jaw_separation)
     count = 1 if table.jaw_separation.ndim == 1 else table.jaw_separation.shape[1]
     return np.stack([x[:, -count:], y[:, -count:]], axis=2)
 
 
 def move_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) -> FixtureTable:
-    """Return fixtures of one arrangement with their clamps' tips at these places (N, K, 2) in mm."""
+    """Return fixtures of one arrangement with the tips of their clamps at the places ``tips`` (N, K, 2), in
+    mm.
+    """
     carriers = toolkit.arrangements[int(table.arrangement[0])].carriers
     travelled = np.zeros(tips.shape[:2])
     for clamp, peg in enumerate(range(len(carriers) - tips.shape[1], len(carriers))):
@@ -214,9 +223,9 @@ def move_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) 
 
 
 def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
-    """Return the sorted (carrier number, column, row) of a fixture's pegs, without the ends of a wall.
+    """Return (carrier index, column, row) of each peg of a fixture, sorted, without the ends of a wall.
 
-    A column or row without a meaning is ``NOTHING``.
+    A column or row that has no meaning for a peg is ``NOTHING``.
     """
     out = []
     carriers = toolkit.find_peg_carriers(one.arrangement)
@@ -229,9 +238,10 @@ def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
 
 
 def move_onto_pattern(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
-    """Return a fixture moved into the holes of another fixture of its pattern.
+    """Return a fixture moved into the holes of ``target``, a fixture of the same pattern.
 
-    Returns None where the holes cannot be met, or the opening of the jaws would be out of range.
+    Both are tables of one row. Returns None where the holes cannot be reached, or where the opening of the
+    jaws would be out of range.
     """
     mine, theirs, groups = (
         list_holes(one, toolkit),

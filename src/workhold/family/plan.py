@@ -54,13 +54,13 @@ class SetUpFreedom:
 
 @frozen
 class PlanStep:
-    """A set-up in its place in the order.
+    """A set-up in the order in which set-ups follow each other.
 
     Parameters
     ----------
-    setup : its number.
-    columns, rows : how far it is moved beside where it stood.
-    moved : how many pegs are to be placed that did not stand there in the set-up before.
+    setup : its index.
+    columns, rows : how far it is moved from where it stood.
+    moved : number of pegs to place because they did not stand there in the set-up before.
     """
 
     setup: int
@@ -70,7 +70,11 @@ class PlanStep:
 
 
 def find_freedom(toolkit: Toolkit) -> SetUpFreedom:
-    """Return in which directions set-ups of a toolkit may be moved: those in which its plates have no end."""
+    """Return whether set-ups of a toolkit may be moved by columns, and whether by rows.
+
+    They may where its plates have no end; by rows only where rows do not count from a wall and no hole is
+    blocked.
+    """
     plates, is_counted = toolkit.plates, toolkit.datum.fixes_rows
     return SetUpFreedom(
         columns=all(plate.columns is None for plate in plates),
@@ -87,8 +91,10 @@ def move_holes(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, in
 
 
 def list_moves(before: Holes, after: Holes, freedom: SetUpFreedom) -> Iterator[tuple[int, int]]:
-    """Yield (columns, rows) of no move, and of each move that brings a peg of
-    ``after`` onto a peg of ``before``.
+    """Yield (columns, rows): first (0, 0), then each move that brings a peg of ``after`` to a peg of
+    ``before``.
+
+    A move is 0 along directions in which set-ups may not be moved.
     """
     yield 0, 0
     for (one, column, row), (other, x, y) in product(before, after):
@@ -97,10 +103,10 @@ def list_moves(before: Holes, after: Holes, freedom: SetUpFreedom) -> Iterator[t
 
 
 def find_cheapest_move(before: Holes, after: Holes, freedom: SetUpFreedom) -> tuple[int, int, int]:
-    """Return (pegs to place, columns, rows) of the move of ``after`` that leaves
-    fewest pegs to place after ``before``.
+    """Return (pegs to place, columns, rows) of the move of ``after`` with the fewest pegs to place after
+    ``before``.
 
-    Among equal moves it is the shortest, then the first.
+    Of equally good moves it is the shortest, then the first.
     """
     there = Counter(before)
     best = min(
@@ -111,10 +117,10 @@ def find_cheapest_move(before: Holes, after: Holes, freedom: SetUpFreedom) -> tu
 
 
 def find_best_order(setups: Sequence[Holes], freedom: SetUpFreedom) -> list[PlanStep]:
-    """Return the steps through all set-ups, given by their holes, in the order that places fewest pegs.
+    """Return the steps through all set-ups in the order that needs the fewest pegs to be placed.
 
-    Of equal orders it is the first by numbers. All set-ups are moved so that the lowest column and row, where
-    they may be moved, are 0.
+    ``setups`` gives the holes of each set-up. Of equally good orders it is the first by indices. All set-ups
+    are moved so that the lowest column and row are 0 in the directions in which they may be moved.
     """
     cost = np.array([[find_cheapest_move(one, other, freedom)[0] for other in setups] for one in setups])
     path = find_shortest_path(cost) if len(setups) <= MOST_EXACT else find_greedy_path(cost)
@@ -137,8 +143,9 @@ def find_best_order(setups: Sequence[Holes], freedom: SetUpFreedom) -> list[Plan
 
 
 def find_shortest_path(cost: NDArray[np.int64]) -> list[int]:
-    """Return the first shortest path through all S places, as indices, from
-    the costs (S, S) from row to column.
+    """Return the shortest path through all S places, as indices; of equally short paths the first.
+
+    ``cost`` (S, S) is the cost from the place of the row to the place of the column.
     """
     count = len(cost)
     bit, every = 1 << np.arange(count), np.arange(count)
@@ -158,7 +165,11 @@ def find_shortest_path(cost: NDArray[np.int64]) -> list[int]:
 
 
 def find_greedy_path(cost: NDArray[np.int64]) -> list[int]:
-    """Return a path through all places from place 0, going each time to the cheapest place left."""
+    """Return a path through all S places, as indices: from place 0, always on to the nearest place not yet
+    visited.
+
+    ``cost`` (S, S) is the cost from the place of the row to the place of the column.
+    """
     path, left = [0], np.arange(len(cost)) != 0
     while left.any():
         path.append(int(np.argmin(np.where(left, cost[path[-1]], FAR))))
@@ -175,11 +186,11 @@ class Holding:
     member : the part.
     number : of the fixture in the list of all of the part's fixtures, best first, from 1.
     loss : of the fixture.
-    turned : whether the listed fixture is this one before half a turn of everything, after which the other jaw stands
-        still.
+    turned : whether the listed fixture lies here after half a turn of everything, so that the other jaw
+        stands still.
     row : the fixture as it stands in the set-up, a table of one row.
-    in_place : whether its pegs stand in the holes of the set-up; False in a vise whose largest opening, or smallest
-        gap, needs other columns.
+    in_place : whether its pegs stand in the holes of the set-up; False in a vise whose largest opening, or
+        smallest gap, needs other columns.
     """
 
     member: Member
@@ -196,7 +207,7 @@ class Holding:
 
     @property
     def figure(self) -> float:
-        """The value of the figure of losses."""
+        """The fixture's value of the figure of which losses are computed."""
         return float(self.row.quality[0, find_figure_number(self.member.query.rank_by[0]) or 0])
 
 
@@ -208,8 +219,8 @@ class SetUp:
     ----------
     pattern : its number among all patterns of the family, in the order of their identities.
     holdings : at least one, in the order of the family.
-    moved : how many pegs are to be placed that did not stand there in the set-up before; all of them in the
-        first.
+    moved : number of pegs to place because they did not stand there in the set-up before; in the first
+        set-up, of all pegs.
     """
 
     pattern: int
@@ -218,7 +229,7 @@ class SetUp:
 
     @property
     def standing(self) -> Holding:
-        """A holding whose pegs stand in the holes of the set-up."""
+        """The first holding whose pegs stand in the holes of the set-up."""
         return next(one for one in self.holdings if one.in_place)
 
 
@@ -237,13 +248,15 @@ class FamilyPlan:
 
     @property
     def moved(self) -> int:
-        """The number of pegs placed between the set-ups in all; those of the first set-up are not counted."""
+        """The sum over all set-ups, except the first, of the pegs to place."""
         return sum(setup.moved for setup in self.setups[1:])
 
 
 def make_plan(point: Point, table: LossTable, members: Sequence[Member]) -> FamilyPlan:
-    """Return the plan of a point of the curve: each member in the set-up
-    that suits it best, in the best order.
+    """Return the plan of a point of the curve.
+
+    Each member is in the set-up with the least loss on it, and set-ups are in the order that needs the fewest
+    pegs to be placed.
     """
     losses = table.list_losses(point.patterns)
     # Where two patterns suit a member alike, the one with the smaller identity has it.
@@ -268,9 +281,10 @@ def make_holding(member: Member, words: NDArray[np.int64]) -> Holding:
 
 
 def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
-    """Return the holdings of one pattern moved into the holes of the one that most of them can share.
+    """Return the holdings of one pattern, moved into the holes of that holding whose holes most of them can
+    share.
 
-    Those that cannot be moved there stay, with ``in_place`` False.
+    A holding that cannot be moved there stays where it is, with ``in_place`` False.
     """
     best: list[Holding] = []
     for target in holdings:
@@ -288,7 +302,9 @@ def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
 
 
 def sort_in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
-    """Return the set-ups in the order that places fewest pegs, each moved to where that order needs it."""
+    """Return the set-ups in the order that needs the fewest pegs to be placed, each moved to where this order
+    needs it.
+    """
     toolkit = setups[0].holdings[0].member.query.toolkit
     holes = [list_holes(setup.standing.row, toolkit) for setup in setups]
     out = []

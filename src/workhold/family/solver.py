@@ -1,4 +1,5 @@
-"""HiGHS, which branches and bounds, and comes with SciPy: what to choose so that it costs least.
+"""A choice of things of least total cost, found by the solver HiGHS (branch and bound), which comes with
+SciPy.
 
 References
 ----------
@@ -28,7 +29,7 @@ def load_solver() -> None:
     Raises
     ------
     InputError
-        When SciPy is not installed; with the remedy.
+        When SciPy is not installed; the message says how to install it.
     """
     try:
         import scipy.optimize  # noqa: F401
@@ -41,11 +42,11 @@ def load_solver() -> None:
 def find_best_choice(
     costs: NDArray[np.float64], constraint: Any, seconds: float | None
 ) -> tuple[list[int] | None, float | None]:
-    """Return the indices of the things to choose for least total cost, and a lower bound of that cost.
+    """Return (indices of the things chosen for least total cost, lower bound of that cost).
 
-    ``costs`` (N,) are those of the things, ``constraint`` is one of SciPy on the 0 or 1 of each. After
-    ``seconds`` (None: no limit) the choice is the best one known. Either result is None where it is not
-    known.
+    ``costs`` (N,) has the cost of each thing. ``constraint`` is one of SciPy on N variables, 1 for a thing
+    that is chosen, else 0. After ``seconds`` (None: no limit) the choice is the best one found. Either result
+    is None where it is not known.
     """
     from scipy.optimize import Bounds, milp
 

@@ -52,13 +52,14 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
     ----------
     module : its full name; ``prepare`` loads what the work needs and has no limit of time.
     content : foreign data.
-    options : plain data, as is the result.
-    what : the data, in words that begin a sentence.
+    options : plain data (as JSON has it); so is the result.
+    what : words for the data that can begin a sentence of an error message.
 
     Raises
     ------
     InputError
-        That of the work, or a sentence that the process crashed, took too long or took too much memory.
+        The InputError that the work raised, or a sentence that the process crashed, took too long or took too
+        much memory.
     RuntimeError
         For any other error of the work, with its traceback.
     """
@@ -114,7 +115,7 @@ def make_python_command(doing: str) -> list[str]:
 
 
 def read_outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
-    """Return the result that an ended child has written; raise an error as :func:`run_apart` does.
+    """Return the result that an ended child has written; raise the errors of :func:`run_apart`.
 
     Parameters
     ----------
@@ -176,8 +177,8 @@ def answer() -> None:
 
 
 def answer_order(order: Mapping[str, Any], content: bytes, out: int) -> Any:
-    """Return the result of an order's work; ``PREPARED`` is
-    written to the file descriptor ``out`` when it begins.
+    """Return the result of an order's work; ``PREPARED`` is written to the
+    file descriptor ``out`` when the work begins.
     """
     module = load_prepared_module(order["module"])
     os.write(out, PREPARED)
@@ -194,7 +195,7 @@ def load_prepared_module(name: str) -> ModuleType:
 
 
 def end_with_starter() -> None:
-    """Make the system end this process when its parent has closed the pipe to it; nothing on Windows."""
+    """Make the system end this process when its parent has closed the pipe to it; do nothing on Windows."""
     if sys.platform == "win32":
         return
     import fcntl
@@ -205,8 +206,8 @@ def end_with_starter() -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Limit the process's address space to ``size`` bytes,
-    and write no core dumps; nothing where the system cannot.
+    """Limit the process's address space to ``size`` bytes, and write no core
+    dumps; do nothing where the system cannot.
     """
     try:
         import resource
@@ -219,8 +220,8 @@ def limit_memory(size: int) -> None:
 
 
 def limit_processor(seconds: float) -> None:
-    """Make the system end the process after this many more
-    seconds of processor time; nothing where it cannot.
+    """Make the system end this process after ``seconds`` more of processor time; do nothing where the system
+    cannot.
     """
     try:
         import resource

@@ -34,8 +34,8 @@ unfinished: set[Path] = set()
 
 
 def refuse_unwritable(path: str | Path) -> None:
-    """Raise InputError for an output file that could not
-    be written in the end, before any work is done for it.
+    """Raise InputError if an output file could not be written; to be called before the work that makes its
+    content.
     """
     path = Path(path)
     target = resolve_file_path(path)
@@ -48,9 +48,7 @@ def refuse_unwritable(path: str | Path) -> None:
 
 
 def refuse_unwritable_folder(path: str | Path) -> None:
-    """Raise InputError for an output folder that could
-    not be created or written in the end; create nothing.
-    """
+    """Raise InputError if an output folder could not be created or written in; nothing is created."""
     path = Path(path)
     with explain_system_errors(path):
         existing = resolve_path(path)
@@ -101,7 +99,8 @@ def write_bytes(path: str | Path, content: bytes) -> None:
 def replace_file(path: Path) -> Iterator[int]:
     """Yield a file descriptor whose content replaces the path when the block ends without an error.
 
-    A device or a pipe is opened itself. Raises InputError when the file cannot be written.
+    A device or a pipe is not replaced but written to directly. Raises InputError when the file cannot be
+    written.
     """
     target = resolve_file_path(path)
     with explain_system_errors(path):
@@ -171,8 +170,8 @@ def explain_system_errors(path: Path) -> Iterator[None]:
 
 
 def probe_folder(folder: Path) -> None:
-    """Create a file in a folder and remove it, the only sure
-    test of whether that is allowed; raise OSError if not.
+    """Create a file in a folder and remove it; raise OSError if that is not
+    allowed, for which there is no surer test.
     """
     temporary = make_temporary_name(folder / "probe")
     os.close(os.open(temporary, NEW_FILE, 0o666))
@@ -180,7 +179,7 @@ def probe_folder(folder: Path) -> None:
 
 
 def is_special(target: Path) -> bool:
-    """Return whether a path is a device, a pipe or a socket: something to write to, not to replace."""
+    """Return whether a path is a device, a pipe or a socket, which is written to instead of replaced."""
     return target.exists() and not target.is_file() and not target.is_dir()
 
 

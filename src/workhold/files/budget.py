@@ -31,7 +31,10 @@ STEP_SECONDS, STEP_SECONDS_PER_MILLION = 12.0, 2.0
 
 
 class OverBudgetError(InputError):
-    """A file asks for more than its reader may spend; only level faces of solids go on, without the rest."""
+    """Raised for a file that asks for more work than its reader may spend.
+
+    Reading ends with it; only level faces of a solid that take too much are left out, and the rest is read.
+    """
 
     @staticmethod
     def is_behind(error: BaseException | None) -> bool:
@@ -45,14 +48,15 @@ class FileLimits:
 
     Parameters
     ----------
-    what : such a file, in words that follow "more than a ... may".
+    what : words for such a file in messages such as "more than the 2 rows that a table may have", here "a
+        table".
     most_bytes : None where a file is read in blocks and may have any size.
     most_elements : number of elements the reader may visit, repeated ones counted each time; None for no
         limit.
-    elements : what these are called.
+    elements : word for these elements in messages, such as "rows".
     deepest : number of elements that may lie inside each other; None for no limit.
-    seconds, seconds_per_million : processor time for any such file, and for every million bytes of it; None
-        where the work follows the bytes alone.
+    seconds, seconds_per_million : processor time allowed is ``seconds`` plus ``seconds_per_million`` for
+        every million bytes; None for no limit, where the work is in proportion to the bytes.
     remedy : advice for a file that asks for more.
     """
 
@@ -156,8 +160,8 @@ class Budget:
 
     Parameters
     ----------
-    limits : of this kind of file.
-    size : bytes of the file, for the processor time.
+    limits : limits for this kind of file.
+    size : size of the file in bytes, from which the limit of processor time follows.
 
     Examples
     --------
@@ -195,7 +199,7 @@ class Budget:
         self.count_steps(elements)
 
     def refuse_too_many_ahead(self, elements: int) -> None:
-        """Raise OverBudgetError if this many more elements would exceed the limit; nothing is counted."""
+        """Raise OverBudgetError if ``elements`` more would exceed the limit; nothing is counted."""
         most = self.limits.most_elements
         if most is not None and self.elements + elements > most:
             raise OverBudgetError(
@@ -204,8 +208,8 @@ class Budget:
             )
 
     def count_letters(self, letters: int, label: str) -> None:
-        """Count characters of a text that is part of a file; raise
-        OverBudgetError for more than such a file may have bytes.
+        """Count characters of a text that is part of a file; raise OverBudgetError when their total exceeds
+        the number of bytes that such a file may have.
 
         ``label`` names the text at the beginning of the message.
         """

@@ -38,13 +38,14 @@ LIMITS = {"above 0": {"gt": 0}, "0": {"ge": 0}, "any": {}}
 def add_declared_fields(
     rows: Iterable[Declaration], largest: float | None = None, *, bounded: bool = True
 ) -> Callable[[type[Kind]], type[Kind]]:
-    """Return a decorator that adds the declared fields to a
-    form, except those for which it has a field of its own.
+    """Return a decorator that adds the declared fields to a form, except
+    for fields that the form already has.
 
     Parameters
     ----------
-    largest : limit of numbers, for a server; None for no limit of its own.
-    bounded : whether the form refuses what the constructor would; a file leaves that to the constructor.
+    largest : limit of numbers, for a server; None for no limit besides the declared bounds.
+    bounded : whether the form refuses values beyond the declared bounds; False leaves that to the
+        constructor, as files do.
     """
 
     def made(form: type[Kind]) -> type[Kind]:
@@ -77,7 +78,11 @@ def make_form_field(row: Declaration, largest: float | None, bounded: bool) -> t
 
 
 def list_field_limits(row: Declaration, largest: float | None) -> dict[str, Any]:
-    """Return the bounds of a declared number as keyword arguments of pydantic's ``Field``."""
+    """Return the bounds of a declared number as keyword arguments of pydantic's ``Field``.
+
+    If ``largest`` is given, it limits numbers that are no counts, and counts are limited by their own
+    declared maximum.
+    """
     if row.form == "count":
         return {"ge": 1} | ({} if largest is None or row.most is None else {"le": row.most})
     ends = {} if largest is None else {"le": largest} | ({"ge": -largest} if row.least == "any" else {})

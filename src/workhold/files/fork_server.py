@@ -41,7 +41,7 @@ class ForkedProcess:
 
     Parameters
     ----------
-    stdin, stdout : this end of the pipes to its standard streams.
+    stdin, stdout : the caller's ends of the pipes to the process's standard input and output.
     status : pipe that gives its process number at its start and its exit code at its end, each on a line.
     number : its process number; 0 until it is read.
     returncode : its exit code, or minus the number of the signal that ended it; None while it runs.
@@ -54,8 +54,8 @@ class ForkedProcess:
     returncode: int | None = None
 
     def wait(self) -> int:
-        """Wait until the process has ended, and return its
-        exit code; minus SIGKILL if the real one is not known.
+        """Wait until the process has ended, and return its exit code;
+        -SIGKILL if the exit code is not known.
         """
         if self.returncode is None:
             self.returncode = int(self.status.readline() or -signal.SIGKILL)
@@ -94,7 +94,7 @@ class ForkServer:
 
     @classmethod
     def start(cls, command: Sequence[str]) -> ForkServer:
-        """Start a server by a command whose process calls :func:`serve`, and return it."""
+        """Start a server by a command whose process calls :func:`serve`, and return the server."""
         ours, its = socket.socketpair()
         with its:
             process = subprocess.Popen(
@@ -126,8 +126,8 @@ class ForkServer:
             return None
 
     def end(self) -> None:
-        """Close the line to the server, and kill the server if
-        this process started it; processes that it forked go on.
+        """Close the line to the server, and kill the server if this process started it; the processes that it
+        forked continue.
         """
         self.line.close()
         if self.surroundings[0] == os.getpid():
@@ -143,8 +143,8 @@ ASKING = Lock()
 def fork_from_server(module: str, command: Sequence[str]) -> ForkedProcess | None:
     """Return a process for a module's work, forked by the running server or by a new one.
 
-    The server is replaced where process, command or environment have changed. None where even a new server
-    ends before it has forked.
+    The server is replaced by a new one where this process's number, the command or the environment have
+    changed. None where even a new server ends before it has forked.
 
     Parameters
     ----------
@@ -172,8 +172,10 @@ def end_servers() -> None:
 
 
 def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
-    """Fork a process for each order from standard input, a
-    socket, until it is closed or idle; then end this process.
+    """Fork a process for each order that comes through standard input, which is a socket.
+
+    When the socket is closed, or has been idle for ``IDLE_SECONDS``, end this process; the function does not
+    return.
 
     Parameters
     ----------
@@ -199,8 +201,10 @@ def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
 
 
 def watch(work: Callable[[], None], order: int, answer: int, status: int) -> None:
-    """Fork the process that does the work, and write its
-    number and then its exit code to ``status``; never return.
+    """Fork the process that does the work, and report on it: its number, and when it
+    ends its exit code, each on a line of ``status``.
+
+    Never return.
 
     Parameters
     ----------

@@ -78,7 +78,8 @@ def make_surface_mesh(
     ----------
     positions, normals : (N, 3) vertices in mm and unit vectors outward.
     triangles : (M, 3) indices of vertices.
-    colours : (N, 3) red, green and blue from 0 to 1 as on a screen (sRGB); None for that of the body's kind.
+    colours : (N, 3) red, green and blue from 0 to 1 as on a screen (sRGB); None for the colour of the body's
+        kind.
     """
     light = None
     if colours is not None:
@@ -102,7 +103,8 @@ def mesh_slab(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
     """Return (positions, normals, triangles) of the lower
     cap, the upper cap and the wall of each loop of a slab.
 
-    Positions (N, 3) are in mm, z up; triangles (M, 3) are indices into the positions of their own piece.
+    The list has one tuple for each of these pieces. Positions (N, 3) are in mm, z up; triangles (M, 3) are
+    indices into the positions of the same tuple.
     """
     loops = [split_loop_into_chords(loop) for loop in (slab.outer, *slab.holes)]
     flat = np.array([piece.start for loop in loops for piece in loop])
@@ -117,7 +119,9 @@ def mesh_slab(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
 
 @frozen
 class WallPiece:
-    """A flat piece of a wall seen from above, in mm, with its segment's outward unit normals at its ends."""
+    """A flat piece of a wall: its line seen from above in mm, and at both ends the
+    outward unit normals of the segment it stands for.
+    """
 
     start: Point
     end: Point
@@ -125,8 +129,10 @@ class WallPiece:
 
 
 def split_loop_into_chords(loop: Sequence[Segment]) -> list[WallPiece]:
-    """Return a closed loop of wall pieces over the chords
-    of a loop's segments; chords too short are left out.
+    """Return the wall pieces over the chords of a loop's segments, in running
+    order; chords that are too short are left out.
+
+    Neighbouring pieces share their ends, so the pieces close.
     """
     places: list[tuple[Point, int, float]] = []
     for number, segment in enumerate(loop):
@@ -211,8 +217,8 @@ def make_bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None 
 
 
 def make_chunk(kind: int, content: bytes, filling: bytes) -> bytes:
-    """Return a chunk with its length and kind, padded to
-    a multiple of four bytes with ``filling``, one byte.
+    """Return a chunk of a GLB file with its length and kind, padded to a multiple of four bytes with the byte
+    ``filling``.
     """
     content += filling * (-len(content) % 4)
     return struct.pack("<II", len(content), kind) + content
@@ -264,8 +270,9 @@ class GlbBuffer:
         return {"attributes": attributes, "indices": indices, "material": material}
 
     def add_accessor(self, values: NDArray[Any], target: int, **more: list[float]) -> int:
-        """Add an array of vectors (N, 3) or indices (N,), and
-        return the index of its accessor; ``more`` are further keys.
+        """Add an array of vectors (N, 3) or indices (N,) to the buffer, and return the index of its accessor.
+
+        ``target`` is the kind of buffer in glTF, ``more`` are further keys of the accessor.
         """
         is_vector = values.ndim == 2
         content = values.astype("<f4" if is_vector else "<u4").tobytes()

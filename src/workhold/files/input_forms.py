@@ -66,11 +66,11 @@ def make_forms_by_noun(
     Parameters
     ----------
     base : base class of all of them.
-    name : of the forms; "{}" in it stands for the table's noun.
+    name : name of the forms; "{}" in it is replaced by the table's noun.
     entry : returns type and default of a field, as pydantic's ``create_model`` takes them.
-    kind : returns type and default of the key ``kind`` for the kinds of a table; None if the forms have none
-        of their own.
-    summary : docstring of the forms, in which "{}" stands for what the table describes.
+    kind : returns type and default of the key ``kind`` from the kinds of a table; None if the forms do not
+        get that key here.
+    summary : docstring of the forms; "{}" in it is replaced by the summary of the table.
     hardware : type and default of supports and a clamp on top, by their names; the usual ones if None.
     """
     forms: dict[str, Any] = {}
@@ -90,8 +90,9 @@ def make_forms_by_noun(
 
 
 def make_optional_entry(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
-    """Return (type, default) of a form's field: required,
-    or with the field's default, or None to leave it out.
+    """Return (type, default) of a form's field.
+
+    A required field has no default; another one has the field's default, or None if the field has none.
     """
     if row.is_required:
         return kind, ...
@@ -106,7 +107,9 @@ def join_forms(forms: Mapping[str, Any]) -> Any:
 
 
 def find_form_tag(value: Any) -> str:
-    """Return the tag of the form for a toolkit given as a dict or a model, by its kind."""
+    """Return the tag by which pydantic chooses the form for a toolkit, given as a dict or a model; it follows
+    from the toolkit's kind.
+    """
     return (
         f"<{find_table(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
     )
@@ -149,7 +152,10 @@ class ToolkitForm(BaseModel):
 
 
 def make_toolkit_entry(row: ToolkitField) -> tuple[Any, Any]:
-    """Return (type, default) of a field in a file: required, or None to keep the field's default."""
+    """Return (type, default) of a field in a toolkit's file.
+
+    The default is None, which keeps the field's own default, unless the field is required.
+    """
     return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
 
 
@@ -177,9 +183,9 @@ WANTED = {
 
 
 def check_toolkit_entries(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entries given in a toolkit's file, checked to be known and of the right type.
+    """Return the entries given in a toolkit's file, after checking that all are known and of the right type.
 
-    Raises InputError for the first that is not.
+    Raises InputError for the first entry that is not.
     """
     kind = content.get("kind", USUAL)
     noun = find_table(resolve_kind(kind)[0] if isinstance(kind, str) else None).noun
@@ -228,9 +234,9 @@ class WorkpieceFile(BaseModel):
 
 
 def check_workpiece_entries(content: dict[str, Any]) -> dict[str, Any]:
-    """Return name (or None), units, departure and loops of a workpiece, checked to be of the right type.
+    """Return name (or None), units, departure and loops of a workpiece, after checking their types.
 
-    Raises InputError for the first that is not.
+    Raises InputError for the first value of a wrong type.
     """
     try:
         return WorkpieceFile.model_validate(content).model_dump()

@@ -97,7 +97,7 @@ def parse_loads_file(path: Path) -> dict[str, Any]:
 
 
 def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> Load:
-    """Return a load from its description.
+    """Return a load from the values of its keys.
 
     Parameters
     ----------
@@ -165,9 +165,10 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
 
 
 def read_force_components(words: Mapping[str, Any], place: str) -> tuple[float, float, float] | None:
-    """Return a force along x, y and z in N; None if only its size is given.
+    """Return a force along x, y and z in N; None if only the force's size is given.
 
-    Raises InputError for a list of other than three numbers, and for a direction beside one.
+    Raises InputError for a list that does not have three numbers, and for a direction given besides the
+    three.
     """
     given = words.get("force")
     parts = given.split(",") if isinstance(given, str) and "," in given else given
@@ -194,8 +195,8 @@ def is_number(value: Any) -> bool:
 
 
 def read_quantity(value: Any, place: str, units: Mapping[str, float], such_as: str) -> float:
-    """Return a number with or without a unit, multiplied by its
-    factor in ``units``; raise InputError for anything else.
+    """Return a number multiplied by the factor that ``units`` has for its unit (1 without a unit); raise
+    InputError for anything else.
 
     ``such_as`` has examples for the message.
     """
@@ -217,7 +218,9 @@ def read_number(value: Any) -> float | None:
 
 
 def read_point(value: Any, place: str) -> tuple[float, float]:
-    """Return the two numbers of a point given as ``X,Y`` or [x, y]; raise InputError for anything else."""
+    """Return the two numbers of a point given as ``X,Y`` or [x, y], in the same unit; raise InputError for
+    anything else.
+    """
     parts = value.split(",") if isinstance(value, str) else value
     if isinstance(parts, list | tuple) and len(parts) == 2:
         x, y = read_number(parts[0]), read_number(parts[1])
@@ -227,8 +230,8 @@ def read_point(value: Any, place: str) -> tuple[float, float]:
 
 
 def read_path_points(value: Any, place: str) -> list[tuple[float, float]]:
-    """Return the corners of a path given as ``X,Y;X,Y`` or
-    a list of points, numbers as they are; at least two.
+    """Return the corners (two or more) of a path given as ``X,Y;X,Y`` or as a list of points; the unit of the
+    numbers is kept.
 
     Raises InputError for anything else.
     """
@@ -262,6 +265,6 @@ def read_direction_range(value: Any, place: str) -> tuple[float, float]:
 
 
 def quote_value(value: Any) -> str:
-    """Return a value for a message, text in quotes, cut to 60 characters."""
+    """Return a value as shown in a message: text in quotes, and all cut to 60 characters."""
     text = f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

@@ -70,7 +70,8 @@ def list_parts(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()
 
     Parameters
     ----------
-    given : files, folders, built-in names; a file or folder wins over a name.
+    given : files, folders and built-in names; a file or folder is preferred to a built-in part of the same
+        name.
     leave_out : folders whose drawings are no parts, such as one for results.
 
     Raises
@@ -120,11 +121,11 @@ def is_folder(path: Path) -> bool:
 
 
 def list_drawings_in_folder(folder: Path, apart: set[str]) -> Iterator[Path]:
-    """Yield the paths of the drawings in a folder: first its
-    own, then those of each folder in it; names in natural order.
+    """Yield the paths of the drawings in a folder, and then those in each folder inside it, both in natural
+    order of names.
 
-    Dead links, pipes and inner folders that cannot be read are among them: reading them gives the error.
-    Raises InputError when the folder itself cannot be read.
+    Dead links, pipes and inner folders that cannot be read are yielded, too, so that reading them gives the
+    error. Raises InputError when the folder itself cannot be read.
 
     Parameters
     ----------
@@ -152,7 +153,9 @@ def list_drawings_in_folder(folder: Path, apart: set[str]) -> Iterator[Path]:
 
 
 def make_natural_sort_key(name: str) -> tuple[list[tuple[bool, int, str]], str]:
-    """Return a sort key in which digits count as numbers and capitals as small letters."""
+    """Return a sort key for a name, in which runs of digits count as
+    numbers and capitals as small letters.
+    """
     pieces = re.findall(r"[0-9]{1,18}|[^0-9]+", name)
     return [
         (piece[0] > "9", int(piece) if "0" <= piece[0] <= "9" else 0, piece.lower()) for piece in pieces
@@ -171,8 +174,8 @@ def is_own(path: Path) -> bool:
 
 
 def read_listed(part: ListedPart, **options: Any) -> ReadPart:
-    """Return a part of a list after reading it; any error
-    becomes its refusal, so that the others can be read.
+    """Return a part of a list after reading it; an error becomes its
+    refusal, so that other parts can be read.
 
     Parameters
     ----------

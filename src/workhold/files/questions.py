@@ -60,8 +60,9 @@ IN_PYTHON = {"drawing_unit": "unit", "start": "start=(x, y, z)"}
 
 
 class UnitAskedError(InputError):
-    """A drawing whose unit is not known; an interface that
-    can ask for the unit may read the drawing again with it.
+    """The error for a drawing whose unit is not known.
+
+    An interface that can ask the user may read the drawing again with the unit.
     """
 
 
@@ -70,7 +71,8 @@ def name_questions(sentence: str, called: Mapping[str, str] | None) -> str:
 
     Parameters
     ----------
-    called : names by mark without brackets; a question that is not in it, and None, gives Python's argument.
+    called : the caller's names by mark, without its brackets. A question that is not among them has the name
+        of Python's argument, as all have if None.
 
     Examples
     --------
@@ -88,8 +90,7 @@ def name_questions(sentence: str, called: Mapping[str, str] | None) -> str:
 
 
 def read_number_or_name(part: int | str | None) -> int | str | None:
-    """Return a part's number as an int where it is written
-    in digits, else its name, number or None as it was given.
+    """Return an int for a part's number written in digits; a name, an int or None is returned unchanged.
 
     Examples
     --------
@@ -101,8 +102,9 @@ def read_number_or_name(part: int | str | None) -> int | str | None:
 
 
 def check_layer_names(layers: Sequence[str] | str | None) -> Sequence[str] | None:
-    """Return the names of layers, one or several, as a
-    list; None for None. Raise InputError for anything else.
+    """Return the names of layers as a list, also for a single name; None for None.
+
+    Raises InputError for anything else.
     """
     names = [layers] if isinstance(layers, str) else layers
     if names is not None and not (isinstance(names, Iterable) and all(isinstance(one, str) for one in names)):
@@ -117,15 +119,17 @@ def refuse_layers(layers: Sequence[str] | None) -> None:
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Raise InputError unless ``fit`` is None: the outline
-    is a built-in part's, or a solid's in a result file.
+    """Raise InputError unless ``fit`` is None; for use with built-in parts, and with solids in result files,
+    whose outlines are not fitted.
     """
     if fit is not None:
         raise InputError(f"its outline has no chords for arcs: leave {FIT} out.")
 
 
 def refuse_axis(options: Mapping[str, object]) -> None:
-    """Raise InputError if an option for solids, such as an axis or a section, is given for a flat drawing."""
+    """Raise InputError if an option for solids, such as an axis or a section, is given; for use with flat
+    drawings.
+    """
     for question in OF_SOLIDS:
         if options.get(question[1:-1]) is not None:
             raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")

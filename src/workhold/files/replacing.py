@@ -58,7 +58,7 @@ def refuse_output(
 
     Parameters
     ----------
-    inputs : the inputs: files, names of other things, and None for what is not given.
+    inputs : the inputs that must not be replaced; names that are no files, and None, are ignored.
     force : whether a file that workhold has not written may be replaced.
     called : name of ``force`` at the caller, for the message.
 
@@ -94,8 +94,10 @@ def refuse_output_folder(
 
 
 def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool, called: str) -> None:
-    """Raise InputError if a path is an input, or a foreign file
-    and not ``force``; nothing for a file that does not exist.
+    """Raise InputError if a path is one of the inputs, or if it is a file that workhold has not written and
+    ``force`` is False.
+
+    A path at which there is no file passes. ``called`` is the name of ``force`` in the message.
     """
     if not path.is_file():
         return
@@ -106,12 +108,12 @@ def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: boo
 
 
 def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None:
-    """Raise InputError for an output whose name ends like a file of another kind.
+    """Raise InputError for an output whose name has the ending of another kind of file that workhold writes.
 
     Parameters
     ----------
-    own : endings of such files, in small letters with the point.
-    what : such a file, in words.
+    own : endings that the output may have, in small letters with the point.
+    what : words for the output in the message.
     """
     ending = Path(path).suffix.lower()
     if ending in ENDINGS and ending not in own:

@@ -111,9 +111,10 @@ def make_support_pad(hole: tuple[str, int, int], fixture: Fixture, query: Query,
 def make_triple(
     part: ReadTriple, supports: tuple[SupportPad, ...], point: tuple[float, float] | None
 ) -> Triple:
-    """Return a triple of a file with its three supports.
+    """Return a triple as an object of the model, from a file's form and its three supports.
 
-    ``point`` is the clamp's point that was asked for, for the figures of ``given``.
+    ``point`` is the clamp's point that was asked for, to which the figures ``given`` belong; None if none
+    was.
     """
     return Triple(
         supports=supports,
@@ -131,7 +132,7 @@ def make_triple(
 def make_clamp_figures(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigures:
     """Return the forces and lengths at one point of the clamp, from the file's form.
 
-    The point is the one in the form, else ``point``, else (0, 0).
+    The point is the one in the form; without it ``point``, and without both (0, 0).
     """
     at = part.at or point or (0.0, 0.0)
     forces = part.clamp_needed, part.support_force
@@ -199,8 +200,11 @@ def make_supports_entry(supports: Supports) -> dict[str, Any]:
 
 
 def make_tip_surroundings_entry(request: SupportRequest) -> dict[str, Any]:
-    """Return the entries of the clamp's tip margin and head,
-    where unusual, and of the part's material around its faces.
+    """Return the entries of a request's tip margin and head radius, where these
+    are unusual, and of the regions beside the faces.
+
+    The regions are what rises above the upper faces, and which parts of them hang, each with the height of
+    its face.
     """
     entry: dict[str, Any] = {}
     if request.tip_margin != 0.0:
@@ -217,8 +221,8 @@ def make_tip_surroundings_entry(request: SupportRequest) -> dict[str, Any]:
 
 
 def make_fixture_entry(supports: Supports) -> dict[str, Any]:
-    """Return the JSON object of the planar fixture as in a
-    result file, with the heights at which its pegs may press.
+    """Return the JSON object of the planar fixture, as in a result file, with
+    the heights at which its pegs may press added.
     """
     listing = supports.fixture.listing
     table = listing.result.table.take(slice(listing.row, listing.row + 1))
@@ -239,7 +243,7 @@ def make_fixture_entry(supports: Supports) -> dict[str, Any]:
 
 
 def make_loops_entry(loops: Loops | None) -> Any:
-    """Return the loops of a face as nested lists; None for None, and [[]] for no loops.
+    """Return the loops of a face as nested lists; None for None, and [[]] for an empty sequence.
 
     An empty list could be read as a face without limits.
     """
@@ -247,8 +251,8 @@ def make_loops_entry(loops: Loops | None) -> Any:
 
 
 def make_zone_entry(zone: Zone) -> dict[str, Any]:
-    """Return a zone as a circle where it is one, as a
-    polygon where its sides are straight, else as a loop.
+    """Return the JSON object of a zone: a circle or a polygon if the
+    zone is one, otherwise a loop with arcs.
     """
     loop = np.asarray(zone.loop)
     if len(loop) == 2 and (loop[:, 2] == 1.0).all():

@@ -36,7 +36,7 @@ class ZonePart(FormPart):
     loop: Loop | None = None
 
     def to_zone(self) -> Zone:
-        """Return the zone; raise InputError for what is not one."""
+        """Return the zone; raise InputError for a form that describes no zone."""
         if self.circle is not None:
             return circle_zone(*self.circle)
         if self.polygon is not None:
@@ -91,8 +91,8 @@ class SpatialLoadPart(FormPart):
     tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
 
     def to_load(self, thickness: float) -> SpatialLoad:
-        """Return the load with its heights filled in for a
-        thickness in mm; raise InputError for what is not one.
+        """Return the load, with heights that are not given filled in for a part of a thickness in mm; raise
+        InputError for an impossible load.
         """
         return SpatialLoad(**dict(self)).with_height(thickness)
 
@@ -125,7 +125,7 @@ class TriplePart(FormPart):
 
 @frozen
 class ReadTriple:
-    """Three supports of a file, as ``TriplePart`` but in a fourth of its memory."""
+    """Three supports of a file: the content of a ``TriplePart`` in a quarter of its memory."""
 
     holes: tuple[tuple[str, int, int], ...]
     jaw_separation: float | None
@@ -171,11 +171,15 @@ class TripleReader:
     holes: dict[tuple[str, int, int], tuple[str, int, int]] = field(factory=dict)
 
     def read(self, entry: dict[str, Any]) -> Any:
-        """Return the triple that an object of the file is; any other object unchanged."""
+        """Return the triple that a JSON object of the file describes; an object that is no triple is returned
+        unchanged.
+        """
         return self.read_triple(entry) if entry.keys() >= {"holes", "standing"} else entry
 
     def read_triple(self, entry: Any) -> ReadTriple:
-        """Return a triple from its JSON object; raise pydantic's ValidationError for what is not one."""
+        """Return a triple from its JSON object; raise pydantic's ValidationError for an object that is not a
+        triple.
+        """
         part = TriplePart.model_validate(entry)
         self.count += 1
         return ReadTriple(
@@ -272,8 +276,8 @@ class SupportsPart(FormPart):
 
 
 def read_face_loops(loops: list[Loop] | None) -> list[Loop] | None:
-    """Return the loops of a face: an empty list for a
-    face that is not there, None if the file does not say.
+    """Return the loops of a face as the model has them: [] for a face that does
+    not exist, None if the file does not give the face.
     """
     return None if loops is None else [loop for loop in loops if loop]
 

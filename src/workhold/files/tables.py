@@ -95,13 +95,13 @@ class CsvTable:
 
     Parameters
     ----------
-    text : whose lines end in "\\n".
+    text : text of the table, with lines that end in "\\n".
     mark : the separator of cells.
     remark : matches a line that is a remark; None where there are none.
     budget : spent for each row.
-    at, line, number : offset in the text at which reading goes on, the line there, and the number of rows
-        read.
-    names : of the columns, "" for a column without a name and without cells.
+    at, line, number : where reading goes on: offset in the text, and number of the line there; and the number
+        of rows read so far.
+    names : names of the columns; "" for a column without a name, which has no cells.
     """
 
     text: str = field(repr=False)
@@ -114,9 +114,9 @@ class CsvTable:
     names: tuple[str, ...] = field(default=(), init=False)
 
     def describe_place(self, column: int | None = None, line: int | None = None) -> str:
-        """Return line, row and column of a cell in words; the column is counted from 0, and left out if None.
+        """Return line, row and column of a cell in words; without ``column`` only line and row.
 
-        ``line`` is the current one if None.
+        ``column`` counts from 0. ``line`` is the current line if None.
         """
         words = f"line {self.line if line is None else line}"
         words += f", row {self.number}" if self.names else ""
@@ -151,7 +151,7 @@ class CsvTable:
             yield CsvRow(self.number, line, {self.names[k]: cell for k, cell in given.items()}, self.mark)
 
     def read_next_row(self) -> tuple[int, list[str]] | None:
-        """Return the line and the cells of the next row that has one; None at the end."""
+        """Return the line and the cells of the next row that has a cell with content; None at the end."""
         self.number += bool(self.names)
         while self.at < len(self.text):
             if self.remark is not None and (found := self.remark.match(self.text, self.at)):
@@ -223,7 +223,7 @@ def read_table(text: str, budget: Budget, remarks: str = "") -> CsvTable:
     Parameters
     ----------
     budget : spent for each row.
-    remarks : the beginning of lines that are remarks; none are if empty.
+    remarks : the beginning of lines that are remarks; if empty, no lines are.
 
     Raises
     ------
@@ -256,8 +256,8 @@ def read_table(text: str, budget: Budget, remarks: str = "") -> CsvTable:
 
 
 def find_separator(table: CsvTable) -> str:
-    """Return the separator of cells: of comma, semicolon and
-    tab the one most frequent in the first line with names.
+    """Return the separator of cells: comma, semicolon or tab, whichever is most frequent in the line with the
+    names.
     """
     at = table.at
     while (found := BLANK.match(table.text, at)) or (

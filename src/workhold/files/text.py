@@ -32,7 +32,7 @@ def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -
 
     Parameters
     ----------
-    limits : of this kind of file.
+    limits : limits for this kind of file.
     saved : advice for a file in another encoding.
 
     Raises
@@ -53,7 +53,7 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
 
     Parameters
     ----------
-    limits : of this kind of file.
+    limits : limits for this kind of file.
 
     Raises
     ------
@@ -85,9 +85,10 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
 
 
 def read_at_most(path: Path, most: int | None) -> bytes:
-    """Return the bytes of a regular file, or more than ``most`` of them if it has more than ``most``.
+    """Return the content of a regular file; if it has more than ``most`` bytes, only its beginning, which is
+    longer than ``most``.
 
-    The caller recognizes a file that is too large by the length; None is no limit.
+    From the length the caller sees that the file is too large. None is no limit.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:
@@ -150,7 +151,7 @@ def parse_toml(text: str) -> dict[str, Any]:
 
 
 def refuse_constant(name: str) -> NoReturn:
-    """Raise InputError for NaN and infinities, which JSON does not have."""
+    """Raise InputError for a constant such as NaN or Infinity, which JSON does not have."""
     raise InputError(f"{name} is not a number: correct it.")
 
 

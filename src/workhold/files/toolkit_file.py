@@ -64,8 +64,8 @@ class DowelSeries:
     Parameters
     ----------
     name : the standard, and its tolerance class where it has several.
-    unit : in which the standard gives its sizes.
-    source : where the figures are from.
+    unit : unit in which the standard gives its sizes.
+    source : text on where the figures are from.
     sizes : by increasing diameter, in mm.
     """
 
@@ -134,13 +134,14 @@ class LoadedToolkit:
 
     Parameters
     ----------
-    name : the preset's name, or the file's.
+    name : name of the preset or of the file.
     title : description in a line; empty where the file gives none.
     source : source of the figures; empty where the file does not say.
-    unit : in which the file gives its lengths.
-    kind : of toolkit, see ``fixels.kinds``.
+    unit : unit in which the file gives its lengths.
+    kind : kind of toolkit, see ``fixels.kinds``.
     fields : keyword arguments of its class, in mm; those not in the file are left out.
-    tolerance : of its pegs and of the faces they touch; its fit is None where the file gives no pin or hole.
+    tolerance : tolerance of the pegs and of the faces that pegs touch; ``tolerance.fit`` is None where the
+        file gives no pin or hole.
     assumed : entries for which there is no source, as the file says.
     """
 
@@ -172,7 +173,7 @@ def read_toolkit_file(path: Path) -> LoadedToolkit:
 
 
 def make_described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
-    """Return the toolkit of a file's entries, which have passed :func:`check_toolkit_entries`.
+    """Return the toolkit that a file's entries describe; they must have passed :func:`check_toolkit_entries`.
 
     Raises InputError for values that no toolkit can have.
     """
@@ -206,7 +207,9 @@ def make_described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolk
 
 
 def convert_to_mm(form: Form, value: Any, unit: Unit) -> Any:
-    """Return the constructor's argument for a field of a form from its entry, with lengths in mm."""
+    """Return the value of an entry as an argument of the toolkit's constructor, with lengths converted from
+    ``unit`` to mm.
+    """
     if form in ("count", "directions", "choice", "force"):
         return value
     if form == "holes":
@@ -218,7 +221,7 @@ def convert_to_mm(form: Form, value: Any, unit: Unit) -> Any:
 
 
 def convert_lengths_to_mm(value: Any, unit: Unit) -> Any:
-    """Return a length, or lengths in lists of any depth, in mm."""
+    """Return a length, or nested lists of lengths, converted from ``unit`` to mm."""
     return (
         [convert_lengths_to_mm(one, unit) for one in value] if isinstance(value, list) else unit.to_mm(value)
     )
@@ -236,10 +239,11 @@ def refuse_wide_pads(toolkit: Toolkit) -> None:
 
 
 def read_fit(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> DowelFit | None:
-    """Return the limits of pin and hole as the file gives
-    them, or as the standard it names does; None without any.
+    """Return the limits of pin and hole that the file gives, or those of the
+    standard that the file names; None without both.
 
-    Raises InputError for one without the other, and for limits that do not fit the peg's radius in mm.
+    Raises InputError for a pin without a hole or a hole without a pin, and for limits that do not fit
+    ``peg_radius`` in mm.
     """
     limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
     if "dowel" in entries:
@@ -273,7 +277,7 @@ def read_fit(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Dowel
 def make_tolerance(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Tolerance:
     """Return the tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
 
-    Raises InputError for negative lengths, and as :func:`read_fit`.
+    Raises InputError for negative lengths, and in the cases of :func:`read_fit`.
     """
     usual, fit = Tolerance(), read_fit(entries, unit, peg_radius)
     # Rounded to where a difference of decimal figures is exact again.
@@ -292,8 +296,8 @@ TIP_MARGIN = 1.0
 
 @cache
 def list_preset_names() -> tuple[str, ...]:
-    """Return the names of the presets: those sold before the
-    others, of these plates before vises, then by kind and pitch.
+    """Return the names of the presets in this order: equipment that is sold
+    first, plates before vises, then by kind and pitch.
 
     Examples
     --------
@@ -327,8 +331,8 @@ def is_sold(name: str) -> bool:
 
 
 def load_preset(name: str) -> LoadedToolkit:
-    """Return the preset of a name, which must exist; a
-    clamp on top gets the usual tip margin if it has none.
+    """Return the preset of a name, which must exist. A clamp on top for which the preset gives no tip margin
+    gets the usual one.
     """
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
     found = make_described_toolkit(name, tomllib.loads(text))
@@ -341,7 +345,8 @@ def load_preset(name: str) -> LoadedToolkit:
 
 
 def load_toolkit(name: str | Path) -> LoadedToolkit:
-    """Return a toolkit by the name of a preset or from a TOML file; a file wins.
+    """Return a toolkit from a TOML file, or by the name of a preset; a file
+    is preferred to a preset of the same name.
 
     Parameters
     ----------
@@ -382,13 +387,13 @@ def list_presets_of_kind(kind: type[Toolkit]) -> tuple[str, ...]:
 
 
 def load_preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
-    """Return the keyword arguments, in mm, of a preset or a
-    user's file for a class of toolkits or a subclass of it.
+    """Return the fields in mm of a preset or a user's file, as keyword arguments of a class of toolkits or a
+    subclass of it.
 
     Raises
     ------
     InputError
-        As :func:`workhold.files.toolkit_file.load_toolkit`, and for a toolkit of another class.
+        In the cases of :func:`workhold.files.toolkit_file.load_toolkit`, and for a toolkit of another class.
     """
     loaded = load_toolkit(name)
     is_of = KINDS[loaded.kind]
@@ -403,6 +408,6 @@ def load_preset_tolerance(name: str) -> Tolerance:
     Raises
     ------
     InputError
-        As :func:`workhold.files.toolkit_file.load_toolkit`.
+        In the cases of :func:`workhold.files.toolkit_file.load_toolkit`.
     """
     return load_toolkit(name).tolerance

@@ -54,9 +54,9 @@ def make_column_letters(column: int) -> str:
 
 
 def make_hole_name(carrier: str, column: int, row: int | None) -> str:
-    """Return the name of a hole, or with row None of a whole column, on the carrier of this name.
+    """Return the name of a hole on a carrier; for row None, the name of the whole column.
 
-    Column and row count from 0.
+    Columns and rows are counted from 0.
 
     >>> make_hole_name("left", 1, 2), make_hole_name("right", 0, None), make_hole_name("plate", 1, 2)
     ('L-B3', 'R-A', 'B3')
@@ -66,8 +66,9 @@ def make_hole_name(carrier: str, column: int, row: int | None) -> str:
 
 
 def find_carrier_letter(carrier: str) -> str:
-    """Return the letter with which a carrier's hole names
-    begin; empty for the plate, whose holes have none.
+    """Return the capital letter with which the names of a carrier's holes begin.
+
+    It is "" for the carrier "plate", whose hole names begin with the column.
     """
     return "" if carrier == ALONE else carrier[0].upper()
 
@@ -94,7 +95,8 @@ class HoleSelection:
 
 
 def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> HoleSelection:
-    """Return the hole or column of a name, as :func:`make_hole_name` gives it.
+    """Return the hole or column that a name such as "L-B3" or "L-B" stands for; the inverse of
+    :func:`make_hole_name`.
 
     Parameters
     ----------
@@ -143,7 +145,7 @@ Measure = Literal["opening", "stroke", "tip"]
 
 @frozen
 class Travel:
-    """The freedom of a carrier that slides along a line.
+    """The range and the direction in which a carrier slides along a line.
 
     Parameters
     ----------
@@ -158,13 +160,14 @@ class Travel:
 
     @property
     def unit(self) -> tuple[float, float]:
-        """Unit vector of the direction; exact along the axes."""
+        """The unit vector of the direction; without rounding errors along the axes."""
         return round(cos(self.direction), 15), round(sin(self.direction), 15)
 
 
 @frozen
 class Carrier:
-    """An element that contacts stand on: a lattice of holes for pegs, a clamp, or a wall.
+    """An element on which contacts stand: a lattice of holes for pegs, a clamp, a straight wall, or a flat
+    jaw.
 
     Parameters
     ----------
@@ -173,18 +176,18 @@ class Carrier:
     columns, rows : numbers of columns and rows of holes; None for as many as needed.
     peg_radius : of its pegs in mm.
     body_radius : of the thickest part of its pegs in mm, below the workpiece.
-    offset : place in mm of the hole in column 0 and row 0, at travel 0.
-    blocked : holes and columns that no peg can stand in.
+    offset : place (x, y) in mm of the hole in column 0 and row 0, at travel 0.
+    blocked : holes and columns in which no peg can stand.
     travel : how it slides; None when it stands still.
-    noun : what it is called, such as "jaw".
-    peg : what each of its pegs is called, such as "locator".
-    on : name of the carrier in one of whose holes it is bolted, such as a clamp on a plate; None where it has
+    noun : word for it, such as "jaw".
+    peg : word for one of its pegs, such as "locator".
+    on : name of another carrier, in one of whose holes it is bolted (a clamp on a plate); None where it has
         its own holes.
     is_wall : whether it is a straight wall along x that the part lies flush against, without holes.
     flat : the flat of its pegs, which lies on straight faces; None for round pegs.
-    heights : between which what stands on it reaches, in mm above the plane on which the part lies; None for
-        from below up to the peg height, as all pegs do.
-    width : of a wall in mm, centred on its columns; None for an endless one.
+    heights : lower and upper end of what stands on it, in mm above the plane on which the part lies; None for
+        pegs from below that plane up to the peg height.
+    width : of a wall or flat jaw in mm, centred on its columns; None for an endless one.
     is_jaw : whether it is a flat jaw, which holds by friction and has no holes.
     """
 
@@ -208,8 +211,8 @@ class Carrier:
 
     @property
     def reach(self) -> tuple[float, float] | None:
-        """x in mm from which and to which a wall extends;
-        None for an endless one, and for anything but a wall.
+        """The x coordinates in mm of the left and the right end of a wall; None for an endless wall and for
+        anything else.
         """
         if self.width is None or self.is_jaw:
             return None
@@ -218,7 +221,9 @@ class Carrier:
 
     @property
     def role(self) -> str:
-        """Name that carriers of the same heights share: its name up to the first space, such as "clamp"."""
+        """The name up to its first space, such as "clamp" for "clamp -x"; carriers of one role have the same
+        heights.
+        """
         return self.name.partition(" ")[0]
 
     @property
@@ -228,15 +233,17 @@ class Carrier:
 
     @property
     def title(self) -> str:
-        """Title for sentences, such as "left jaw"; its noun alone if its holes' names have no letter."""
+        """Its name in sentences, such as "left jaw"; for the plate, whose hole names have no letter, only its
+        noun.
+        """
         if not self.letter:
             return self.noun
         return self.name if self.noun in self.name else f"{self.name} {self.noun}"
 
     @property
     def elements(self) -> str:
-        """Name of its parts that touch the workpiece, such
-        as "locators", "left jaw pegs", "clamp" or "fence".
+        """The words for what touches the workpiece, such as "locators", "left jaw pegs", "clamp" or
+        "fence".
         """
         if not self.has_lattice:
             return self.noun
@@ -244,13 +251,13 @@ class Carrier:
 
     @property
     def column_count(self) -> int:
-        """Number of columns; the carrier must have one (in the frame of a search every carrier has)."""
+        """The number of columns; an error where it is None."""
         assert self.columns is not None
         return self.columns
 
     @property
     def contact(self) -> ContactKind:
-        """Kind of its contacts."""
+        """The kind of the contacts that it makes."""
         if self.is_jaw:
             return FLAT_JAW
         if self.is_wall:
@@ -261,7 +268,9 @@ class Carrier:
 
     @property
     def stands_on(self) -> str:
-        """Name of the carrier whose holes are used: its own, or that of the carrier it is bolted to."""
+        """The name of the carrier in whose holes its contacts stand: its own name, or that of the carrier it
+        is bolted to.
+        """
         return self.on or self.name
 
     @property
@@ -276,13 +285,15 @@ class Carrier:
 
     @property
     def line(self) -> Literal["row", "column"]:
-        """Line along which a clamp pushes: "row" if the carrier slides along x, else "column"."""
+        """The line of holes along which a clamp pushes: "row" for a clamp that slides along x, else
+        "column".
+        """
         return "row" if self.is_along_x else "column"
 
     @property
     def direction(self) -> str:
-        """Direction in which a clamp pushes, such as "-x";
-        for other carriers the last word of their names.
+        """The direction in which a clamp pushes, such as "-x"; for other carriers meaningless (the last word
+        of the name).
         """
         return self.name.rpartition(" ")[2]
 
@@ -293,33 +304,41 @@ class Carrier:
 
     @property
     def pushers(self) -> str:
-        """Name of what pushes the part as the carrier moves: "jaws" for jaws, "clamp" for a clamp."""
+        """The word for what presses on the part when the carrier moves: "jaws" for a jaw, "clamp" for a
+        clamp.
+        """
         return f"{self.noun}s" if self.has_lattice else self.noun
 
     @property
     def measure(self) -> Measure:
-        """Name of the length that is set on it: "stroke", "tip" or "opening"."""
+        """The kind of length that a user sets on it.
+
+        A clamp has a "stroke" (from its hole to its tip) or, without a hole, the place of its "tip"; anything
+        else has an "opening".
+        """
         if self.contact is CLAMP_TIP:
             return "stroke" if self.has_a_hole else "tip"
         return "opening"
 
     @property
     def has_a_hole(self) -> bool:
-        """Whether what stands on it is in a hole; False for a
-        clamp without longest travel, known by its line only.
+        """Whether what stands on it is in a known hole.
+
+        False for a clamp without a largest travel: only the row or column along which it pushes is known.
         """
         return self.on is None or self.travel is None or self.travel.most is not None
 
     @property
     def has_body_behind(self) -> bool:
-        """Whether it is a clamp with a body from its tip back to the hole in which it is bolted."""
+        """Whether it is a clamp whose body reaches from its tip back to the hole in which it is bolted."""
         return self.contact is CLAMP_TIP and self.has_a_hole
 
     @property
     def counted(self) -> tuple[bool, bool]:
-        """Whether the column, and whether the row, of what stands on it tells its place.
+        """Whether (1) a column and (2) a row say where a contact on it is.
 
-        For a clamp without a hole only that of its line does; for a wall neither.
+        A clamp without a hole has only one of them: the row or column along which it pushes. A wall has
+        neither.
         """
         if not self.contact.is_placed:
             return False, False
@@ -327,20 +346,20 @@ class Carrier:
 
     @property
     def file_entry(self) -> tuple[str, str]:
-        """Key and value by which files say which carrier or role a contact has.
+        """The key and the value with which files say on which carrier a contact is, such as ("jaw", "left").
 
-        With several lattices it is the carrier's noun and name, else "role" and the role; on a single sliding
-        lattice the role is the noun of the jaw.
+        That is the carrier's noun and name where a toolkit has several lattices, else "role" and the
+        contact's role. A single lattice that slides has its noun as its role.
         """
         if self.has_lattice and self.letter and self.name != self.noun:
             return self.noun, self.name
         return "role", self.noun if self.has_lattice and self.travel is not None else self.contact.role
 
     def name_place(self, column: int, row: int) -> str:
-        """Return the name of the hole at column and row, such
-        as "L-B3"; for a clamp its noun with its hole or line.
+        """Return the name of the place of a contact at a column and row, counted from 0.
 
-        A wall has only its noun.
+        It is the hole, such as "L-B3"; for a clamp its noun with its hole or its line of holes; for a wall
+        its noun.
 
         >>> from workhold import Plate
         >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
@@ -365,13 +384,15 @@ class Carrier:
         return find_carrier_letter(self.name)
 
     def is_blocked(self, column: int, row: int) -> bool:
-        """Return whether a hole, or its whole column, is blocked for pegs."""
+        """Return whether the hole at a column and row, counted from 0, or its whole column is blocked for
+        pegs.
+        """
         return not {HoleSelection(self.name, column), HoleSelection(self.name, column, row)}.isdisjoint(
             self.blocked
         )
 
     def compute_hole_center(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:
-        """Return the centre (x, y) of a hole in mm; numbers or arrays.
+        """Return x and y in mm of the centre of a hole; arrays for arrays of columns, rows or travels.
 
         Parameters
         ----------

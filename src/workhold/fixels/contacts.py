@@ -31,14 +31,15 @@ __all__ = [
 
 @frozen
 class ContactKind:
-    """A kind of contact, with what drawings, files and set-ups need to know of it.
+    """A kind of contact.
 
     Parameters
     ----------
     name : in a few words.
     role : whether it locates or clamps the part.
-    is_placed : whether it is an element put in a place of its own; the end of a contact with a wall is not.
-    is_turned : whether its angle in the hole matters.
+    is_placed : True for an element that is put into a place of its own; False for an end of a contact with a
+        wall.
+    is_turned : whether the element's angle in its hole matters.
     """
 
     name: str
@@ -63,12 +64,12 @@ TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "u
 
 @frozen
 class Arrangement:
-    """The number of pegs on each carrier.
+    """How many contacts of a fixture stand on each carrier.
 
     Parameters
     ----------
-    name : as in the paper, such as "I".
-    pegs : how many on each carrier, in the order of the carriers.
+    name : such as "I", as in the paper by Brost and Goldberg.
+    pegs : the number of contacts on each carrier, in the order of the carriers.
     direction : in which the moving carriers clamp, such as "-x" or "-x -y"; None where a toolkit has only one
         direction.
     """
@@ -79,24 +80,24 @@ class Arrangement:
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Direction in which each of its clamps pushes, such
-        as ("-x", "-y"); empty where ``direction`` is None.
+        """The direction in which each clamp pushes, such as ("-x", "-y"); empty where ``direction`` is
+        None.
         """
         return tuple((self.direction or "").split())
 
     @property
     def title(self) -> str:
-        """Name, followed by the directions if any."""
+        """The name followed by the directions, such as "clamp -x" or "I"."""
         return " ".join((self.name, *self.directions))
 
     @property
     def short_title(self) -> str:
-        """Title of its fixtures on a small picture, such as "Type I"."""
+        """The title of fixtures of this arrangement on a small picture, such as "Type I" or "clamp −x"."""
         return self.title.replace("-", "\N{MINUS SIGN}") if self.directions else f"Type {self.name}"
 
     @property
     def heading(self) -> str:
-        """Title of its fixtures in a line of text.
+        """The title of fixtures of this arrangement in a line of text.
 
         >>> Arrangement("II", (3, 1)).heading, Arrangement("clamp", (3, 1), "-x").heading
         ('Type II', 'Clamp −x')
@@ -108,12 +109,14 @@ class Arrangement:
 
     @property
     def direction_words(self) -> str:
-        """Directions of its clamps in words, on a plan with y up; empty without any."""
+        """The directions of the clamps in words on a plan with y up, such as "to the left"; empty without
+        any.
+        """
         return " and ".join(dict.fromkeys(TOWARDS[name] for name in self.directions))
 
     @property
     def carriers(self) -> tuple[int, ...]:
-        """Index of each peg's carrier, in the order in which pegs are listed.
+        """For each contact of a fixture, in the order in which contacts are listed, the index of its carrier.
 
         >>> Arrangement("II", (3, 1)).carriers
         (0, 0, 0, 1)
@@ -123,12 +126,13 @@ class Arrangement:
 
 @frozen
 class Symmetry:
-    """A motion of the plane that maps a toolkit onto itself, so that two fixtures count as the same.
+    """A rotation that carries a toolkit onto itself, so that a fixture and the rotated fixture count as the
+    same.
 
     Parameters
     ----------
-    half_turns : by how many turns of 180 degrees everything is turned.
-    carriers : for each carrier, the index of the one whose place it takes.
+    half_turns : by how many turns of 180 degrees the toolkit is rotated.
+    carriers : for each carrier, the index of the carrier onto which it is carried.
     """
 
     half_turns: int

@@ -37,13 +37,14 @@ class Fence(Plate):
     ----------
     pitch, peg_radius, columns, rows, clamp_radius, travel : see :class:`workhold.Plate`; rows count from the
         fence.
-    directions : in which the clamp may move when it clamps; None means all four, which are all different
-        here.
+    directions : directions in which the clamp may push, among "-x", "+x", "-y" and "+y"; None for all four.
     wall_offset : distance in mm from the fence to the first row of holes, the peg radius or more.
-    locator_heights, clamp_heights, wall_heights : as of a :class:`workhold.Plate`, and the same of the fence.
+    locator_heights, clamp_heights : see :class:`workhold.Plate`.
+    wall_heights : lower and upper end of the fence in mm, above the plane on which the part lies; None where
+        it reaches up to the peg height.
     supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
-        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
-    tolerance : how far these pegs and the faces on them may be off; None is not known.
+        of figures in mm and MPa (see ``fixels.support_hardware``); None for the usual ones.
+    tolerance : how far these pegs and the faces that they touch may be off; None where not known.
 
     Raises
     ------
@@ -168,21 +169,24 @@ class Fence(Plate):
 
     @property
     def usual_directions(self) -> tuple[Any, ...]:
-        """Default directions: all four; with two clamps,
-        pairs of one down onto the fence and one along it.
+        """The default directions of the clamp: all four.
+
+        With two clamps they are the pairs of one clamp down onto the fence and one along it, either way.
         """
         return (("-x", "-y"), ("+x", "-y")) if self.is_paired else tuple(DIRECTIONS)
 
     @property
     def pushes(self) -> tuple[tuple[str, ...], ...]:
-        """Directions of the clamps of each arrangement; none are
-        equal by symmetry, as the fence turns with the plate.
+        """The directions of the clamps of each arrangement, such as (("-x",), ("-y",)): all that were asked
+        for.
+
+        No two are equal by symmetry, since half a turn would move the fence to the other side.
         """
         return self.asked_pushes
 
     @property
     def datum(self) -> Datum:
-        """Origin of places: the point at which column A meets the fence."""
+        """The origin of places: the point at which column A meets the fence."""
         plate, wall, *_ = self.carriers
         return Datum.from_wall(wall, plate)
 
@@ -192,9 +196,7 @@ class Fence(Plate):
         return None
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield changes to try: a second clamp, the clamp in all
-        four directions, half the pitch; each only where it applies.
-        """
+        """Yield the changes that apply: a second clamp, a clamp in all four directions, half the pitch."""
         if not self.is_paired:
             yield ToolkitChange("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
         if not self.is_paired and len(self.directions) < len(DIRECTIONS):
@@ -205,6 +207,6 @@ class Fence(Plate):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Plate, wall, and one clamp for each direction, in this order."""
+        """The plate, the fence, and one clamp for each direction, in this order."""
         plate, *clamps = self.make_plate_and_clamps((0.0, self.wall_offset))
         return plate, make_wall_carrier(self, "fence"), *clamps

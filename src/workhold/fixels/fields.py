@@ -35,7 +35,7 @@ NAMES: Mapping[str, str] = {
 
 
 def name_direction_pair(one: str, other: str) -> str:
-    """Return a phrase for the directions of two clamps, on a plan with y up.
+    """Return the words for the directions in which two clamps push, on a plan with y up.
 
     >>> name_direction_pair("-x", "-y"), name_direction_pair("-x", "-x"), name_direction_pair("-x", "+x")
     ('to the left and downward', 'both to the left', 'against each other, to the left and right')
@@ -257,7 +257,7 @@ WALL_OFFSET = ToolkitField(
 
 
 def make_heights_field(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
-    """Return the field ``<carrier>_heights``, the heights between which what stands on a carrier touches.
+    """Return the field ``<carrier>_heights``: the lower and the upper end of what stands on a carrier.
 
     Parameters
     ----------

@@ -52,20 +52,20 @@ class FlatJaw(Toolkit):
     columns, rows : of holes on the jaw that moves, or None for as many as needed.
     min_gap : smallest distance in mm from the flat jaw to the centres of the first row of holes; None means
         the peg radius.
-    max_opening : largest such distance in mm, or None for no limit.
-    jaw_width : of the flat jaw in mm, in whose middle the columns are; None where it is endless. It asks for
-        the number of columns.
+    max_opening : largest distance in mm from the flat jaw to that row, or None for no limit.
+    jaw_width : width of the flat jaw in mm, with the columns in its middle; None where it is endless. A width
+        needs a number of columns.
     flat : of the pegs, see :class:`workhold.Vise`.
     jaw_heights, wall_heights : lower and upper end in mm, above the plane on which the part lies, of the pegs
         and of the flat jaw. None where they reach up to the peg height.
     supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
-        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
-    tolerance : how far these pegs and the faces on them may be off; None is not known.
+        of figures in mm and MPa (see ``fixels.support_hardware``); None for the usual ones.
+    tolerance : how far these pegs and the faces that they touch may be off; None where not known.
 
     Raises
     ------
     InputError
-        For values that are not finite and positive, and for pegs too fat for neighbouring holes. Also for a
+        For values that are not finite and positive, and for pegs too thick for neighbouring holes. Also for a
         width of jaws without a number of columns.
 
     Examples
@@ -181,8 +181,9 @@ class FlatJaw(Toolkit):
 
     @property
     def limits(self) -> tuple[ToolkitLimit, ...]:
-        """Limits that could be lifted; lifting the number of
-        columns also lifts the jaw width, which depends on it.
+        """The limits that its fields set and that could be lifted.
+
+        Lifting the number of columns also lifts the jaw width, since a width needs a number of columns.
         """
         found = super().limits
         if self.jaw_width is None:
@@ -198,17 +199,21 @@ class FlatJaw(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Flat jaw, and the jaw that moves, whose travel is the jaw separation."""
+        """The flat jaw, and the jaw that moves, whose travel is the distance from the flat jaw to its first
+        row of holes.
+        """
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
         jaw = make_lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
         return make_wall_carrier(self, "flat jaw", self.jaw_width), jaw
 
     @property
     def datum(self) -> Datum:
-        """Origin of places: the point at which column A meets the flat jaw; rows move with their jaw."""
+        """The origin of places: the point at which column A meets the flat jaw. The rows move with their
+        jaw.
+        """
         wall, jaw = self.carriers
         return Datum.from_wall(wall, jaw)
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield half the pitch as a change to try, where pegs are thin enough."""
+        """Yield the change to half the pitch, where the pegs are thin enough for it."""
         yield from suggest_half_pitch(self)

@@ -19,17 +19,18 @@ SCREW_SHARE = 0.3
 
 @frozen
 class JawPair:
-    """Two flat jaws; lengths in mm.
+    """Two flat jaws between which a part is held; lengths in mm.
 
     Parameters
     ----------
     width : of both jaws.
-    height : of the jaws above the bed; None for any height.
-    thickness : how far they reach outward at their top; None for unbounded.
-    max_opening : the largest distance between them; None for no limit.
-    parallels : heights of the parallels, 0 for the bed alone.
-    least_grip : the least height that both must grip.
-    stops : positions of the work stop, "left" or "right", one fixture for each; None for no stop.
+    height : of the jaws above the vise's bed; None for any height.
+    thickness : of each jaw at its top, away from the part; None for unbounded.
+    max_opening : the largest distance between the jaws; None for no limit.
+    parallels : heights of the parallels that can be used; (0,) where the part lies on the bed.
+    least_grip : the least height over which both jaws must grip the part.
+    stops : ends of the jaws at which a work stop can be, "left" or "right", each making its own fixtures;
+        None for no stop.
     stop_offset : how far inward from the end of the jaws the stop touches the part.
     max_force : rated force in N; None where not known.
     screw_lead : travel of the jaw per turn of the screw; None where not known.
@@ -47,17 +48,21 @@ class JawPair:
     screw_lead: float | None
 
     def compute_top(self, parallels: float) -> float:
-        """Return the height in mm of the jaws' top above the part's
-        lower side, on parallels of this height; inf for any height.
+        """Return the height in mm of the jaws' top above the lower side of a part on parallels of this height
+        (mm).
+
+        It is inf where the jaws may have any height.
         """
         return inf if self.height is None else self.height - parallels
 
     def name_outline_role(self, parallels: float) -> str:
-        """Return the key of the outline that the jaws meet with the part on parallels of this height."""
+        """Return the role under which a workpiece keeps the outline that the jaws touch, for parallels of
+        this height in mm.
+        """
         return f"jaws up to {round(self.compute_top(parallels), 6):g} mm"
 
     def compute_torque(self, force: float) -> float | None:
-        """Return the torque in N m on the screw that closes the
-        vise with a force in N; None where the lead is not known.
+        """Return the torque in N m on the screw for a clamping force in N; None where the screw's lead is not
+        known.
         """
         return None if self.screw_lead is None else force * self.screw_lead / (2 * pi * SCREW_SHARE) / 1000.0

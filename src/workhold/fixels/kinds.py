@@ -53,7 +53,8 @@ PAGES: Mapping[str, PageWords] = {
 
 
 def resolve_kind(name: str) -> tuple[str, Mapping[str, Any]]:
-    """Return the kind that a name or an alias stands for, and the fields that the alias sets.
+    """Return (1) the kind of toolkit that a name or an alias stands for, and (2) the values of fields that an
+    alias sets.
 
     Raises
     ------
@@ -73,14 +74,15 @@ def resolve_kind(name: str) -> tuple[str, Mapping[str, Any]]:
 
 
 def find_table(kind: object) -> FieldTable:
-    """Return the table of fields of a kind by name; for any
-    other value, aliases too, the table of the usual kind.
+    """Return the table of fields of a kind, given by its name.
+
+    For any other value, also for an alias, it is the table of the default kind.
     """
     return TABLES.get(str(kind), TABLES[USUAL])
 
 
 def find_owner(row: ToolkitField) -> FieldTable:
-    """Return the first table, in the order of kinds, that has a field of this name."""
+    """Return the first table, in the order of ``KINDS``, that has a field with the name of ``row``."""
     return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))
 
 

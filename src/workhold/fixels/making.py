@@ -40,7 +40,7 @@ __all__ = [
 
 
 def convert_pitch(value: Any) -> tuple[float, float]:
-    """Return a pitch as (x, y) floats, from one number for both or from two.
+    """Return a pitch as two floats (x, y), from two numbers or from one for both.
 
     Raises
     ------
@@ -54,8 +54,15 @@ def convert_pitch(value: Any) -> tuple[float, float]:
 
 
 def convert_whole_number(value: Any, name: str = "a count") -> Any:
-    """Return a number that is an integer as int; any other number, and None, unchanged, to be checked
+    """Return a number that is whole as an int; other numbers, and None, are returned unchanged and refused
     later.
+
+    ``name`` names the number in the error's message.
+
+    Raises
+    ------
+    InputError
+        For a value that is no number.
     """
     return (
         int(value)
@@ -65,8 +72,9 @@ def convert_whole_number(value: Any, name: str = "a count") -> Any:
 
 
 def convert_optional_length(value: float | None, name: str = "a length") -> float:
-    """Return a length as float; NaN for None, to be replaced
-    later by the default, and inf for NaN, to be refused later.
+    """Return a length as a float, with two stand-ins for values that are treated later.
+
+    None becomes NaN, which is later replaced by the default; NaN becomes inf, which is later refused.
     """
     return nan if value is None else inf if isnan(convert_real(value, name)) else convert_real(value)
 
@@ -74,9 +82,10 @@ def convert_optional_length(value: float | None, name: str = "a length") -> floa
 def refuse_lattice(
     pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
 ) -> None:
-    """Raise InputError for an invalid pitch or count or radius, or pegs too thick for neighbouring holes.
+    """Raise InputError for an invalid pitch, count of holes or peg radius, or pegs too thick for neighbouring
+    holes.
 
-    ``noun`` and ``peg`` name the lattice's carrier and its pegs in messages.
+    ``noun`` and ``peg`` are the words for the carrier and for its pegs in messages.
     """
     for value in pitch:
         if not (isfinite(value) and value > 0):
@@ -96,7 +105,10 @@ def refuse_lattice(
 
 
 def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
-    """Raise InputError for more than ``MOST_HOLES`` holes; None counts as one."""
+    """Raise InputError for more than ``MOST_HOLES`` holes; a count of None is taken as 1.
+
+    ``noun`` is the word for the carrier in the message.
+    """
     holes = (columns or 1) * (rows or 1)
     if holes > MOST_HOLES:
         raise InputError(
@@ -116,9 +128,13 @@ BOUNDS = {
 
 
 def make_class_from_table(kind: Kind) -> Kind:
-    """Return the class of a kind made a frozen attrs class, with attributes as its table of fields says.
+    """Return a toolkit's class made a frozen attrs class, whose attributes have the defaults and converters
+    of its table.
 
-    Raises KeyError for an annotation without a row.
+    Raises
+    ------
+    KeyError
+        For an annotation of the class without a field of this name in its table.
     """
     rows = {row.name: row for row in kind.table.fields}
     names = [name for name, form in kind.__annotations__.items() if not str(form).startswith("ClassVar")]
@@ -133,15 +149,19 @@ def make_class_from_table(kind: Kind) -> Kind:
 
 
 def make_field_attribute(row: ToolkitField, *, inherits: bool) -> Any:
-    """Return the attrs attribute of a field; of classes that inherit fields it is keyword-only."""
+    """Return the attrs attribute of a field.
+
+    It is keyword-only for a class that inherits fields (``inherits``), and for the forms in ``SILENT``.
+    """
     by_name = row.form in SILENT or inherits
     default = NOTHING if row.is_required else row.default
     return field(default=default, converter=choose_converter(row), kw_only=by_name)
 
 
 def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
-    """Return the converter of a field's values by its form;
-    it leaves values to be refused later where others decide.
+    """Return the function that converts values of a field, by the field's form.
+
+    Some converters let invalid values pass, which are refused when the toolkit is complete.
     """
     match row.form:
         case "length" if row.follows:
@@ -168,14 +188,23 @@ def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
 def convert_holes(
     holes: Iterable[HoleSelection | str], *, carriers: tuple[str, ...], noun: str
 ) -> tuple[HoleSelection, ...]:
-    """Return holes as a tuple of selections; names are parsed."""
+    """Return holes as a tuple of ``HoleSelection``; names such as "L-B3" are parsed.
+
+    ``carriers`` are the names of the carriers that may have the holes, ``noun`` the word for a carrier in
+    messages.
+    """
     return tuple(parse_hole_name(one, carriers, noun) if isinstance(one, str) else one for one in holes)
 
 
 def convert_two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, float] | None:
-    """Return two lengths as floats, or None for None.
+    """Return two lengths as floats; None for None.
 
-    Raises InputError with the message ``wrong``, "{value}" replaced, for anything but two numbers.
+    ``wrong`` is the message of the error, in which "{value}" stands for the value.
+
+    Raises
+    ------
+    InputError
+        For anything but two numbers.
     """
     if value is None:
         return None
@@ -186,9 +215,15 @@ def convert_two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[f
 
 
 def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
-    """Return directions of a clamp, or pairs of them, in the order of ``DIRECTIONS``; empty for None.
+    """Return the directions in which a clamp may push, or pairs of directions, in the order of
+    ``DIRECTIONS``.
 
-    Raises InputError for anything else.
+    None gives an empty tuple. A single name counts as a list of one.
+
+    Raises
+    ------
+    InputError
+        For unknown directions, an empty list, and anything but names or pairs of names.
     """
     if value is None:
         return ()
@@ -212,7 +247,7 @@ def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
 
 
 def refuse_direction(name: Any) -> None:
-    """Raise InputError for what is no key of ``DIRECTIONS``."""
+    """Raise InputError for anything that is not one of ``DIRECTIONS``."""
     if not isinstance(name, str) or name not in DIRECTIONS:
         raise InputError(
             f"a clamp cannot move in the direction {name!r}: choose among {', '.join(DIRECTIONS)}."
@@ -220,8 +255,8 @@ def refuse_direction(name: Any) -> None:
 
 
 def convert_lengths(value: float | Iterable[float] | None) -> tuple[float, ...]:
-    """Return lengths as floats without repetitions, ascending;
-    empty for None. One number counts as one length.
+    """Return lengths as floats in ascending order, each once; one number gives one length, None an empty
+    tuple.
     """
     given = () if value is None else value if isinstance(value, Iterable) else (value,)
     return tuple(sorted({convert_real(one, "a length") for one in given}))
@@ -245,10 +280,15 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
 
 
 def settle(toolkit: Any, *, noun: str, peg: str) -> None:
-    """Fill in the toolkit's values that follow from other
-    fields, in place, and raise InputError for invalid values.
+    """Complete a new toolkit in place with the defaults that follow from other fields, and check all its
+    values.
 
-    ``noun`` and ``peg`` name a lattice's carrier and its pegs in messages.
+    ``noun`` and ``peg`` are the words for the carrier and for its pegs in messages.
+
+    Raises
+    ------
+    InputError
+        For invalid values.
     """
     rows = toolkit.table.fields
     for row in rows:
@@ -267,17 +307,18 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
 
 
 def refuse_all_out_of_bounds(toolkit: Any) -> None:
-    """Raise InputError for values of any field below their minimum, or too large to compute with.
+    """Raise InputError where any field has a value below its minimum or too large to compute with.
 
-    The flat of pegs is resolved in place.
+    A flat of pegs is completed in place with its half width.
     """
     for row in toolkit.table.fields:
         refuse_out_of_bounds(toolkit, row)
 
 
 def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
-    """Raise InputError for a value of one field below its
-    minimum, or too large; resolve the flat of pegs in place.
+    """Raise InputError where the field ``row`` has a value below its minimum or too large to compute with.
+
+    A flat of pegs is completed in place with its half width.
     """
     value = getattr(toolkit, row.name)
     match row.form:
@@ -322,8 +363,8 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
 
 
 def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
-    """Raise InputError for blocked holes that do not exist,
-    too many of them, or a carrier with every column blocked.
+    """Raise InputError for blocked holes that do not exist or are too many, or where every column of a
+    carrier is blocked.
     """
     blocked, columns, rows, noun = getattr(toolkit, row.name), toolkit.columns, toolkit.rows, row.carrier_noun
     if len(blocked) > MOST_BLOCKED:
@@ -345,9 +386,9 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
 
 
 def make_lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
-    """Return a carrier with the pitch, counts of holes, peg radius, flat and blocked holes of a toolkit.
+    """Return a carrier with a toolkit's pitch, columns, rows, peg radius, flat and blocked holes.
 
-    ``others`` are further or different attributes.
+    ``others`` are attributes of the carrier that are added or set to other values.
     """
     size = toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, toolkit.peg_radius
     rows = (row for row in toolkit.table.fields if row.form == "holes")
@@ -356,14 +397,18 @@ def make_lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
 
 
 def make_wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Carrier:
-    """Return the straight wall of a toolkit, along x at y = 0; ``width`` in mm is None for an endless one."""
+    """Return a toolkit's straight wall, which runs along x at y = 0.
+
+    ``noun`` is the word for it, such as "fence"; ``width`` is in mm, None for an endless wall.
+    """
     size, heights = (toolkit.pitch, toolkit.columns, toolkit.rows), toolkit.wall_heights
     return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True, heights=heights, width=width)
 
 
 def suggest_half_pitch(toolkit: Any) -> Iterator[ToolkitChange]:
-    """Yield half the pitch as a change to try, where pegs are
-    thin enough; counts are such that all old holes remain.
+    """Yield one change of a toolkit to half the pitch; nothing where the pegs would be too thick for it.
+
+    The numbers of columns and rows grow so that all old holes remain.
     """
     if min(toolkit.pitch) >= 4 * toolkit.peg_radius:
         counts = {name: getattr(toolkit, name) for name in ("columns", "rows")}

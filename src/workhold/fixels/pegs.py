@@ -26,12 +26,13 @@ ROUNDED = 1e-6
 
 @frozen
 class PegFlat:
-    """The flat of a peg.
+    """A flat side of a peg, which lies on straight faces of the part.
 
     Parameters
     ----------
     distance : from the peg's centre to its flat, in mm; at most the peg radius.
-    half_width : of the flat in mm; NaN for the full chord at this distance.
+    half_width : half the width of the flat in mm; NaN for a flat that cuts the peg's whole circle at this
+        distance.
     """
 
     distance: float = field(converter=convert_real)
@@ -39,8 +40,9 @@ class PegFlat:
 
 
 def convert_flat(value: Any) -> PegFlat | None:
-    """Return a flat from its distance, a pair (distance, half
-    width), or a mapping of both; None and flats unchanged.
+    """Return a flat from a distance in mm, a pair (distance, half width), or a mapping with these two names.
+
+    None and a ``PegFlat`` are returned unchanged.
 
     Raises InputError for anything else.
 
@@ -64,9 +66,12 @@ def convert_flat(value: Any) -> PegFlat | None:
 
 
 def resolve_flat(flat: PegFlat | None, peg_radius: float) -> PegFlat | None:
-    """Return a flat with its half width known, for a peg of a radius in mm; None for None.
+    """Return a flat with its half width filled in, for a peg of a radius in mm; None for None.
 
-    Raises InputError for a flat that such a peg cannot have.
+    Raises
+    ------
+    InputError
+        For a flat that a peg of this radius cannot have.
     """
     if flat is None:
         return None
@@ -88,8 +93,9 @@ def resolve_flat(flat: PegFlat | None, peg_radius: float) -> PegFlat | None:
 
 
 def compute_standoff(peg_radius: float, flat: PegFlat | None, face: Segment) -> float:
-    """Return the distance in mm from a face to the centre of
-    a peg that touches it: on lines that of the flat, if any.
+    """Return the distance in mm from a face to the centre of a peg that touches it.
+
+    It is the distance of the flat for a straight face and a peg with a flat, else the peg radius.
     """
     return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
 
@@ -97,10 +103,10 @@ def compute_standoff(peg_radius: float, flat: PegFlat | None, face: Segment) -> 
 def make_peg_outline(
     center: Point, radius: float, flat: PegFlat | None = None, flat_deg: float | None = None
 ) -> list[Segment]:
-    """Return the outline of a peg in mm, counter-clockwise:
-    a full circle, or an arc and the line of its flat.
+    """Return the outline of a peg in mm, counter-clockwise: a full circle, or an arc and a line for a flat.
 
-    ``flat_deg`` is the direction in degrees in which the flat faces; None for a circle.
+    ``flat_deg`` is the direction in degrees, counter-clockwise from x, in which the flat faces. It is a full
+    circle where ``flat`` or ``flat_deg`` is None.
     """
     if flat is None or flat_deg is None or flat.distance >= radius:
         return [Arc(center, radius, 0.0, pi, 1.0)]

@@ -33,15 +33,14 @@ class PlainVise(Toolkit):
     jaw_width : of both jaws in mm.
     jaw_height : how high the jaws stand above the vise's bed, in mm; None for any height.
     max_opening : the largest distance between the jaws in mm, or None for no limit.
-    parallels : the heights in mm of those that there are; none where the part lies on the bed.
-    stop : "left", "right" or "both", the ends of the jaws at which the work stop is; None without one.
+    parallels : heights in mm of the parallels that can be used; empty where the part lies on the bed.
+    stop : "left", "right" or "both": the ends of the jaws at which a work stop can be; None without one.
     stop_offset : how far inward from the end of the jaws the stop touches the part, in mm.
     least_grip : the least height in mm that both jaws must grip.
-    max_force : what the vise is rated for, in N; None where not known.
+    max_force : rated clamping force in N; None where not known.
     jaw_thickness : how thick the jaws are, for the tools of a program, in mm; None for any thickness.
     screw_lead : how far a turn of the screw moves the jaw, in mm; None where not known.
-    supports, top_clamp, pins : as of every toolkit; flat jaws need none of them.
-    tolerance : of pegs, which there are none of.
+    supports, top_clamp, pins, tolerance : fields of every toolkit, which flat jaws do not need.
 
     Raises
     ------
@@ -165,7 +164,7 @@ class PlainVise(Toolkit):
 
     @cached_property
     def flat_jaws(self) -> JawPair:
-        """Two flat jaws with the vise's figures."""
+        """The two flat jaws, with the vise's dimensions and ratings."""
         return JawPair(
             width=self.jaw_width,
             height=self.jaw_height,
@@ -181,7 +180,7 @@ class PlainVise(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Fixed jaw, and the jaw that moves."""
+        """The fixed jaw, and the jaw that moves."""
         travel = Travel(pi / 2, 0.0, getattr(self, fields.MAX_OPENING.name))
         size = (1.0, 1.0), None, None, 0.0, 0.0
         fixed = Carrier("fixed jaw", *size, noun="jaw", width=self.jaw_width, is_jaw=True)
@@ -191,10 +190,11 @@ class PlainVise(Toolkit):
 
     @property
     def heights(self) -> dict[str, Heights]:
-        """Heights (0, top) in mm above the part's lower side that the
-        jaws reach over, by outline role, for each of the parallels.
+        """For each height of parallels, the heights in mm that the jaws cover: (0, top) above the part's
+        lower side.
 
-        Unlimited heights are left out.
+        The keys are the roles of ``JawPair.name_outline_role``. Jaws of any height, and jaws not above the
+        parallels, are left out.
         """
         jaws = self.flat_jaws
         tops = {one: jaws.compute_top(one) for one in jaws.parallels}
@@ -202,7 +202,7 @@ class PlainVise(Toolkit):
 
     @property
     def datum(self) -> Datum:
-        """Origin of places: the left end of the fixed jaw's face, on top of the parallels."""
+        """The origin of places: the left end of the fixed jaw's face, at the height of the parallels' top."""
         name = "the left end of the fixed jaw"
         return Datum(
             name=name,
@@ -223,8 +223,8 @@ class PlainVise(Toolkit):
         return abs(eighths - round(eighths)) < 1e-9 < abs(halves - round(halves))
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield changes to try: the part on the bed, and parallels
-        half as high as the lowest; none without parallels.
+        """Yield two changes where the vise has parallels: no parallels, and parallels half as high as the
+        lowest.
         """
         if self.parallels:
             yield ToolkitChange("without parallels, on the bed", {fields.PARALLELS.name: ()})

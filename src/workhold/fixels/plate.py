@@ -40,24 +40,24 @@ class Plate(Toolkit):
     peg_radius : of the locators in mm; 0 is allowed.
     columns, rows : of holes, or None for as many as needed.
     clamp_radius : of the clamp's round tip in mm; None means the peg radius.
-    travel : least and most in mm from the hole that the clamp is bolted in to its tip. None makes the clamp
-        its tip alone, and asks nothing of its body.
-    directions : of clamping, among "-x", "+x", "-y" and "+y". None means all
-        that differ by more than a turn of the plate. Two clamps take pairs, such as [("-x", "-y")]; single
-        directions stand for all pairs of them.
+    travel : smallest and largest distance in mm from the clamp's hole to its tip. None for any distance; then
+        only the clamp's tip is considered, not its body.
+    directions : directions in which the clamp may push, among "-x", "+x", "-y" and "+y". None for all that no
+        turn of the plate makes equal. For two clamps give pairs, such as [("-x", "-y")]; single directions
+        stand for all pairs of them.
     clamps : 1, or 2 that are needed together.
     flat : of the locators, which lies on straight faces: its distance from a locator's centre, and half its
-        width, in mm; None for round ones. A clamp's tip is round.
+        width, in mm; None for round locators. A clamp's tip is always round.
     locator_heights, clamp_heights : lower and upper end in mm, above the plane on which the part lies, of the
         locators, and of the clamps with their tips. None where they reach up to the peg height.
     supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
-        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
-    tolerance : how far these pegs and the faces on them may be off; None is not known.
+        of figures in mm and MPa (see ``fixels.support_hardware``); None for the usual ones.
+    tolerance : how far these pegs and the faces that they touch may be off; None where not known.
 
     Raises
     ------
     InputError
-        For values that are not finite and positive, and for locators too fat for neighbouring holes.
+        For values that are not finite and positive, and for locators too thick for neighbouring holes.
 
     Examples
     --------
@@ -157,8 +157,8 @@ class Plate(Toolkit):
         return self.clamps == 2
 
     def list_asked_directions(self) -> tuple[Any, ...]:
-        """Return the directions, or with two clamps the pairs
-        of them, that the field means, with defaults filled in.
+        """Return the directions in which the clamp may push, or the pairs of directions of two clamps, with
+        defaults filled in.
 
         Raises
         ------
@@ -176,7 +176,13 @@ class Plate(Toolkit):
 
     @property
     def usual_directions(self) -> tuple[Any, ...]:
-        """Default directions, or pairs square to each other: those that no turn of the plate makes equal."""
+        """The default directions.
+
+        For one clamp: "-x", and also "-y" unless rows and columns are alike in pitch and number. For two
+        clamps, pairs of perpendicular directions: ("-x", "-y"), and also ("-x", "+y") unless rows and columns
+        are alike. The other single directions, and the other perpendicular pairs, are equal to these after a
+        turn of the plate.
+        """
         holes = make_lattice_carrier(self, "plate")
         is_square = holes.pitch[0] == holes.pitch[1] and holes.columns == holes.rows
         every = (("-x", "-y"), ("-x", "+y")) if self.is_paired else ("-x", "-y")
@@ -184,8 +190,9 @@ class Plate(Toolkit):
 
     @property
     def pushes(self) -> tuple[tuple[str, ...], ...]:
-        """Directions of the clamps of each arrangement, such
-        as (("-x",), ("-y",)), each once up to half a turn.
+        """The directions of the clamps of each arrangement, such as (("-x",), ("-y",)).
+
+        Of two that half a turn of the plate makes equal, only the first is kept.
         """
         kept: list[tuple[str, ...]] = []
         for push in self.asked_pushes:
@@ -195,17 +202,17 @@ class Plate(Toolkit):
 
     @property
     def asked_pushes(self) -> tuple[tuple[str, ...], ...]:
-        """Directions of the clamps for each direction or pair in ``directions``, as tuples."""
+        """The entries of ``directions``, each as a tuple with a direction for each clamp."""
         return self.directions if self.is_paired else tuple((name,) for name in self.directions)
 
     @property
     def clamp_directions(self) -> tuple[str, ...]:
-        """Directions in which any clamp pushes, in the order of ``DIRECTIONS``."""
+        """All directions in which some clamp pushes, each once, in the order of ``DIRECTIONS``."""
         return tuple(name for name in DIRECTIONS if any(name in push for push in self.pushes))
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """Arrangement for each of ``pushes``: the locating contacts, and the clamps beside them."""
+        """One arrangement for each of ``pushes``: how many contacts stand on the plate and on each clamp."""
         name, every = self.names[self.is_paired], self.clamp_directions
         return tuple(
             Arrangement(name, (*self.locating, *map(push.count, every)), " ".join(push))
@@ -214,11 +221,13 @@ class Plate(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Plate, and one clamp for each direction, whose travel grows as it opens."""
+        """The plate, and one clamp for each direction, whose travel grows as the clamp is opened."""
         return self.make_plate_and_clamps((0.0, 0.0))
 
     def make_plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
-        """Return the plate, with its first hole at ``offset`` in mm, and a clamp for each direction."""
+        """Return the plate, whose first hole is at ``offset`` (x, y) in mm, and one clamp for each
+        direction.
+        """
         plate = make_lattice_carrier(
             self, "plate", offset=offset, noun="plate", peg="locator", heights=self.locator_heights
         )
@@ -243,7 +252,9 @@ class Plate(Toolkit):
 
     @property
     def ways(self) -> tuple[Plate, ...]:
-        """Toolkits with one clamp each, one for each direction."""
+        """Toolkits with one clamp and otherwise the same fields, one for each direction in which a clamp
+        pushes.
+        """
         return tuple(
             self.with_fields({fields.CLAMPS.name: 1, fields.DIRECTION.name: (name,)})
             for name in self.clamp_directions
@@ -251,24 +262,24 @@ class Plate(Toolkit):
 
     @property
     def law(self) -> str:  # type: ignore[override]
-        """Key of the law of search time, for one clamp or for two."""
+        """The key in ``batch.durations`` of the law for the duration of a search, for one clamp or for
+        two.
+        """
         return "two clamps" if self.is_paired else "plate"
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """Index of the carrier whose place each takes after half
-        a turn: the plate its own, each clamp the opposite one's.
+        """For each carrier the index of the carrier onto which half a turn carries it.
 
-        -1 where there is no opposite clamp.
+        The plate is carried onto itself, a clamp onto the clamp with the opposite direction; -1 where there
+        is none.
         """
         names = self.clamp_directions
         ahead = [TURNED[name] for name in names]
         return (0, *(1 + names.index(name) if name in names else -1 for name in ahead))
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield changes to try: another number of clamps, more
-        directions, half the pitch; each only where it applies.
-        """
+        """Yield the changes that apply: another number of clamps, more directions, half the pitch."""
         if self.is_paired:
             yield ToolkitChange("with one clamp", {fields.CLAMPS.name: 1, fields.DIRECTION.name: None})
             if len(self.pushes) == 1:

@@ -18,7 +18,7 @@ __all__ = ["Datum", "PageWords", "SetupWords"]
 
 @frozen
 class SetupWords:
-    """Texts on setting up a kind of toolkit.
+    """Texts about setting up a kind of toolkit.
 
     Words in braces are placeholders: ``{holes}`` for the holes of the pegs and ``{count}`` for their number,
     ``{peg}`` and ``{plate}`` for the nouns of pegs and plate, ``{edge}`` for the distance of row 1 from the
@@ -44,7 +44,7 @@ class SetupWords:
 
 @frozen
 class PageWords:
-    """Texts and defaults of a kind of toolkit on the page.
+    """Texts and initial values for a kind of toolkit on the web page.
 
     Parameters
     ----------
@@ -60,18 +60,18 @@ class PageWords:
 
 @frozen
 class Datum:
-    """The origin of places, and its names.
+    """The origin from which places on a toolkit are measured, and the words for it.
 
     Parameters
     ----------
-    name : the zero point in short, such as "A1".
-    point : in words, such as "the centre of hole A1".
-    full : in words with the carrier, such as "the plate's hole A1".
-    mark : label beside it on a plan.
-    x, y : what x and y are measured from, such as "hole A1".
-    lines : the column and the row (or what replaces a row) of the zero point.
-    rows_from : where rows are counted from, such as "below".
-    substitute : what replaces the datum where the whole set-up is moved.
+    name : short name of the origin, such as "A1".
+    point : the origin in words, such as "the centre of hole A1".
+    full : the origin in words with its carrier, such as "the plate's hole A1".
+    mark : label beside the origin on a plan.
+    x, y : words for what x and y are measured from, such as "hole A1".
+    lines : words for the column and the row through the origin; for a wall, the wall instead of the row.
+    rows_from : words for where rows are counted from, such as "below".
+    substitute : words for what takes the origin's place when the whole set-up is moved to other holes.
     edge : distance in mm from the wall to the centres of row 1; None without a wall, or where the plate
         slides.
     """
@@ -89,7 +89,7 @@ class Datum:
 
     @classmethod
     def from_hole(cls, plate: Carrier) -> Datum:
-        """Return the datum at hole A1 of a plate."""
+        """Return the datum at the centre of hole A1 of a plate."""
         name, hole = make_hole_name(plate.name, 0, 0), f"hole {make_hole_name(plate.name, 0, 0)}"
         return cls(
             name=name,
@@ -105,7 +105,7 @@ class Datum:
 
     @classmethod
     def from_wall(cls, wall: Carrier, plate: Carrier) -> Datum:
-        """Return the datum at which the first column of a plate meets a wall."""
+        """Return the datum at the point where the first column of a plate meets a wall."""
         letter, line = make_column_letters(0), f"the {wall.noun}"
         name = f"column {letter} at {line}"
         return cls(
@@ -123,21 +123,24 @@ class Datum:
 
     @property
     def is_hole(self) -> bool:
-        """Whether x and y are both measured from one hole."""
+        """Whether x and y are measured from the same hole."""
         return self.x == self.y
 
     @property
     def fixes_rows(self) -> bool:
-        """Whether rows are fixed, by a wall, so that a set-up can be moved along them only."""
+        """Whether there is a wall, so that a set-up can be moved along the rows only."""
         return not self.is_hole
 
     @property
     def start(self) -> str:
-        """Phrase for what x and y are measured from."""
+        """Words for what x and y are measured from, such as "hole A1" or "column A and the fence"."""
         return self.x if self.is_hole else f"{self.x} and {self.y}"
 
     def describe_peg_centres(self, pegs: str) -> str:
-        """Return a sentence on what x and y in a table of pegs are; ``pegs`` names them."""
+        """Return a note for a table of peg centres that says where x and y are measured from.
+
+        ``pegs`` is the word for the pegs.
+        """
         if self.is_hole:
             return f"x, y: {pegs} centre, from {self.point}."
         return f"x from {self.x}, y from {self.y}, to centres."

@@ -11,17 +11,17 @@ __all__ = ["StrapSet"]
 
 @frozen
 class StrapSet:
-    """The straps that press a part down on a plate; lengths in mm.
+    """The straps of a plate, and the holes for their bolts; lengths in mm.
 
     Parameters
     ----------
-    count : how many press on the part, 1 to 4.
-    tip_radius : of a strap's round tip.
-    reach : the least and the greatest distance of the tip from the middle of the bolt's hole.
-    max_force : that a strap is rated for, in N; None where nobody says.
-    bolts : the lattice of holes for bolts; the plate itself where the dowels' own holes take them.
-    over : what the part lies on under the tips, "plate" or "supports".
-    standout : how high a strap stands above the face that it presses on, with nut and stud.
+    count : how many straps press on the part, 1 to 4.
+    tip_radius : radius of a strap's round tip.
+    reach : the least and the greatest distance of a tip from the middle of its bolt's hole.
+    max_force : the force in N that a strap is rated for; None where not known.
+    bolts : the lattice of holes for bolts; the plate itself where bolts stand in the dowels' holes.
+    over : what lies under the part below the tips: "plate" or "supports".
+    standout : height of a strap, with nut and stud, above the face that it presses on.
     """
 
     count: int
@@ -34,10 +34,10 @@ class StrapSet:
 
     @property
     def is_over_supports(self) -> bool:
-        """Whether the part lies on three supports, and each tip presses over one of them."""
+        """Whether the part lies on three supports, with each tip over one of them."""
         return self.over == "supports"
 
     @property
     def is_on_dowel_holes(self) -> bool:
-        """Whether bolts and dowels share one lattice."""
+        """Whether bolts stand in the same holes as dowels."""
         return self.bolts.peg != "bolt"

@@ -46,20 +46,20 @@ class StrapPlate(Toolkit):
     tip_radius : of a strap's round tip in mm.
     reach : least and most in mm from the middle of a bolt's hole to the tip of its strap.
     strap_height : how high a strap stands above the face that it presses on, with nut and stud, for the tools of a
-        program; six radii of its tip for None.
-    over : "plate", where the part's foot lies under each tip, or "supports", three of which it lies on, each tip
-        over one.
-    bolt_pitch : of holes for bolts in mm, one number or (x, y), a whole part of the pitch; None where the
-        dowels' own holes take the bolts.
+        program; None for six radii of its tip.
+    over : "plate" where the part lies on the plate, with its foot under each tip; "supports" where it lies on
+        three supports, with each tip over one of them.
+    bolt_pitch : distance between holes for bolts in mm, one number or (x, y); the pitch must be a whole
+        multiple of it. None where bolts stand in the dowels' holes.
     bolt_offset : from the first dowel hole to the first hole for a bolt in mm, one number or (x, y).
-    max_force : what a strap is rated for, in N; None where nobody says.
-    supports, top_clamp, pins : as of every toolkit.
-    tolerance : how far these pegs and the faces on them may be off; None is not known.
+    max_force : rated force of a strap in N; None where not known.
+    supports, top_clamp, pins : see :class:`workhold.Plate`.
+    tolerance : how far these pegs and the faces that they touch may be off; None where not known.
 
     Raises
     ------
     InputError
-        For values that cannot be, and holes for bolts that do not repeat as the dowels' holes do.
+        For values that are not possible, and holes for bolts that do not repeat as the dowels' holes do.
 
     Examples
     --------
@@ -213,17 +213,21 @@ class StrapPlate(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The plate alone: nothing moves."""
+        """The plate as the only carrier, which does not move."""
         return (make_lattice_carrier(self, "plate", noun="plate", peg="locator"),)
 
     @property
     def moving(self) -> Carrier:
-        """What is tightened, a strap; no travel of it brings the part to its place."""
+        """A stand-in for the carrier that moves, with the words for a strap; it has no travel, since a strap
+        moves no part.
+        """
         return evolve(self.carriers[0], name="strap", noun="strap", peg="strap")
 
     @property
     def bolts(self) -> Carrier:
-        """The lattice of holes for bolts, as far as the dowels' holes go; the plate where those take them."""
+        """The lattice of holes for bolts, no larger than that of the dowels; the plate itself where bolts
+        have no own holes.
+        """
         plate = self.carriers[0]
         if self.bolt_pitch is None:
             return plate
@@ -245,13 +249,17 @@ class StrapPlate(Toolkit):
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """The plate takes its own place; None where half a turn moves the holes for bolts."""
+        """(0,) where half a turn carries the plate onto itself; None where it would move the holes for
+        bolts.
+        """
         if self.bolt_pitch is None:
             return (0,)
         twice = [2 * offset / own for offset, own in zip(self.bolt_offset, self.bolt_pitch, strict=True)]
         return (0,) if all(abs(one - round(one)) <= ROUNDING for one in twice) else None
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """A finer lattice."""
+        """Yield the change to half the pitch, where the pegs are thin enough; nothing where bolts have their
+        own holes.
+        """
         if self.bolt_pitch is None:
             yield from suggest_half_pitch(self)

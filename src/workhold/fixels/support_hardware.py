@@ -45,7 +45,7 @@ SUPPORTS_SECTION, CLAMP_SECTION = "Supports", "The clamp on top"
 def make_length_field(
     name: str, least: Any, figure: str, label: str, typed: str = "", section: str | None = None
 ) -> ToolkitField:
-    """Return a field of hardware for a length.
+    """Return a field of hardware that is a length.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def make_length_field(
 
 
 def convert_rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
-    """Return rings as a tuple of tuples of floats; None for None."""
+    """Return rings (sequences of numbers) as a tuple of tuples of floats; None for None."""
     return None if values is None else tuple(tuple(convert_real(one) for one in ring) for ring in values)
 
 
@@ -161,7 +161,7 @@ LIMITS = FieldTable(
 
 
 def refuse_wrong(hardware: Hardware) -> None:
-    """Raise InputError for lengths and rings of hardware that cannot be used."""
+    """Raise InputError for lengths, stresses or rings of hardware that are out of range."""
     for row in hardware.table.fields:
         value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
         if row.form in ("length", "stress") and value is not None:
@@ -182,7 +182,7 @@ def refuse_wrong(hardware: Hardware) -> None:
 
 @frozen(kw_only=True)
 class SupportPads:
-    """An owner's supports; lengths in mm, None for the usual one.
+    """The supports under the part that an owner has; lengths in mm, None for the program's usual value.
 
     Parameters
     ----------
@@ -213,7 +213,9 @@ class SupportPads:
 
 @frozen(kw_only=True)
 class TopClamp:
-    """An owner's clamp that presses from above; lengths in mm, None for the usual one.
+    """The clamp that an owner has for pressing on the part from above; lengths in mm.
+
+    None stands for the program's usual value.
 
     Parameters
     ----------
@@ -243,8 +245,8 @@ class TopClamp:
 
 @frozen(kw_only=True)
 class PinLimits:
-    """Limits of the bending of pegs above which there is a
-    warning; None for the usual limits (``conventions``).
+    """Limits of the bending of pegs, above which the program warns; None for the usual limits in
+    ``conventions``.
 
     Parameters
     ----------
@@ -272,7 +274,9 @@ HARDWARE: Mapping[str, type[Hardware]] = {SUPPORTS: SupportPads, TOP_CLAMP: TopC
 
 
 def convert_hardware(name: str, value: Any) -> Hardware | None:
-    """Return the hardware of a toolkit's field from a mapping of its figures; None and hardware unchanged.
+    """Return the hardware for a toolkit's field from a mapping of values by name.
+
+    None and hardware that is already made are returned unchanged.
 
     Parameters
     ----------

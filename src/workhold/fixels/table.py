@@ -37,13 +37,13 @@ HEIGHTS_SECTION = "Heights other than the heights of all pegs"
 
 @frozen
 class LiftedLimit:
-    """How to lift a limit that a field sets.
+    """The limit that a field sets, and the words for lifting it.
 
     Parameters
     ----------
-    rule : what the limit requires, in a few words, such as "rows of holes".
-    bounds : what it limits: the pegs' bodies, the travel, how far a wall reaches, or the holes.
-    words : phrase for the toolkit without the limit.
+    rule : the limit in a few words, such as "rows of holes".
+    bounds : what is limited: the pegs' bodies, the travel, how far a wall reaches, or the holes.
+    words : phrase for the toolkit without the limit, such as "with as many rows as needed".
     """
 
     rule: str
@@ -53,24 +53,24 @@ class LiftedLimit:
 
 @frozen
 class ToolkitField(Declaration):
-    """A field of a toolkit; what any field has, :class:`workhold.asking.declaring.Declaration` says.
+    """A field of a toolkit, with what :class:`workhold.asking.declaring.Declaration` has and more.
 
     Parameters
     ----------
-    entry : what to write in a toolkit's file; empty where the form says enough.
-    missing : what is not given where it must be, in a sentence.
-    belongs_to : the part of a toolkit that it describes, which toolkits without this field have not.
-    figure : what it is called among the figures of a toolkit; empty where it is shown in another way.
-    unset : what stands there for a value of None; where it is empty, a default is no figure.
-    follows : the field whose value is the default of this one, with which it is no figure; of a pitch that in
-        x.
-    is_always_shown : whether it is a figure also where it has the value that it follows.
-    at_least, below : the field whose value is the least of this one, and the sentence for what is below, with
-        "{value}" and "{least}".
-    allowed : the only counts that there are; empty where all are.
-    lifted : how the limit that it sets is lifted, for which its default stands; None where it sets none.
-    carriers, carrier_noun : of holes the names of the carriers that have them, and what one of these is
-        called.
+    entry : advice on what to write in a toolkit's file; empty where the field's form says enough.
+    missing : words for the field in the message that it is missing, such as "distance between holes".
+    belongs_to : the part of a toolkit that the field describes; toolkits without this field lack that part.
+    figure : name of the field in a list of a toolkit's figures; empty where it is shown elsewhere.
+    unset : text in that list for a value of None; empty to leave fields with their default value out.
+    follows : name of the field whose value is the default of this one; of a pitch, its x counts. A field with
+        this default is left out of the list.
+    is_always_shown : whether it is in the list even with that default.
+    at_least : name of the field whose value is the minimum of this one.
+    below : message for a value below that minimum, with "{value}" and "{least}".
+    allowed : the counts that are allowed; empty for all.
+    lifted : the limit that the field sets, which its default lifts; None where it sets no limit.
+    carriers, carrier_noun : for a field of holes, the names of the carriers that have them, and the word for
+        such a carrier.
     """
 
     entry: str = field(default="", kw_only=True)
@@ -89,19 +89,19 @@ class ToolkitField(Declaration):
     section: str | None = field(default=TOOLKIT_SECTION, kw_only=True)
 
     def relabel(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
-        """Return a copy of the field with other labels on the
-        page and further changes, for another kind of toolkit.
+        """Return a copy of the field with other labels on the page, and with the attributes in ``changes``
+        set to other values.
         """
         return evolve(self, labels=labels, **changes)
 
 
 @frozen
 class FieldTable:
-    """The fields of toolkits that share them all.
+    """The fields of a kind of toolkit, or of several kinds with the same fields.
 
     Parameters
     ----------
-    noun : see the glossary of the module.
+    noun : word for such a toolkit in files and requests.
     summary : what the fields describe, for a schema.
     fields : in the order of the page.
     """

@@ -86,7 +86,9 @@ class ToolkitWording:
 
 @frozen
 class ToolkitChange:
-    """A change of a toolkit to try where it holds nothing: a phrase, and the new values of fields."""
+    """A change of a toolkit to try where it holds no part: ``words`` is a phrase, ``fields`` are new values
+    by field name.
+    """
 
     words: str
     fields: Mapping[str, Any]
@@ -98,8 +100,8 @@ class ToolkitLimit:
 
     Parameters
     ----------
-    rule : what it requires, in a few words, such as "rows of holes".
-    bounds : what it limits: the pegs' bodies, the travel, how far a wall reaches, or the holes.
+    rule : the limit in a few words, such as "rows of holes".
+    bounds : what is limited: the pegs' bodies, the travel, how far a wall reaches, or the holes.
     lifted : the change that lifts it.
     """
 
@@ -114,28 +116,30 @@ def is_whole(number: float) -> bool:
 
 
 class Toolkit:
-    """The data that every toolkit has; a toolkit is a frozen attrs class, such as ``fixels.vise.Vise``.
+    """The base class of all toolkits; each kind is a frozen attrs class, such as ``fixels.vise.Vise``.
 
     Attributes
     ----------
-    kind : the name of its kind in files.
+    kind : name of the kind in files.
     table : its fields.
-    noun : what it is called, such as "vise".
-    locked : what it is with a screw that locks what moves, in words that "locked" follows.
-    law : the name of the law by which the time of a search grows, see ``batch.durations``.
-    arrangements : what may stand on its carriers.
-    clamping : 1 when the moving carrier clamps as its travel gets less (a vise that closes), -1 when it
-        clamps as its travel gets more.
-    symmetries : motions besides the identity that make two fixtures the same.
-    carriers : those that stand still first; at most one moves while a pose is sought.
-    gap : the gap rule in mm, or None when there is none.
-    wording : what its things are called where it holds nothing.
-    setup_words : what setting it up is called on sheets, pictures and pages.
-    page : what the page calls it.
+    noun : word for such a toolkit, such as "vise".
+    locked : words for a toolkit whose movement a screw can lock, such as "a screw vise, its jaw"; "locked"
+        follows.
+    law : key in ``batch.durations`` of the law for the duration of a search.
+    arrangements : the possible numbers of contacts on the carriers.
+    clamping : 1 where the moving carrier clamps as its travel shrinks (a vise that closes), -1 where it
+        clamps as its travel grows.
+    symmetries : rotations, besides the identity, that carry the toolkit onto itself.
+    carriers : those that stand still come first; at most one moves while a pose is sought.
+    gap : smallest distance in mm along the travel between pegs that stand still and pegs that move; None for
+        no such rule.
+    wording : phrases for messages where the toolkit holds nothing.
+    setup_words : texts about setting it up, on sheets, pictures and pages.
+    page : texts for the web page.
     supports, top_clamp : the supports and the clamp on top that its owner has; None where not known.
-    pins : what its pegs may bend; None for the usual limits.
-    tolerance : how far its pegs and the faces they touch may be off (``model.requirements.Tolerance``), as its
-        preset or file says; None where not known. A query takes it where it is given no other.
+    pins : limits of the bending of its pegs; None for the usual limits.
+    tolerance : how far its pegs and the faces they touch may be off (``model.requirements.Tolerance``), as
+        its preset or file says; None where not known. A query uses it where it has no tolerance of its own.
     """
 
     __slots__ = ()
@@ -163,29 +167,29 @@ class Toolkit:
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Carriers, those that stand still first."""
+        """The carriers, those that stand still first."""
         raise NotImplementedError
 
     @property
     def ways(self) -> tuple[Toolkit, ...]:
-        """Toolkits with only one of its moving carriers each,
-        in the order of its arrangements; itself if it has one.
+        """Toolkits that each have only one of its clamps, one for each direction; itself where only one
+        carrier moves.
         """
         return (self,)
 
     @property
     def datum(self) -> Datum:
-        """Origin of places, here the first hole of the first plate."""
+        """The origin of places; unless a kind has another one, the first hole of the first plate."""
         return Datum.from_hole(self.plates[0])
 
     @property
     def plates(self) -> tuple[Carrier, ...]:
-        """Carriers with a lattice of holes."""
+        """The carriers that have a lattice of holes."""
         return tuple(carrier for carrier in self.carriers if carrier.has_lattice)
 
     @property
     def peg_diameter(self) -> float | None:
-        """Diameter in mm of the pegs that stand in its plates; None where there are none.
+        """The diameter in mm of the pegs in the first plate; None for a toolkit without plates.
 
         >>> from workhold import Vise
         >>> Vise(pitch=20, columns=3, peg_radius=3).peg_diameter
@@ -195,24 +199,26 @@ class Toolkit:
 
     @property
     def is_in_inches(self) -> bool:
-        """Whether all pitches are multiples of an eighth of an inch, and none of half a millimetre."""
+        """Whether every pitch is a multiple of an eighth of an inch, and none is a multiple of half a
+        millimetre.
+        """
         pitches = [pitch for carrier in self.plates for pitch in carrier.pitch]
         return all(is_whole(pitch / EIGHTH) and not is_whole(pitch / 0.5) for pitch in pitches)
 
     @property
     def contacts(self) -> frozenset[ContactKind]:
-        """Kinds of contacts of its carriers."""
+        """The kinds of contacts that its carriers make."""
         return frozenset(carrier.contact for carrier in self.carriers)
 
     @property
     def tips(self) -> int:
-        """Number of clamp tips in a fixture; their contacts are its last."""
+        """The number of clamp tips in a fixture; they are the last of its contacts."""
         carriers = self.carriers
         return sum(carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
 
     @property
     def heights(self) -> dict[str, Heights]:
-        """Heights in mm by role of the carriers that have heights of their own.
+        """The lower and upper end in mm of each role of carriers for which heights are given.
 
         >>> from workhold import Plate
         >>> Plate(pitch=20, peg_radius=3, clamp_heights=(6, 14)).heights
@@ -222,18 +228,18 @@ class Toolkit:
 
     @property
     def travels(self) -> int:
-        """Number of things that move in one fixture, each with its own travel: one jaw, or its clamps."""
+        """The number of separate travels in a fixture: that of each clamp, or 1 for a jaw."""
         return max(self.tips, 1)
 
     @property
     def closes_at_once(self) -> bool:
-        """Whether a single movement closes it, so that closing can be simulated; False with two clamps."""
+        """Whether one movement closes it, so that closing can be simulated; False with two clamps."""
         return self.travels == 1
 
     @property
     def ends_on_walls(self) -> tuple[slice, ...]:
-        """Slices of a fixture's contacts, one for each wall,
-        that are the ends of the part's contact with it.
+        """For each wall, the slice of a fixture's contacts that are the two ends of the part's contact with
+        this wall.
         """
         standing = self.arrangements[0].carriers
         flush = [number for number, carrier in enumerate(self.carriers) if not carrier.contact.is_placed]
@@ -242,12 +248,12 @@ class Toolkit:
 
     @property
     def flat_jaws(self) -> JawPair | None:
-        """Pair of flat jaws that hold the part by friction; None for other toolkits."""
+        """The two flat jaws that hold the part by friction; None for other toolkits."""
         return None
 
     @property
     def strap_set(self) -> StrapSet | None:
-        """Straps that hold the part down by friction; None for other toolkits."""
+        """The straps that hold the part down by friction; None for other toolkits."""
         return None
 
     @property
@@ -257,35 +263,40 @@ class Toolkit:
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """Index of the carrier whose place each takes after half a turn of everything, -1 for none.
+        """For each carrier the index of the carrier onto which half a turn of the toolkit carries it; -1 for
+        none.
 
-        None where half a turn makes another toolkit.
+        None for the whole where half a turn does not carry the toolkit onto itself.
         """
         return next((one.carriers for one in self.symmetries if one.half_turns % 2), None)
 
     @property
     def has_flats(self) -> bool:
-        """Whether any carrier's pegs have flats."""
+        """Whether the pegs of some carrier have flats."""
         return any(carrier.flat is not None for carrier in self.carriers)
 
     @property
     def peg_count(self) -> int:
-        """Number of contacts of a fixture, ends on walls included."""
+        """The number of contacts of a fixture; each contact with a wall counts as two, one for each end."""
         return len(self.arrangements[0].carriers)
 
     @property
     def types(self) -> tuple[str, ...]:
-        """Names of its types of arrangements, each once."""
+        """The names of its arrangements, each once."""
         return tuple(dict.fromkeys(arrangement.name for arrangement in self.arrangements))
 
     @property
     def gap(self) -> float | None:
-        """Smallest gap in mm between standing and moving pegs; None where there is no such rule."""
+        """The smallest distance in mm along the travel between pegs that stand still and that move; None for
+        no such rule.
+        """
         return None
 
     @property
     def limits(self) -> tuple[ToolkitLimit, ...]:
-        """Limits set by its fields that could be lifted, in the order in which a person would lift them."""
+        """The limits that its fields set and that could be lifted, in the order in which a person would lift
+        them.
+        """
         limits = []
         for row in self.table.fields:
             free = self.find_followed_length(row) if row.follows else row.default
@@ -295,13 +306,16 @@ class Toolkit:
         return tuple(sorted(limits, key=lambda limit: LIFTED.index(limit.bounds)))
 
     def find_followed_length(self, row: ToolkitField) -> float:
-        """Return the default in mm of a field that follows another field; of a pitch that in x."""
+        """Return the default in mm of a field that follows another field: the other's value, of a pitch that
+        in x.
+        """
         value = getattr(self, row.follows)
         return float(value[0] if isinstance(value, tuple) else value)
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield changes to try where it holds nothing, besides
-        lifting its limits; lengths in words are in ``unit``.
+        """Yield changes to try where the toolkit holds no part, in addition to lifting its limits.
+
+        ``unit`` is the unit of lengths in the changes' words.
         """
         yield from ()
 
@@ -350,46 +364,57 @@ class Toolkit:
         return list_presets_of_kind(cls)
 
     def with_fields(self, fields: Mapping[str, Any]) -> Self:
-        """Return the toolkit with some fields changed; a new peg radius also drops the tolerance."""
+        """Return the toolkit with some fields changed.
+
+        With another peg radius the tolerance becomes None, as nothing is known of the new pegs.
+        """
         # Other pegs are as good as nobody says.
         others = {"tolerance": None} if PEG_RADIUS in fields else {}
         return evolve(self, **others, **fields)  # type: ignore[misc]
 
     def without_limits(self, limits: Iterable[ToolkitLimit]) -> Self:
-        """Return the toolkit with the given limits lifted."""
+        """Return the toolkit with these limits lifted."""
         return self.with_fields(
             {name: value for limit in limits for name, value in limit.lifted.fields.items()}
         )
 
     @property
     def wall(self) -> Carrier | None:
-        """Wall that the part lies flush against; None without one."""
+        """The wall that the part lies flush against; None where there is none."""
         return next((carrier for carrier in self.carriers if carrier.is_wall), None)
 
     @property
     def wall_with_ends(self) -> Carrier | None:
-        """Wall, if it has ends; None for an endless one, and without one."""
+        """The wall, where it has ends; None where it is endless or there is none."""
         return next((carrier for carrier in self.carriers if carrier.reach is not None), None)
 
     @property
     def moving(self) -> Carrier:
-        """First carrier that moves."""
+        """The first carrier that moves; StopIteration where none does."""
         return next(carrier for carrier in self.carriers if carrier.travel is not None)
 
     @property
     def moving_axis(self) -> tuple[float, float]:
-        """Unit vector along which the travel of the first moving carrier is counted."""
+        """The unit vector (x, y) of the direction in which the first moving carrier's travel grows."""
         travel = self.moving.travel
         assert travel is not None
         return travel.unit
 
     def find_arrangement(self, name: str, direction: str | None = None) -> Arrangement:
-        """Return the first arrangement with this name and, if given, this direction."""
+        """Return the first arrangement with this name and this direction; with direction None, the first with
+        this name.
+
+        Raises
+        ------
+        StopIteration
+            Where there is none.
+        """
         return next(a for a in self.arrangements if a.name == name and direction in (None, a.direction))
 
     def count_arrangements(self, arrangement: NDArray[Any]) -> dict[str, int]:
-        """Return how many fixtures there are of each type,
-        by name, from the indices (N,) of their arrangements.
+        """Return the number of fixtures of each type, by the type's name.
+
+        ``arrangement`` (N,) has for each fixture the index of its arrangement.
         """
         counts = dict.fromkeys(self.types, 0)
         for one, count in zip(
@@ -399,13 +424,20 @@ class Toolkit:
         return counts
 
     def find_peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
-        """Return the index (N, K) of each peg's carrier in N
-        fixtures, from the indices (N,) of their arrangements.
+        """Return for each of the K contacts of N fixtures the index of its carrier (N, K).
+
+        ``arrangement`` (N,) has for each fixture the index of its arrangement.
         """
         return np.array([one.carriers for one in self.arrangements], np.int8).take(arrangement, axis=0)
 
     def find_carrier(self, name: str) -> Carrier:
-        """Return the carrier of a name; raises StopIteration without one."""
+        """Return the carrier with this name.
+
+        Raises
+        ------
+        StopIteration
+            Where there is none.
+        """
         return next(carrier for carrier in self.carriers if carrier.name == name)
 
     def find_carrier_numbers(self, names: Iterable[str]) -> list[int]:
@@ -414,8 +446,10 @@ class Toolkit:
         return [known.index(name) for name in names]
 
     def find_arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
-        """Return the index (N,) of the first arrangement with
-        ``standing`` (N,) pegs on the first carrier; -1 without one.
+        """Return for each of N fixtures the index (N,) of its arrangement; -1 where none fits.
+
+        ``standing`` (N,) is the number of contacts on the first carrier; the first arrangement with that
+        number is taken.
         """
         pegs = [one.pegs[0] for one in self.arrangements]
         return np.asarray(
@@ -429,13 +463,13 @@ class Toolkit:
         row: NDArray[Any],
         travelled: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return x (N, K) and y (N, K) in mm of the holes of N fixtures.
+        """Return (1) x and (2) y in mm of the holes of the K contacts of N fixtures, both (N, K).
 
         Parameters
         ----------
-        arrangement : (N,) indices.
-        column, row : (N, K) of the holes.
-        travelled : travel in mm, (N,) of the one moving carrier, or (N, M) of the last M pegs.
+        arrangement : (N,) index of each fixture's arrangement.
+        column, row : (N, K) of the holes, counted from 0.
+        travelled : travels in mm: (N,) of the one carrier that moves, or (N, M) of the last M contacts.
         """
         moved = (
             np.broadcast_to(travelled[:, None], column.shape)
@@ -451,7 +485,9 @@ class Toolkit:
         carriers = np.array([one.carriers for one in self.arrangements], np.int64)
 
         def of_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
-            """Return the values (C,) of carriers for each peg, (N, K)."""
+            """Return for each contact (N, K) the value of its carrier, from the values (C,) of the C
+            carriers.
+            """
             return np.asarray(values[carriers].take(arrangement, axis=0))
 
         x, y = (

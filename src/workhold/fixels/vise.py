@@ -46,17 +46,17 @@ class Vise(Toolkit):
         None means the peg radius. Bodies may neither overlap nor stand over a keep-out zone.
     blocked : holes and columns that no peg can stand in, or their names, such as "L-B3" and "R-A".
     flat : of the pegs, which lies on straight faces: its distance from a peg's centre, and half its width, in
-        mm; None for round ones.
+        mm; None for round pegs.
     left_heights, right_heights : lower and upper end in mm, above the plane on which the part lies, of the
         pegs of each jaw. None where they reach up to the peg height.
     supports, top_clamp, pins : the owner's supports under the part, clamp on top and limits of pins, as mappings
-        of figures in mm and MPa (see ``fixels.support_hardware``); None is the usual.
-    tolerance : how far these pegs and the faces on them may be off; None is not known.
+        of figures in mm and MPa (see ``fixels.support_hardware``); None for the usual ones.
+    tolerance : how far these pegs and the faces that they touch may be off; None where not known.
 
     Raises
     ------
     InputError
-        For values that are not finite and positive, and for pegs too fat for neighbouring holes.
+        For values that are not finite and positive, and for pegs too thick for neighbouring holes.
 
     Examples
     --------
@@ -145,17 +145,19 @@ class Vise(Toolkit):
 
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
-        """Half a turn that swaps the jaws; none where their pegs have different heights."""
+        """Half a turn, which exchanges the jaws; empty where the pegs of the two jaws have different
+        heights.
+        """
         return (Symmetry(1, (1, 0)),) if self.left_heights == self.right_heights else ()
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
-        """Left jaw and right jaw."""
+        """The left and the right jaw."""
         return self.jaws
 
     @cached_property
     def jaws(self) -> tuple[Carrier, ...]:
-        """Left jaw, and the right jaw, whose travel is the jaw separation; computed once."""
+        """The left jaw, and the right jaw, whose travel is the jaw separation."""
         both = {"body_radius": self.body_radius, "noun": "jaw"}
         left = make_lattice_carrier(self, "left", **both, heights=self.left_heights)
         right = make_lattice_carrier(
@@ -170,13 +172,11 @@ class Vise(Toolkit):
 
     @property
     def gap(self) -> float:
-        """Smallest gap in mm."""
+        """The smallest distance in mm along x from a left peg's centre to a right peg's."""
         return self.min_gap
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield changes to try: a smaller gap, one more column,
-        offset rows, half the pitch; each only where it applies.
-        """
+        """Yield the changes that apply: a smaller gap, one more column, offset rows, half the pitch."""
         jaw, _ = self.carriers
         narrow, offset = 2 * jaw.peg_radius, jaw.pitch[1] / 2
         words = [f"{unit.format_short_length(length)} {unit.abbreviation}" for length in (narrow, offset)]

@@ -46,14 +46,17 @@ STEP, MOST_STEPS = 0.02, 60
 
 @frozen
 class FittedCurve:
-    """Lines and arcs in place of a curve or a part of one.
+    """A chain of lines and arcs that replaces a curve or a part of one.
 
     Parameters
     ----------
-    points : N + 1 points (x, y) in mm; the last equals the first where the curve is closed.
-    bulges : N bulges, tan(sweep / 4), 0 for a line.
-    departure : upper bound of the distance between them and the curve, either way, in mm.
-    is_disguise : whether the curve was lines and arcs within rounding; False where biarcs approximate it.
+    points : the N + 1 ends (x, y) of the chain's N segments in mm; the last equals the first where the curve
+        is closed.
+    bulges : for each segment its bulge, tan(sweep / 4); 0 for a line.
+    departure : upper bound in mm of the distance of any point of the chain from the curve, and of the curve
+        from the chain.
+    is_disguise : True where the curve itself consisted of lines and arcs within rounding, False where biarcs
+        approximate it.
     """
 
     points: tuple[Point, ...]
@@ -63,15 +66,16 @@ class FittedCurve:
 
 
 def ignore_interrupt() -> None:
-    """Do nothing; the default of parameters ``interrupt``."""
+    """Do nothing; the default of parameters named ``interrupt``."""
 
 
 def fit_biarcs(
     pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = ignore_interrupt
 ) -> list[FittedCurve]:
-    """Return biarcs that replace a curve within a tolerance in mm, each as long as possible, in order.
+    """Return biarcs (pairs of tangent arcs) that replace a curve within a tolerance in mm, in order along it.
 
-    They are tangent to the curve where they meet. Corners of the curve stay corners.
+    Each is as long as possible, and tangent to the curve at both ends, so that corners of the curve stay
+    corners. ``interrupt`` is called before each biarc and may raise an error to stop.
     """
     corners = [0, *find_corners(pieces)]
     found: list[FittedCurve] = []
@@ -83,7 +87,10 @@ def fit_biarcs(
 def fit_smooth_biarcs(
     pieces: Pieces, tolerance: float, interrupt: Callable[[], None]
 ) -> Iterator[FittedCurve]:
-    """Yield biarcs, in order, that replace a curve without corners within a tolerance in mm."""
+    """Yield the biarcs that replace a curve without corners within a tolerance in mm, in order along it.
+
+    ``interrupt`` is called before each biarc and may raise an error to stop.
+    """
     total = float(len(pieces))
     place, step = 0.0, total
     while place < total:
@@ -96,10 +103,11 @@ def fit_smooth_biarcs(
 def fit_longest_biarc(
     pieces: Pieces, place: float, step: float, tolerance: float
 ) -> tuple[FittedCurve, float]:
-    """Return the biarc that reaches farthest from parameter
-    ``place`` of a smooth curve, and the parameter of its end.
+    """Return (1) the longest biarc that starts at the parameter ``place`` of a smooth curve, (2) the
+    parameter of its end.
 
-    ``step`` is the length in parameters to try first. A stretch smaller than the tolerance may become a line.
+    ``step`` is how far in parameters to try first. Where the biarc would be smaller than the tolerance (mm),
+    a line may be returned instead.
     """
     total = float(len(pieces))
     room = total - place
@@ -121,8 +129,10 @@ def fit_longest_biarc(
 
 
 def fit_small_line(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
-    """Return the line between two parameters of a curve, if
-    that stretch is smaller than the tolerance in mm, else None.
+    """Return the line between the points of a curve at two parameters; None unless that part is smaller than
+    the tolerance.
+
+    The size is the diagonal of the control points' bounding box; the tolerance is in mm.
     """
     stretch = cut(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
@@ -132,11 +142,11 @@ def fit_small_line(pieces: Pieces, first: float, last: float, tolerance: float) 
 
 
 def fit_biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> FittedCurve | None:
-    """Return the biarc in place of a stretch of a smooth curve;
-    None where it departs by more than the tolerance in mm.
+    """Return the biarc that replaces a smooth curve between two parameters.
 
-    Each arc is compared with the part of the curve between its ends. Both centres lie on the normal at the
-    joint, so the curve changes from one arc to the other where it crosses that.
+    None where the biarc departs from the curve by more than the tolerance in mm, or an arc turns by more than
+    half a circle. Each of the two arcs is compared with its own part of the curve: the curve is divided where
+    it crosses the normal at the joint of the arcs.
     """
     start, end = compute_point(pieces, first), compute_point(pieces, last)
     begins, ends = compute_direction(pieces, first, after=True), compute_direction(pieces, last, after=False)
@@ -175,17 +185,16 @@ def subtract_points(p: Point, q: Point) -> Point:
 
 
 def measure_turn(u: Point, v: Point) -> float:
-    """Return the signed angle in radians, in [-pi, pi], from
-    vector ``u`` to vector ``v``, positive counter-clockwise.
-    """
+    """Return the angle in radians, in [-pi, pi], from vector u to vector v, positive counter-clockwise."""
     return atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
 
 
 def find_biarc_joint(start: Point, end: Point, begins: Point, ends: Point) -> Point | None:
-    """Return the joint of the biarc with equally long tangents; None where there is none.
+    """Return the point at which the two arcs of a biarc meet; None where no such biarc exists.
 
-    ``begins`` and ``ends`` are unit tangents at start and end. The tangent length d solves |end - start - d
-    (begins + ends)| = 2 d.
+    The biarc runs from ``start`` to ``end``, with the unit tangent ``begins`` at its start and ``ends`` at
+    its end. There is a family of such biarcs; the one whose tangents have equal lengths d is taken: |end -
+    start - d (begins + ends)| = 2 d.
     """
     vx, vy = subtract_points(end, start)
     tx, ty = begins[0] + ends[0], begins[1] + ends[1]
@@ -203,11 +212,11 @@ def find_biarc_joint(start: Point, end: Point, begins: Point, ends: Point) -> Po
 
 
 def find_crossing(pieces: Pieces, first: float, last: float, joint: Point, across: Point) -> float | None:
-    """Return the parameter between ``first`` and ``last`` at
-    which a curve crosses the line through ``joint``, or None.
+    """Return the parameter between ``first`` and ``last`` at which a curve crosses the line through
+    ``joint``.
 
-    The line is square to ``across``; None unless the curve goes from its negative to its positive side. Found
-    by the Illinois method.
+    The line is perpendicular to the vector ``across``. None unless the curve is behind the line at ``first``
+    and ahead of it, in the direction of ``across``, at ``last``. Found by the Illinois method.
     """
 
     def height(parameter: float) -> float:
@@ -235,8 +244,9 @@ def find_crossing(pieces: Pieces, first: float, last: float, joint: Point, acros
 
 
 def find_corners(pieces: Pieces) -> list[int]:
-    """Return the indices of the pieces that begin in another
-    direction than the piece before ends in; never 0.
+    """Return the indices of the pieces at whose start the curve has a corner (never 0).
+
+    At a corner a piece starts in another direction than that in which the piece before it ends.
     """
     leaving, entering = compute_end_directions(pieces)
     turned = np.hypot(*(entering[:-1] - leaving[1:]).T) > CORNER
@@ -246,8 +256,10 @@ def find_corners(pieces: Pieces) -> list[int]:
 def fit_curve(
     pieces: Pieces, tolerance: float, interrupt: Callable[[], None] = ignore_interrupt
 ) -> FittedCurve | None:
-    """Return lines and arcs for a curve: those that it is
-    within rounding, else biarcs within a tolerance in mm.
+    """Return lines and arcs that replace a curve.
+
+    Two cases: (a) the curve consists of lines and arcs within rounding, and these are returned; (b) it does
+    not, and biarcs within ``tolerance`` mm replace the other parts.
 
     Parameters
     ----------
@@ -277,8 +289,9 @@ def fit_curve(
 
 
 def join_fitted_curves(runs: list[FittedCurve], is_disguise: bool) -> FittedCurve:
-    """Return fitted curves joined to one, each beginning
-    where the one before ends; the departure is the largest.
+    """Return several fitted curves as one; each must start where the one before it ends.
+
+    The departure of the result is the largest of theirs.
     """
     points = [runs[0].points[0]]
     for run in runs:
@@ -288,9 +301,7 @@ def join_fitted_curves(runs: list[FittedCurve], is_disguise: bool) -> FittedCurv
 
 
 def find_breaks(pieces: Pieces) -> list[int]:
-    """Return the indices of the pieces that begin with another
-    direction or curvature than the piece before ends with.
-    """
+    """Return the indices of the pieces at whose start the direction or the curvature jumps (never 0)."""
     begin, end = compute_end_curvatures(pieces)
     jump, most = np.abs(begin[1:] - end[:-1]), np.maximum(np.abs(begin[1:]), np.abs(end[:-1]))
     smooth = jump <= CURVATURE_JUMP * most
@@ -301,11 +312,13 @@ def find_breaks(pieces: Pieces) -> list[int]:
 def find_disguised_runs(
     pieces: Pieces, places: list[int], interrupt: Callable[[], None]
 ) -> list[tuple[int, int, FittedCurve | None]]:
-    """Return (first piece, past-the-last piece, fitted curve)
-    of runs of stretches that are one line or arc, in order.
+    """Return the parts of a curve that are one line or one arc within rounding: (first, end, fitted curve),
+    in order.
 
-    ``places`` are the indices of the pieces at which stretches begin, and the number of pieces. Runs are as
-    long as possible; a stretch that is no line or arc is a run by itself, with None.
+    ``first`` and ``end`` are the indices of the first piece and of the piece after the last. ``places`` are
+    the indices at which parts may start, and finally the number of pieces. Parts are as long as possible.
+    Between two neighbouring ``places`` where the curve is neither a line nor an arc, the fitted curve is
+    None.
     """
     found: list[tuple[int, int, FittedCurve | None]] = []
     k = 0
@@ -334,8 +347,9 @@ def find_disguised_runs(
 
 
 def fit_one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
-    """Return the line or arc through both ends of a curve
-    that is within a tolerance in mm of it; None without one.
+    """Return the line or arc from the start of a curve to its end that is within a tolerance in mm of it.
+
+    None where neither a line nor an arc is.
     """
     start, end = compute_point(pieces, 0.0), compute_point(pieces, float(len(pieces)))
     chord = dist(start, end)
@@ -366,10 +380,10 @@ def fit_one_segment(pieces: Pieces, tolerance: float) -> FittedCurve | None:
 def halve_arc(
     ends: tuple[Point, Point], sweep: float, center: Point
 ) -> tuple[tuple[Point, ...], tuple[float, ...]]:
-    """Return points and bulges of an arc between ``ends``:
-    one arc, or two halves where it is nearly a whole circle.
+    """Return (1) the points and (2) the bulges of an arc between two ``ends``.
 
-    One bulge would fix the centre of such an arc badly. ``sweep`` is signed, in radians.
+    An arc that is nearly a whole circle is given as two halves, since one bulge would fix its centre badly.
+    ``sweep`` is in radians, negative clockwise.
     """
     if abs(sweep) < 1.9 * pi:
         return ends, (tan(sweep / 4),)
@@ -380,8 +394,9 @@ def halve_arc(
 
 
 def fit_whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
-    """Return the circle, as two halves, that a closed curve
-    is within a tolerance in mm; None where it is none.
+    """Return the whole circle, as two halves, that is within a tolerance in mm of a closed curve.
+
+    None where the curve is not closed, or no circle is near enough.
     """
     start = compute_point(pieces, 0.0)
     if dist(start, compute_point(pieces, float(len(pieces)))) > SHORTEST:
@@ -404,11 +419,13 @@ def fit_whole_circle(pieces: Pieces, tolerance: float) -> FittedCurve | None:
 
 
 def allow_for_written_arcs(pieces: Pieces, arc: Arc) -> float:
-    """Return the tolerance in mm for cubics that approximate an arc as programs write it; 0 for other curves.
+    """Return the tolerance in mm within which cubic curves count as ``arc``; 0 for curves that are not cubic
+    polynomials.
 
-    The cubic whose handles are 4/3 tan(sweep / 4) radii long is off by 2.73e-4 radii for a quarter turn, and
-    by the sixth power of the sweep for less (M. Goldapp, "Approximation of circular arcs by cubic
-    polynomials", Computer Aided Geometric Design 8 (1991) 227-238).
+    Programs write an arc as a cubic whose handles are 4/3 tan(sweep / 4) radii long. For a quarter turn this
+    cubic departs from the arc by 2.73e-4 radii; for smaller arcs the departure falls with the sixth power of
+    the sweep (M. Goldapp, "Approximation of circular arcs by cubic polynomials", Computer Aided Geometric
+    Design 8 (1991) 227-238).
     """
     if pieces.shape[1] != 4 or float(np.ptp(pieces[..., 2])) > 0.0:
         return 0.0
@@ -421,18 +438,18 @@ def allow_for_written_arcs(pieces: Pieces, arc: Arc) -> float:
 
 
 def fit_circle_to_curve(pieces: Pieces) -> tuple[Point, float] | None:
-    """Return centre and radius in mm of the least-squares circle through points of a curve; None for a line.
-
-    The points are the ends of cubics, with one or two cubics their middles, too; of other pieces each
-    quarter.
+    """Return centre and radius in mm of the least-squares circle through points of a curve; None where it is
+    straight.
     """
     each = 4 if pieces.shape[1] != 4 else 1 if len(pieces) > 2 else 2
     return fit_circle(sample_points(pieces, each))
 
 
 def fit_circle(points: NDArray[np.float64]) -> tuple[Point, float] | None:
-    """Return centre and radius of the least-squares circle
-    through points (N, 2) (Kasa 1976); None for a line or a point.
+    """Return centre and radius of the least-squares circle through points (N, 2); None where these lie on a
+    line or in a point.
+
+    The method is that of Kasa (1976).
     """
     middle = points.mean(axis=0)
     x, y = (points - middle).T
@@ -447,7 +464,10 @@ def fit_circle(points: NDArray[np.float64]) -> tuple[Point, float] | None:
 
 
 def measure_swept_angle(pieces: Pieces, center: Point) -> float:
-    """Return the signed angle in radians that a curve covers about a centre, from quarters of its pieces."""
+    """Return the angle in radians by which a curve runs around a centre, positive counter-clockwise.
+
+    It is summed over four steps per piece.
+    """
     x, y = (sample_points(pieces, 4) - np.array(center)).T
     steps = np.diff(np.arctan2(y, x))
     return float(((steps + pi) % (2 * pi) - pi).sum())

@@ -48,7 +48,11 @@ def compute_convex_hull(points: Iterable[Point]) -> list[Point]:
 
 
 def compute_half_hull(ordered: list[Point]) -> list[Point]:
-    """Return the points of a sorted list that form a chain of left turns from its first point to its last."""
+    """Return one half of the convex hull: the points of a sorted list through which a chain turns left at
+    each point.
+
+    The chain runs from the first point of the list to the last.
+    """
     chain: list[Point] = []
     for x, y in ordered:
         while len(chain) >= 2:
@@ -73,10 +77,10 @@ class HullEnd:
     Parameters
     ----------
     point : in mm.
-    faces : indices of the faces that meet there: one that lies along the edge or is an arc, or the two of a
-        corner.
-    center, radius : of the arc in mm; at a corner, the point and 0.
-    along : whether the one face lies along the edge.
+    faces : indices of the faces that meet there: one where a face lies along the edge or the end is on an
+        arc, two at a corner.
+    center, radius : of the arc in mm; at a corner, ``point`` and 0.
+    along : whether a face lies along the edge there.
     """
 
     point: Point
@@ -112,15 +116,14 @@ class HullEdge:
 
 @frozen(eq=False)
 class HullPieces:
-    """N pieces of an outline, joints and convex arcs, that may lie on its hull.
+    """N pieces of an outline that may lie on its convex hull: joints of segments, and convex arcs.
 
     Parameters
     ----------
-    center, radius : (N, 2) and (N,), in mm; radius 0 for a joint.
-    middle : (N, 2) unit vectors to the middles of arcs.
-    cosine : (N,) of half the sweep of arcs; -2 for a joint or a whole circle, which support in every
-        direction.
-    faces : indices of the faces of each piece.
+    center, radius : (N, 2) and (N,) in mm; a joint has radius 0.
+    middle : (N, 2) unit vectors from the centres to the arcs' middles.
+    cosine : (N,) cosine of half the angle that an arc covers; -2 for a joint or a whole circle.
+    faces : for each piece, the indices of its faces.
     """
 
     center: Array
@@ -131,7 +134,7 @@ class HullPieces:
 
     @classmethod
     def from_segments(cls, segments: Sequence[Segment], counts: Sequence[int] | None = None) -> HullPieces:
-        """Return the pieces of closed chains of segments; parameters as of :func:`hull_edges`."""
+        """Return the pieces of closed chains of segments; see :func:`find_hull_edges` for the parameters."""
         before: list[int] = []
         for count in [len(segments)] if counts is None else counts:
             first = len(before)
@@ -156,7 +159,12 @@ class HullPieces:
     def find_supporting(
         self, normal: Array, chosen: NDArray[np.int64] | slice = slice(None)
     ) -> NDArray[np.bool_]:
-        """Return whether (...) pieces can be outermost in directions ``normal``, unit vectors (..., 2)."""
+        """Return whether the chosen pieces have a point with a given outward normal, so that they can be
+        outermost there.
+
+        ``normal`` (..., 2) are unit vectors. A piece is an arc that contains the direction, a joint, or a
+        whole circle. The result has the shape (...) to which normals and pieces broadcast.
+        """
         along = (normal * self.middle[chosen]).sum(axis=-1)
         return np.asarray(along >= self.cosine[chosen])
 
@@ -164,11 +172,11 @@ class HullPieces:
 def iterate_common_tangents(
     pieces: HullPieces,
 ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], Array]]:
-    """Yield common tangents of pairs of pieces with both on
-    the left: indices (M,), (M,) and outward normals (M, 2).
+    """Yield the common tangents of pairs of pieces, in blocks of M, as three arrays.
 
-    The tangent runs from the first to the second. With D from one centre to the other, n . D is the
-    difference of the radii.
+    They are the indices (M,) of the pieces at which the tangents start, those (M,) at which they end, and the
+    outward unit normals n (M, 2). Both pieces lie to the left of the tangent. With D the vector from the
+    first centre to the second, n . D is the first radius minus the second.
     """
     count = len(pieces.radius)
     for first in range(0, count, BLOCK):
@@ -190,7 +198,10 @@ def iterate_common_tangents(
 
 
 def compute_supports(pieces: HullPieces, normal: Array) -> Array:
-    """Return the largest coordinate (M,) in mm of all pieces along directions (M, 2)."""
+    """Return how far an outline reaches in each of M directions: the largest coordinate along it in mm (M,).
+
+    ``normal`` (M, 2) are unit vectors.
+    """
     out = np.empty(len(normal))
     for first in range(0, len(normal), BLOCK):
         block = slice(first, first + BLOCK)
@@ -240,11 +251,11 @@ def find_hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = 
 
 @frozen
 class HullTouch:
-    """A stretch or a point of the line of a hull edge that the outline touches.
+    """A stretch or a point of a hull edge's line that the outline touches.
 
     Parameters
     ----------
-    low, high : from where to where, in mm along the edge from its start; equal for a point.
+    low, high : where the stretch begins and ends, in mm along the edge from its start; equal for a point.
     faces : index of the face that lies along the edge, or of the arc; both indices for a corner.
     """
 
@@ -256,12 +267,13 @@ class HullTouch:
 def find_touches_along(
     edge: HullEdge, segments: Sequence[Segment], counts: Sequence[int] | None = None
 ) -> tuple[HullTouch, ...]:
-    """Return where an outline touches the line of a hull edge:
-    stretches first, then points, each in order from the start.
+    """Return where an outline touches the line of a hull edge: first the stretches, then the points.
+
+    Stretches and points are each in order along the edge.
 
     Parameters
     ----------
-    edge : one of :func:`hull_edges` of these segments and counts.
+    edge : a result of :func:`find_hull_edges` for the same segments and counts.
 
     Examples
     --------
@@ -276,7 +288,9 @@ def find_touches_along(
     alone: list[HullTouch] = []
 
     def place(point: Point) -> float:
-        """Return the position in mm of a point along the edge, clamped to it."""
+        """Return the position of a point along the edge in mm, limited to the range from 0 to the edge's
+        length.
+        """
         return min(max((point[0] - x) * tx + (point[1] - y) * ty, 0.0), length)
 
     first = 0
@@ -304,22 +318,23 @@ def find_touches_along(
 
 
 def make_hull_end(pieces: HullPieces, number: int, normal: Array) -> HullEnd:
-    """Return the end of a hull edge on piece ``number``, for the edge with this outward normal."""
+    """Return the end that a hull edge with this outward normal has on piece ``number``."""
     (x, y), radius = pieces.center[number].tolist(), float(pieces.radius[number])
     nx, ny = normal.tolist()
     return HullEnd((x + radius * nx, y + radius * ny), pieces.faces[number], (x, y), radius, along=False)
 
 
 def is_on_arc(one: HullEnd, other: HullEnd) -> bool:
-    """Return whether one end is on an arc and the other is
-    that arc's own end, so that only rounding separates them.
+    """Return whether two ends of a hull edge are an arc's tangent point and a corner at which this arc ends.
+
+    Such an edge has a length by rounding only.
     """
     return (one.radius == 0.0) != (other.radius == 0.0) and not set(one.faces).isdisjoint(other.faces)
 
 
 def is_part(edge: HullEdge, other: HullEdge) -> bool:
-    """Return whether a hull edge lies on ``other`` and
-    runs the same way, within the rounding of a drawing.
+    """Return whether a hull edge lies on the edge ``other`` and runs in the same direction, within the
+    rounding of a drawing.
     """
     (x, y), (tx, ty) = other.start.point, other.tangent
     for px, py in (edge.start.point, edge.end.point):
@@ -334,8 +349,8 @@ def is_part(edge: HullEdge, other: HullEdge) -> bool:
 
 
 def assign_faces_along(edge: HullEdge, segments: Sequence[Segment]) -> HullEdge:
-    """Return the hull edge with each end at a corner given
-    the face that lies along the edge there, if one does.
+    """Return a hull edge in which an end at a corner names only the face that lies along the edge there, if
+    one does.
     """
     ends = []
     # Outline and edge run the same way: at its start the face after the corner may lie along it, at its end

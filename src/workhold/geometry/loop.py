@@ -79,12 +79,12 @@ class ComparisonBudget:
         self.most = self.left = most
 
     def spend(self, pairs: int) -> None:
-        """Subtract a number of pairs from what is left.
+        """Subtract a number of pairs from the pairs that may still be compared.
 
         Raises
         ------
         InputError
-            When nothing is left.
+            Where fewer than 0 are left.
         """
         self.left -= pairs
         if self.left < 0:
@@ -96,11 +96,11 @@ class ComparisonBudget:
 
 @define(frozen=True, slots=False, eq=False)
 class LoopShape:
-    """A loop's segments with bounds for quick comparison with other loops.
+    """A loop's segments, with bounds for quick comparison with other loops.
 
     Parameters
     ----------
-    segments : in running order, in either direction.
+    segments : in running order; the loop may run either way round.
     boxes : (N, 4) bounding boxes of the segments: smallest x and y, largest x and y, in mm.
     """
 
@@ -119,7 +119,9 @@ class LoopShape:
 
     @cached_property
     def chords(self) -> NDArray[np.float64]:
-        """(N, 5) start, end, and largest distance in mm of each segment from its chord."""
+        """For each segment its start x, y, its end x, y, and its largest distance from its chord (N, 5), in
+        mm.
+        """
         return np.array(
             [(*segment.start, *segment.end, measure_depth(segment)) for segment in self.segments]
         ).reshape(-1, 5)
@@ -191,19 +193,19 @@ def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.f
 
 
 def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which arcs (N,), with bulges and chords in mm (N,),
-    are no lines: those that rise noticeably from their chords.
+    """Return for each of N segments whether it is noticeably an arc: its rise above the chord is not
+    negligible.
 
-    The rise is bulge * chord / 2.
+    ``bulge`` (N,) is tan(sweep / 4), ``steps`` (N,) are the chords in mm. The rise is bulge * chord / 2.
     """
     size = np.abs(bulge)
     return (size * steps / 2.0 >= READING) & (size >= STRAIGHT)
 
 
 def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
-    """Raise InputError, naming the place, for the first arc of (N, 3) vertices with too large a radius.
+    """Raise InputError, with the name of the place, where an arc's radius is too large.
 
-    ``steps`` (N,) are the chords in mm.
+    ``array`` (N, 3) are the vertices of a loop, ``steps`` (N,) the chords in mm.
     """
     bulge = np.minimum(np.abs(array[:, 2]), 1e30)
     curved = is_curved(bulge, steps)
@@ -237,7 +239,7 @@ def compute_signed_area(segments: Sequence[Segment]) -> float:
 
 
 def compute_circular_segment(sweep: float) -> float:
-    """Return sweep - sin(sweep) for a sweep in radians, without cancellation."""
+    """Return sweep - sin(sweep) for a sweep in radians, also for small sweeps without loss of digits."""
     if sweep > 0.1:
         return sweep - sin(sweep)
     square = sweep * sweep
@@ -245,8 +247,8 @@ def compute_circular_segment(sweep: float) -> float:
 
 
 def reverse_vertices(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the (N, 3) vertices, read-only, of the loop
-    run the other way round from the same first vertex.
+    """Return the vertices (N, 3) of the same loop run the other way round, from the same first vertex;
+    read-only.
     """
     out = np.empty_like(vertices)
     order = np.concatenate(([0], np.arange(len(vertices) - 1, 0, -1)))
@@ -265,7 +267,11 @@ def refuse_no_area(shape: LoopShape, loop: str) -> None:
 
 
 def find_near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) -> Iterator[tuple[int, int]]:
-    """Yield index pairs (i, j) whose bounding boxes (N, 4) come within the touching distance."""
+    """Yield pairs of indices (i, j) where box i of ``boxes_a`` and box j of ``boxes_b`` overlap or nearly
+    touch.
+
+    Boxes (N, 4) are smallest x and y, largest x and y, in mm.
+    """
     for i, (x0, y0, x1, y1) in enumerate(boxes_a):
         apart = (
             (boxes_b[:, 0] > x1 + TOUCHING)
@@ -278,7 +284,7 @@ def find_near_pairs(boxes_a: NDArray[np.float64], boxes_b: NDArray[np.float64]) 
 
 
 def measure_depth(segment: Segment) -> float:
-    """Return the largest distance in mm of a segment from its chord; 0 for a line. Arcs of up to a turn."""
+    """Return the largest distance in mm of a segment from its chord; 0 for a line."""
     return segment.radius * (1 - cos(segment.half_sweep)) if isinstance(segment, Arc) else 0.0
 
 
@@ -289,11 +295,10 @@ MANY_NEAR = 32
 def find_near_segments(
     one: LoopShape, k: int, others: LoopShape, comparisons: ComparisonBudget
 ) -> NDArray[np.int64]:
-    """Return the indices of the segments of ``others`` that may
-    come within the touching distance of segment ``k`` of ``one``.
+    """Return the indices of the segments of ``others`` that may touch segment ``k`` of ``one``.
 
-    Boxes decide; where many overlap, segments wholly on one side of the chord are left out. The comparisons
-    are spent.
+    Others are excluded by their bounding boxes and, where many boxes overlap, because they lie wholly on one
+    side of the chord of segment ``k``. The remaining pairs are subtracted from ``comparisons``.
     """
     x0, y0, x1, y1 = one.boxes[k]
     boxes = others.boxes
@@ -371,7 +376,7 @@ def refuse_meeting(
     Parameters
     ----------
     place : returns the name of a loop's segment, from both indices.
-    comparisons : spent for each pair.
+    comparisons : the pairs that may be compared, from which each compared pair is subtracted in place.
 
     Raises
     ------
@@ -386,14 +391,17 @@ def refuse_meeting(
 
 
 def encloses(around: LoopShape, inner: LoopShape) -> bool:
-    """Return whether one loop encloses another; they must not meet, and either may run in any direction."""
+    """Return whether the loop ``around`` encloses the loop ``inner``.
+
+    The two must not meet. Either may run clockwise or counter-clockwise.
+    """
     x, y = inner.segments[0].start
     return bool(abs(measure_winding(x, y, around.rows)) > pi)
 
 
 def have_same_carrier(a: Segment, b: Segment) -> bool:
-    """Return whether segment ``b``, a neighbour of ``a``,
-    continues its line or circle in the same direction.
+    """Return whether segment ``b``, next to segment ``a``, continues the line or circle of ``a`` in the same
+    direction.
     """
     if isinstance(a, Line) and isinstance(b, Line):
         (tx, ty), (ux, uy) = a.tangent, b.tangent
@@ -430,7 +438,7 @@ class Face:
 
 
 def merge_run(run: Sequence[Segment]) -> Segment:
-    """Return a run of segments of one line or circle as one segment."""
+    """Return one segment in place of neighbouring segments that lie on one line or circle."""
     first = run[0]
     if len(run) == 1:
         return first
@@ -444,10 +452,10 @@ def merge_run(run: Sequence[Segment]) -> Segment:
 
 
 def cut_into_runs(items: Sequence[Item], continues: Callable[[Item, Item], bool]) -> list[list[Item]]:
-    """Return a cyclic sequence cut into runs in which each item
-    continues the one before; ``continues(before, item)`` decides.
+    """Return a cyclic sequence cut into runs; within a run each item continues the item before it.
 
-    The first run begins at the first item that does not continue its predecessor, or at index 0 if all do.
+    ``continues(before, item)`` decides that. The first run starts at the first item that does not continue
+    the item before it, or at index 0 where all items do.
     """
     first = next((k for k in range(len(items)) if not continues(items[k - 1], items[k])), 0)
     runs: list[list[Item]] = []
@@ -462,7 +470,9 @@ def cut_into_runs(items: Sequence[Item], continues: Callable[[Item, Item], bool]
 def list_loop_faces(
     segments: Sequence[Segment], first_number: int, marks: Sequence[object] | None = None
 ) -> list[Face]:
-    """Return the faces of one loop, whose segments are numbered from ``first_number``, ascending by number.
+    """Return the faces of one loop in ascending order of their numbers.
+
+    ``first_number`` is the number of the loop's first segment; the other segments are numbered on from it.
 
     Parameters
     ----------

@@ -39,9 +39,11 @@ Array = NDArray[np.float64]
 
 
 def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, int]:
-    """Put each chain of arcs that lies within ``READING`` mm of a circle onto that circle.
+    """Return the vertices of a loop in which each chain of arcs within ``READING`` mm of one circle lies on
+    that circle.
 
-    The ends of a chain stay unless the whole loop is the chain. Applying it again changes nothing.
+    The first and last point of a chain stay where they are, unless the whole loop is one chain. A second call
+    changes nothing more.
 
     Parameters
     ----------
@@ -50,7 +52,8 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
 
     Returns
     -------
-    ((N, 3) array, read-only, with these chains on circles; how many arcs were changed)
+    tuple
+        The vertices (N, 3), read-only, and how many arcs were changed.
     """
     out, changed = np.array(vertices), 0
     for chain in find_arc_chains(segments):
@@ -64,16 +67,16 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
 
 
 def is_one_already(arcs: Sequence[Arc]) -> bool:
-    """Return whether arcs have the same centre and radius within the rounding of a drawing."""
+    """Return whether all arcs have the same centre and radius, within the rounding of a drawing."""
     first, hair = arcs[0], READING / 100
     return all(dist(arc.center, first.center) + abs(arc.radius - first.radius) < hair for arc in arcs)
 
 
 def follows(one: Segment, other: Segment) -> bool:
-    """Return whether segment ``other``, next after ``one``, may be
-    of the same circle: nearly tangent, similar radius, same sense.
+    """Return whether segment ``other``, next after ``one``, may lie on the same circle.
 
-    An arc within e of a circle is turned against it by no more than some 4 e / chord.
+    Both must be arcs of similar radius that turn the same way and are nearly tangent where they meet. (An arc
+    within e of a circle is turned against it by at most about 4 e / chord.)
     """
     if not (isinstance(one, Arc) and isinstance(other, Arc)) or one.sign != other.sign:
         return False
@@ -85,7 +88,9 @@ def follows(one: Segment, other: Segment) -> bool:
 
 
 def find_arc_chains(segments: Sequence[Segment]) -> list[list[int]]:
-    """Return the indices of each chain of two or more arcs of a loop, in running order."""
+    """Return each chain of two or more arcs that may lie on one circle, as a list of their indices in running
+    order.
+    """
 
     def continues(one: int, other: int) -> bool:
         return follows(segments[one], segments[other])
@@ -95,12 +100,14 @@ def find_arc_chains(segments: Sequence[Segment]) -> list[list[int]]:
 
 
 def fit_common_circle(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
-    """Return centre and radius in mm of a circle within ``READING`` of all arcs; None without one.
+    """Return centre and radius in mm of a circle that is within ``READING`` mm of all arcs of a chain.
 
-    It goes through both ends of the chain, unless the chain is ``whole``, a closed loop. It is the
-    least-squares circle through ends and middles (I. Kasa, "A circle fitting procedure and its error
-    analysis", IEEE Transactions on Instrumentation and Measurement 25 (1976) 8-14), its centre moved onto the
-    axis of both ends.
+    None where no circle is.
+
+    The circle goes through both ends of the chain, unless ``whole`` says that the chain is a closed loop. It
+    is the least-squares circle through the arcs' ends and middles (I. Kasa, "A circle fitting procedure and
+    its error analysis", IEEE Transactions on Instrumentation and Measurement 25 (1976) 8-14), with its centre
+    moved so that it is equally far from both ends.
     """
     if len(arcs) < 2 or (whole and abs(sum(arc.half_sweep for arc in arcs) - pi) > 1e-3):
         return None
@@ -124,9 +131,10 @@ def fit_common_circle(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] |
 
 
 def is_near(arc: Arc, center: Point, radius: float) -> bool:
-    """Return whether all points of an arc are within ``READING`` mm of a circle.
+    """Return whether all points of an arc are within ``READING`` mm of the circle with this centre and radius
+    in mm.
 
-    The distance from the centre has its extremes at the arc's ends and on the line through both centres.
+    The distance from the centre is extreme at the arc's ends, and on the line through both centres.
     """
     points = [arc.start, arc.end, arc.compute_point(0.0)]
     toward = atan2(arc.center[1] - center[1], arc.center[0] - center[0])
@@ -138,10 +146,10 @@ def is_near(arc: Arc, center: Point, radius: float) -> bool:
 
 
 def write_chain(out: Array, chain: Sequence[int], circle: tuple[Point, float], count: int) -> None:
-    """Write into ``out``, the (N, 3) vertices of a loop, a
-    chain's inner vertices and bulges as they are on a circle.
+    """Move a chain of arcs onto a circle, in place in the vertices ``out`` (N, 3) of a loop.
 
-    ``chain`` are indices of its arcs, ``count`` is N.
+    The chain's inner vertices and its bulges are written. ``chain`` are the indices of its arcs, ``count`` is
+    N.
     """
     (cx, cy), radius = circle
     places = [*chain, (chain[-1] + 1) % count]
@@ -162,14 +170,14 @@ LEAST_CHORDS = 4
 
 @frozen
 class MergedLoop:
-    """A loop with each run of segments replaced by one.
+    """A loop in which runs of segments are replaced by one segment each.
 
     Parameters
     ----------
     vertices : (N, 3) array of x, y in mm and bulge.
-    firsts : for each segment, the number of the first of the old ones that it replaces.
-    merged : by how many segments the loop has fewer.
-    departure : upper bound of the distance between both loops, either way, in mm.
+    firsts : for each segment, the index of the first of the original segments that it replaces.
+    merged : how many segments fewer the loop has than the original.
+    departure : upper bound in mm of the distance of any point of either loop from the other loop.
     """
 
     vertices: Array
@@ -180,15 +188,15 @@ class MergedLoop:
 
 @frozen
 class MergedPiece:
-    """A segment that stands for one or several old ones.
+    """A segment that replaces one or several original segments.
 
     Parameters
     ----------
     start : its first point, in mm; it ends where the next piece starts.
     bulge : tan(sweep / 4), 0 for a line.
-    first : number of the first old segment that it stands for.
+    first : index of the first original segment that it replaces.
     kept : whether it must not be merged further.
-    departure : upper bound of its distance from the old segments, in mm.
+    departure : upper bound of its distance from the original segments, in mm.
     """
 
     start: Point
@@ -204,14 +212,14 @@ def merge_chords(
     kept: Sequence[bool] = (),
     interrupt: Callable[[], None] = ignore_interrupt,
 ) -> MergedLoop:
-    """Return a loop in which each run of segments within
-    ``DISGUISE`` mm of a line or arc is replaced by that.
+    """Return a loop in which each run of segments that lies within ``DISGUISE`` mm of one line or arc is
+    replaced by it.
 
     Parameters
     ----------
     vertices : (N, 3) array of a loop.
-    fit : larger tolerance in mm for arcs in place of chords; None for none.
-    kept : for each segment whether it stays as it is; empty for none.
+    fit : larger tolerance in mm within which chords are replaced by an arc; None to use ``DISGUISE``.
+    kept : for each segment whether it stays as it is; empty where all may be replaced.
     interrupt : called before every run; may raise an error to stop.
     """
     pieces = [
@@ -271,10 +279,10 @@ def find_chorded_arcs(
 ) -> ChordedArcs | None:
     """Return the arcs that a loop approximates by chords; None where it has none.
 
-    Four chords and more are an arc where they meet at less than ``CORNER_OF_CHORDS`` and all their ends lie on
-    one circle. So a polygon of 15 equal sides and fewer is a polygon, and one of 16 may be a circle: a quarter
-    turn of four chords is the coarsest that programs write. Where they are farther than ``COARSE`` inside the
-    circle besides, they are a polygon too.
+    Four chords or more count as an arc where neighbours meet at less than ``CORNER_OF_CHORDS`` and all ends
+    lie on one circle. So a regular polygon of up to 15 sides stays a polygon, and one of 16 sides may be a
+    circle: four chords per quarter turn are the coarsest that programs write. Chords also stay a polygon where
+    they run farther inside the circle than both ``COARSE`` mm and ``COARSE_SHARE`` of its radius.
 
     Parameters
     ----------
@@ -313,19 +321,21 @@ def find_chorded_arcs(
 
 
 def is_coarse(piece: MergedPiece, after: MergedPiece) -> bool:
-    """Return whether the chords of an arc, up to the piece
-    ``after``, are so coarse that a polygon is meant.
+    """Return whether chords are so far inside the arc through their ends that a polygon is meant.
+
+    ``piece`` is the arc; it ends where ``after`` starts.
     """
     arc = make_segment_from_bulge(piece.start, after.start, piece.bulge)
     return isinstance(arc, Arc) and piece.departure > max(COARSE, COARSE_SHARE * arc.radius)
 
 
 def describe_chords(found: Sequence[ChordedArcs], fit: str) -> list[str]:
-    """Return a list with one sentence on arcs that came as chords; empty without any.
+    """Return a list of one sentence on arcs that were given as chords; an empty list where ``found`` is
+    empty.
 
     Parameters
     ----------
-    fit : name of the option for the tolerance.
+    fit : name of the option with which a user sets the tolerance.
     """
     if not found:
         return []
@@ -341,8 +351,10 @@ def describe_chords(found: Sequence[ChordedArcs], fit: str) -> list[str]:
 def merge_all_runs(
     pieces: list[MergedPiece], tolerance: float, interrupt: Callable[[], None]
 ) -> list[MergedPiece]:
-    """Return an open row of pieces with its runs merged, first
-    those whose vertices are on the line or arc to a file's digits.
+    """Return an open chain of pieces in which each run that is one line or arc is merged into one piece.
+
+    Runs whose vertices lie on the line or arc to a drawing's last digits are merged before others.
+    ``tolerance`` is in mm.
     """
     for near in (min(DRAWN_ON, tolerance), tolerance):
         pieces = merge_longest_runs(pieces, near, tolerance, LEAST_CHORDS, interrupt)
@@ -350,8 +362,9 @@ def merge_all_runs(
 
 
 def begin_at_corner(pieces: list[MergedPiece]) -> list[MergedPiece]:
-    """Return the pieces of a loop rotated to begin at its
-    sharpest corner, or without a corner at its longest piece.
+    """Return the pieces of a loop in the same cyclic order, starting at its sharpest corner.
+
+    A loop without corners starts at its longest piece.
     """
     turns, points = np.abs(compute_turns(pieces)), list_starts(pieces)
     lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
@@ -366,7 +379,9 @@ def list_starts(pieces: Sequence[MergedPiece]) -> Array:
 
 
 def compute_turns(pieces: Sequence[MergedPiece]) -> Array:
-    """Return the signed angles (N,) in radians by which a loop turns where each piece begins."""
+    """Return the angle in radians by which a loop turns at the start of each piece (N,), positive
+    counter-clockwise.
+    """
     points = list_starts(pieces)
     along = np.roll(points, -1, axis=0) - points
     chord, half = np.arctan2(along[:, 1], along[:, 0]), 2 * np.arctan([piece.bulge for piece in pieces])
@@ -377,9 +392,10 @@ def compute_turns(pieces: Sequence[MergedPiece]) -> Array:
 def fit_whole_circle(
     pieces: list[MergedPiece], tolerance: float, near: float | None = None
 ) -> list[MergedPiece] | None:
-    """Return the two halves of the circle that a loop is within a tolerance in mm; None where it is none.
+    """Return the two halves of the circle that is within a tolerance in mm of a loop; None where no circle
+    is.
 
-    Vertices must be within ``near`` mm of the circle; None for the tolerance.
+    The loop's vertices must be within ``near`` mm of the circle; None stands for the tolerance.
     """
     count = len(pieces)
     if not is_worth_fitting(pieces, 2 * LEAST_CHORDS) or any(piece.kept for piece in pieces):
@@ -410,7 +426,7 @@ def fit_whole_circle(
 
 
 def is_worth_fitting(pieces: Sequence[MergedPiece], least: int) -> bool:
-    """Return whether there are enough pieces for a run: two if all are arcs, else ``least``."""
+    """Return whether there are enough pieces to be merged: two where all are arcs, else ``least``."""
     arcs = sum(piece.bulge != 0.0 for piece in pieces)
     return len(pieces) >= (2 if arcs == len(pieces) else least)
 
@@ -422,16 +438,18 @@ def merge_longest_runs(
     least: int,
     interrupt: Callable[[], None] = ignore_interrupt,
 ) -> list[MergedPiece]:
-    """Return an open row of pieces with the longest runs
-    merged, found one after the other from its beginning.
+    """Return an open chain of pieces in which runs that are one line or arc are merged into one piece each.
 
-    Corners and kept pieces end runs.
+    From the start of the chain on, the longest possible run is merged. Runs end at corners and at pieces that
+    are kept.
 
     Parameters
     ----------
     near : largest distance of vertices from the line or arc, in mm.
-    tolerance : largest distance of chords between them, in mm; for arcs ``DISGUISE`` at most.
-    least : how many pieces with chords a run must have; fewer than ``LEAST_CHORDS`` only make lines.
+    tolerance : largest distance in mm of the segments between the vertices; where these are arcs, at most
+        ``DISGUISE``.
+    least : how many pieces a run with chords must have. Runs of fewer than ``LEAST_CHORDS`` become lines
+        only.
     """
     points = list_starts([*pieces, pieces[0]])
     corner = np.abs(compute_turns(pieces)) > CORNER_OF_CHORDS
@@ -466,9 +484,9 @@ def merge_longest_runs(
 def make_one_piece(
     pieces: Sequence[MergedPiece], points: Array, near: float, tolerance: float, least: int
 ) -> MergedPiece | None:
-    """Return the line or arc that replaces a run of N pieces; None where none is near enough.
+    """Return the line or arc that replaces a run of N pieces; None where neither is near enough.
 
-    ``points`` (N + 1, 2) are the ends of the pieces; the rest as in :func:`merge_longest_runs`.
+    ``points`` (N + 1, 2) are the ends of the pieces. See :func:`merge_longest_runs` for the other parameters.
     """
     if not is_worth_fitting(pieces, least):
         return None
@@ -495,7 +513,7 @@ def make_one_piece(
 
 
 def insert_middles(pieces: Sequence[MergedPiece], points: Array) -> Array:
-    """Return ``points`` with the middles of the arcs among the pieces appended."""
+    """Return ``points`` followed by the middle points of those pieces that are arcs."""
     chords = np.diff(points, axis=0)
     bulges = np.array([piece.bulge for piece in pieces])[:, None]
     middles = points[:-1] + chords / 2 + np.column_stack([chords[:, 1], -chords[:, 0]]) * bulges / 2
@@ -503,8 +521,10 @@ def insert_middles(pieces: Sequence[MergedPiece], points: Array) -> Array:
 
 
 def fit_arc(pieces: Sequence[MergedPiece], points: Array, line: Line) -> Arc | None:
-    """Return the least-squares arc through both ends of a
-    run, given the ``line`` between them; None without one.
+    """Return the least-squares arc through a run's points and exactly through its ends; None where there is
+    no such arc.
+
+    ``line`` runs between these ends.
     """
     circle = fit_circle(insert_middles(pieces, points))
     if circle is None:
@@ -525,8 +545,10 @@ def fit_arc(pieces: Sequence[MergedPiece], points: Array, line: Line) -> Arc | N
 def measure_departure(
     pieces: Sequence[MergedPiece], points: Array, segment: Segment, near: float, tolerance: float
 ) -> float:
-    """Return the largest distance in mm of a run from a line
-    or arc; inf where it is too large or the run turns back.
+    """Return the largest distance in mm of a run of pieces from a line or arc.
+
+    inf where it exceeds ``tolerance`` (or ``near`` for vertices), or where the run does not go forward along
+    the segment.
     """
     if isinstance(segment, Arc):
         cx, cy = segment.center

@@ -56,15 +56,17 @@ def offset_segment(segment: Segment, radius: float) -> Segment | None:
 def list_trimmed_offsets(
     segments: Sequence[Segment], radius: float, flat: float | None = None
 ) -> list[tuple[int, Segment]]:
-    """Return the boundary pieces of (part + disc of ``radius`` mm)
-    that are offsets of segments; arcs around corners are left out.
+    """Return those pieces of the boundary of (part + disc of ``radius`` mm) that are offsets of the part's
+    segments.
+
+    Arcs around the part's corners are left out.
 
     Parameters
     ----------
     segments : the whole outline with its holes, material on the left.
     radius : in mm, zero or more.
-    flat : offset in mm of lines instead of ``radius``, at most as large, for a disc with a flat against the
-        line; None for none.
+    flat : offset in mm for straight segments instead of ``radius``, at most as large, for a peg whose flat
+        lies against the segment; None for none.
 
     Returns
     -------
@@ -79,8 +81,8 @@ def list_trimmed_offsets(
     pieces: list[tuple[int, Segment]] = []
 
     def is_clear(beside: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return whether (M,) points (M, 2) are at least
-        the radius from the segments with rows ``beside``.
+        """Return for each point (M, 2) whether it is at least the radius from the segments with rows
+        ``beside`` (M,).
         """
         return np.asarray(measure_outline_distances(points, beside) >= radius - CLEARANCE)
 
@@ -131,10 +133,10 @@ def keep_clear_parts(
     others: Sequence[Segment],
     is_clear: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
 ) -> list[Segment]:
-    """Return the parts of a raw piece that are clear, in order along it.
+    """Return the parts of a segment that are clear, in order along it.
 
-    It is cut where it meets the line or the circle of any of ``others``; the middle of each part decides.
-    ``is_clear`` takes points (M, 2) and returns (M,).
+    The segment is cut where it meets the line or the circle of any of ``others``. A part is kept where its
+    middle is clear: ``is_clear`` takes points (M, 2) and returns booleans (M,).
     """
     half = piece.half_extent
     points = [point for other in others for point in find_carrier_crossings(piece, other)]
@@ -156,7 +158,10 @@ def keep_clear_parts(
 def measure_box_gaps(
     boxes: NDArray[np.float64], box: tuple[float, float, float, float]
 ) -> NDArray[np.float64]:
-    """Return the larger gap in x and y, (N,), between bounding boxes (N, 4) and one; negative where they overlap."""
+    """Return the gaps (N,) in mm between ``box`` and each of ``boxes`` (N, 4); negative where they overlap.
+
+    A gap is the larger of those in x and in y. Boxes are smallest x and y, largest x and y.
+    """
     x0, y0, x1, y1 = box
     gaps = np.stack([boxes[:, 0] - x1, x0 - boxes[:, 2], boxes[:, 1] - y1, y0 - boxes[:, 3]])
     return np.asarray(gaps.max(axis=0))

@@ -56,7 +56,7 @@ MOST_DEGREE = 12
 
 
 def split_spline(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike, degree: int) -> Pieces:
-    """Return the Bézier pieces of a B-spline between its distinct knots.
+    """Return the Bézier pieces of a B-spline, one for each interval between distinct knots.
 
     Parameters
     ----------
@@ -68,7 +68,8 @@ def split_spline(points: ArrayLike, weights: ArrayLike | None, knots: ArrayLike,
     Raises
     ------
     InputError
-        When the numbers do not make a spline: what is wrong, in words that follow the name of an entity.
+        For numbers that do not make a spline. The message continues a sentence that
+            begins with an entity's name.
     """
     control, knot = np.asarray(points, dtype=np.float64), np.asarray(knots, dtype=np.float64)
     weight = np.ones(len(control)) if weights is None else np.asarray(weights, dtype=np.float64)
@@ -114,11 +115,11 @@ def make_bezier_piece(points: ArrayLike) -> Pieces:
 
 
 def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep: float) -> Pieces:
-    """Return exact pieces of the curve center + major cos t + minor
-    sin t, t from ``start`` over a signed ``sweep`` in radians.
+    """Return exact pieces of the arc of an ellipse center + major cos t + minor sin t.
 
-    Each piece covers an equal part of at most a quarter turn; its middle weight is the cosine of half of that
-    (Piegl and Tiller, The NURBS Book, 1997, section 7.3).
+    The angle t runs from ``start`` over ``sweep`` (radians, negative for falling t). Each piece covers an
+    equal part of at most a quarter turn; its middle weight is the cosine of half of that (Piegl and Tiller,
+    The NURBS Book, 1997, section 7.3).
     """
     count = max(1, ceil(abs(sweep) / (pi / 2) - 1e-9))
     step = sweep / count
@@ -140,8 +141,9 @@ def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep
 
 
 def split_arc(start: Point, end: Point, bulge: float) -> Pieces:
-    """Return the pieces of the arc with a bulge from one
-    point to another; one linear piece for a bulge of 0.
+    """Return exact pieces of the arc from ``start`` to ``end`` with a bulge (tan(sweep / 4)).
+
+    For a bulge of 0 it is one piece of degree 1.
     """
     segment = make_segment_from_bulge(start, end, bulge)
     if not isinstance(segment, Arc):
@@ -155,8 +157,8 @@ def split_arc(start: Point, end: Point, bulge: float) -> Pieces:
 
 
 def raise_degree(pieces: Pieces, degree: int) -> Pieces:
-    """Return the same curves with their degree raised to
-    ``degree`` (Farin, Curves and Surfaces for CAGD, section 6.1).
+    """Return the same curves as pieces of the higher degree ``degree`` (Farin, Curves and Surfaces for CAGD,
+    section 6.1).
     """
     while pieces.shape[1] <= degree:
         n = pieces.shape[1]
@@ -174,7 +176,10 @@ def join_pieces(curves: list[Pieces]) -> Pieces:
 
 
 def transform_pieces(pieces: Pieces, matrix: ArrayLike) -> Pieces:
-    """Return the exact image of pieces under the affine map with the (2, 3) matrix ((a, c, e), (b, d, f))."""
+    """Return pieces mapped exactly by an affine map: x' = a x + c y + e, y' = b x + d y + f.
+
+    ``matrix`` (2, 3) is ((a, c, e), (b, d, f)).
+    """
     out = np.empty_like(pieces)
     out[..., :2] = pieces @ np.asarray(matrix, dtype=np.float64).T
     out[..., 2] = pieces[..., 2]
@@ -182,8 +187,9 @@ def transform_pieces(pieces: Pieces, matrix: ArrayLike) -> Pieces:
 
 
 def drop_point_pieces(pieces: Pieces, shortest: float) -> Pieces:
-    """Return the pieces with an extent of at least ``shortest``
-    mm, starts moved onto the end of the piece before.
+    """Return the pieces of a curve without those smaller than ``shortest`` mm.
+
+    Each remaining piece starts exactly where the remaining piece before it ends.
     """
     places = pieces[..., :2] / pieces[..., 2:]
     kept: Pieces = pieces[np.ptp(places, axis=1).max(axis=1) >= shortest].copy()
@@ -193,14 +199,15 @@ def drop_point_pieces(pieces: Pieces, shortest: float) -> Pieces:
 
 
 def halve_pieces(pieces: Pieces) -> Pieces:
-    """Return the (2 P, n + 1, 3) halves of pieces, in order along the curve."""
+    """Return the two halves of each of P pieces, in order along the curve: (2 P, n + 1, 3)."""
     left, right = split(pieces, 0.5)
     return np.stack([left, right], axis=1).reshape(-1, *pieces.shape[1:])
 
 
 def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
-    """Return the parts of all pieces before, and after,
-    the parameter ``at`` in (0, 1) of each (de Casteljau).
+    """Return two arrays: the first and the second part of every piece, split at one parameter.
+
+    The parameter ``at`` of each piece is between 0 and 1. The method is de Casteljau's.
     """
     n = pieces.shape[1]
     left, right = np.empty_like(pieces), np.empty_like(pieces)
@@ -212,7 +219,9 @@ def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
 
 
 def cut(pieces: Pieces, first: float, last: float) -> Pieces:
-    """Return the pieces of a curve between parameters ``first`` < ``last``, each from 0 to P."""
+    """Return the pieces of the part of a curve between parameters ``first`` < ``last`` (0 to P for a curve of
+    P pieces).
+    """
     low, high = min(int(first), len(pieces) - 1), min(int(ceil(last)), len(pieces))
     stretch = pieces[low : max(high, low + 1)]
     begin, end = first - low, last - (low + len(stretch) - 1)
@@ -225,7 +234,7 @@ def cut(pieces: Pieces, first: float, last: float) -> Pieces:
 
 
 def compute_point(pieces: Pieces, parameter: float) -> Point:
-    """Return the point (x, y) in mm of a curve at a parameter from 0 to P."""
+    """Return the point (x, y) in mm of a curve of P pieces at a parameter from 0 to P."""
     number = min(int(parameter), len(pieces) - 1)
     t = parameter - number
     n = pieces.shape[1] - 1
@@ -235,11 +244,11 @@ def compute_point(pieces: Pieces, parameter: float) -> Point:
 
 
 def compute_direction(pieces: Pieces, parameter: float, after: bool) -> Point:
-    """Return the unit tangent of a curve at a parameter;
-    at a joint of pieces, that ``after`` it or before it.
+    """Return the unit tangent of a curve of P pieces at a parameter from 0 to P.
 
-    Where the derivative vanishes, as at a control point given twice, it is the direction to the next one that
-    differs.
+    Where two pieces meet, it is the tangent of the piece after that point if ``after``, else of the piece
+    before. Where the derivative vanishes (a control point given twice), it points to the next different
+    control point.
     """
     number = min(int(parameter), len(pieces) - 1)
     if parameter == number and not after and number > 0:
@@ -253,8 +262,10 @@ def compute_direction(pieces: Pieces, parameter: float, after: bool) -> Point:
 
 
 def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the unit tangents (P, 2) at the start, and at the
-    end, of each piece, both forward; see :func:`direction_at`.
+    """Return the unit tangents (P, 2) of P pieces (1) at their starts and (2) at their ends, both in running
+    direction.
+
+    See :func:`compute_direction` for vanishing derivatives.
     """
 
     def leaving(rows: Pieces) -> NDArray[np.float64]:
@@ -271,8 +282,8 @@ def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
 
 
 def sample_points(pieces: Pieces, each: int) -> NDArray[np.float64]:
-    """Return points (each * P + 1, 2) in mm of a curve at
-    equally spaced parameters, ``each`` intervals to a piece.
+    """Return points (each * P + 1, 2) in mm of a curve of P pieces, with ``each`` equal parameter steps per
+    piece.
     """
     n = pieces.shape[1] - 1
     t = (np.arange(each) / each)[:, None]
@@ -284,14 +295,15 @@ def sample_points(pieces: Pieces, each: int) -> NDArray[np.float64]:
 
 
 def compute_end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the signed curvatures (P,) in 1/mm at the start, and at the end, of each piece.
+    """Return the curvatures (P,) in 1/mm of P pieces (1) at their starts and (2) at their ends, positive to
+    the left.
 
-    NaN where the derivative vanishes. kappa = (n - 1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 -
-    p0|³ (Farin, section 12.5).
+    NaN where the derivative vanishes. With control points p and weights w the curvature at the start is (n -
+    1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 - p0|³ (Farin, section 12.5).
     """
 
     def curvature(rows: Pieces) -> NDArray[np.float64]:
-        """Return the signed curvatures (P,) at the starts of pieces."""
+        """Return the curvatures (P,) at the starts of pieces, positive to the left."""
         n = rows.shape[1] - 1
         if n < 2:
             return np.zeros(len(rows))
@@ -322,8 +334,10 @@ ROUNDING = 1e-11
 
 @lru_cache(maxsize=64)
 def make_product_weights(n: int, m: int) -> Array:
-    """Return the matrix (n + m + 1, (n + 1) (m + 1)) that maps
-    products of Bernstein coefficients to those of the product.
+    """Return the matrix with which two polynomials of degrees n and m in Bernstein form are multiplied.
+
+    The matrix (n + m + 1, (n + 1) (m + 1)) maps all products of their coefficients to the coefficients of the
+    product.
     """
     i, j = np.arange(n + 1)[:, None], np.arange(m + 1)[None, :]
     weights = np.array(
@@ -335,25 +349,29 @@ def make_product_weights(n: int, m: int) -> Array:
 
 
 def multiply_bernstein(a: Array, b: Array) -> Array:
-    """Return the Bernstein coefficients (P, n + m + 1) of
-    products of polynomials with (P, n + 1) and (P, m + 1) ones.
+    """Return the Bernstein coefficients (P, n + m + 1) of the products of P pairs of polynomials.
+
+    ``a`` (P, n + 1) and ``b`` (P, m + 1) are the coefficients of the factors.
     """
     outer: Array = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
     return outer @ make_product_weights(a.shape[1] - 1, b.shape[1] - 1).T
 
 
 def compute_turning_coefficients(u: Array, v: Array) -> Array:
-    """Return the Bernstein coefficients of u v' - u' v, which has the sign of the derivative of v / u."""
+    """Return the Bernstein coefficients of u v' - u' v for P pairs of polynomials u and v.
+
+    ``u`` and ``v`` (P, n + 1) are the polynomials' coefficients. The result has the sign of the derivative of v / u.
+    """
     n = u.shape[1] - 1
     return multiply_bernstein(u, n * np.diff(v)) - multiply_bernstein(n * np.diff(u), v)
 
 
 def bound_departure(pieces: Pieces, segment: Segment, limit: float) -> float:
-    """Return an upper bound in mm of the distance between a
-    curve and a line or arc with the same ends, either way.
+    """Return an upper bound in mm of the distance between a curve and a line or arc, of any point of either
+    from the other.
 
-    inf where it is not shown to be at most ``limit``, or the curve does not run forward. The segment may be a
-    full circle.
+    Both must have the same ends. The result is inf where the distance cannot be shown to be at most ``limit``
+    mm, or where the curve turns back along the segment. The segment may be a full circle.
     """
     for halving in range(MOST_HALVINGS + 1):
         reached, bound, forward = measure_departure(pieces, segment)
@@ -368,7 +386,12 @@ def bound_departure(pieces: Pieces, segment: Segment, limit: float) -> float:
 
 
 def measure_departure(pieces: Pieces, segment: Segment) -> tuple[float, float, bool]:
-    """Return (a distance in mm that is reached, an upper bound of all, whether the curve runs forward)."""
+    """Return how far a curve is from a line or arc: (1) a lower bound, (2) an upper bound in mm, (3) whether
+    it runs forward.
+
+    The lower bound is the distance that the ends of the pieces reach. A curve runs forward where it never
+    turns back along the segment.
+    """
     w = pieces[..., 2]
     if isinstance(segment, Arc):
         x, y = (pieces[..., k] - segment.center[k] * w for k in (0, 1))

@@ -79,7 +79,7 @@ class Line:
 
     @property
     def middle(self) -> Point:
-        """Point of parameter 0."""
+        """The middle of the segment, which has parameter 0."""
         return ((self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2)
 
     @property
@@ -89,7 +89,7 @@ class Line:
         return ((self.end[0] - self.start[0]) / length, (self.end[1] - self.start[1]) / length)
 
     def compute_point(self, parameter: float) -> Point:
-        """Return the point at a parameter in mm."""
+        """Return the point at a parameter: mm from the middle, positive towards the end."""
         (x, y), (tx, ty) = self.middle, self.tangent
         return (x + parameter * tx, y + parameter * ty)
 
@@ -108,7 +108,7 @@ class Line:
         return (0.0, *self.middle, *self.tangent, self.half_extent, 0.0, 1.0, 0.0, 0.0)
 
     def cut_part(self, low: float, high: float) -> Line:
-        """Return the piece from parameter ``low`` to ``high``, in mm."""
+        """Return the part from parameter ``low`` to ``high``, in mm from the middle."""
         return Line(self.compute_point(low), self.compute_point(high))
 
 
@@ -146,7 +146,7 @@ class Arc:
 
     @property
     def middle(self) -> Point:
-        """Point of parameter 0, computed in fractions and rounded once."""
+        """The middle of the arc, which has parameter 0; computed in fractions and rounded once."""
         x, y = to_middle(self.radius, self.mid_angle)
         (cx, cy), (rest_x, rest_y) = self.center, self.rest
         return (float(Fraction(cx) + Fraction(rest_x) + x), float(Fraction(cy) + Fraction(rest_y) + y))
@@ -167,8 +167,8 @@ class Arc:
         return self.compute_point(self.sign * self.half_sweep)
 
     def compute_point(self, parameter: float) -> Point:
-        """Return the point at a parameter: the angle in radians
-        from the arc's middle, counter-clockwise whatever the sign.
+        """Return the point at a parameter: the angle in radians from the arc's middle, counter-clockwise
+        whatever the sign.
         """
         if self.half_sweep < SHALLOW:
             (x, y), (tx, ty) = self.middle, (cos(self.mid_angle), sin(self.mid_angle))
@@ -183,8 +183,8 @@ class Arc:
         return (self.sign * cos(angle), self.sign * sin(angle))
 
     def find_parameter(self, point: Point) -> float:
-        """Return the parameter in radians, in (-pi, pi], of
-        the nearest point of the whole circle to ``point``.
+        """Return the parameter in radians, in (-pi, pi], of that point of the whole circle that is nearest to
+        ``point``.
         """
         (x, y), radius = (self.middle, self.radius) if self.half_sweep < SHALLOW else (self.center, 0.0)
         dx, dy = point[0] - x, point[1] - y
@@ -197,12 +197,14 @@ class Arc:
         return (1.0, *self.center, *direction, self.half_sweep, self.radius, self.sign, *self.rest)
 
     def cut_part(self, low: float, high: float) -> Arc:
-        """Return the piece from parameter ``low`` to ``high``, in radians."""
+        """Return the part from parameter ``low`` to ``high``, in radians from the arc's middle,
+        counter-clockwise.
+        """
         return evolve(self, mid_angle=self.mid_angle + (low + high) / 2, half_sweep=(high - low) / 2)
 
     def grow(self, by: float) -> Arc:
-        """Return the arc with its radius larger by ``by`` mm,
-        which may be negative but not down to a radius of 0.
+        """Return the arc with its radius larger by ``by`` mm; ``by`` may be negative, but the radius must
+        stay above 0.
         """
         radius = self.radius + by
         if self.half_sweep >= SHALLOW:
@@ -216,9 +218,11 @@ Segment = Line | Arc
 
 
 def to_middle(radius: float, mid_angle: float) -> tuple[Fraction, Fraction]:
-    """Return the vector in mm from an arc's centre to its middle, as fractions, nearly exact.
+    """Return the vector in mm from an arc's centre to its middle as fractions, exact up to about the square
+    of rounding.
 
-    The rounded direction is normalized, up to the fourth order in its rounding errors.
+    ``mid_angle`` is the vector's direction in radians. Its cosine and sine are rounded, so the vector is
+    normalized again.
     """
     x, y = Fraction(cos(mid_angle)), Fraction(sin(mid_angle))
     scale = Fraction(radius) * (3 - x * x - y * y) / 2
@@ -261,9 +265,9 @@ def make_segment_rows(segments: Sequence[Segment]) -> NDArray[np.float64]:
 
 
 def find_row_ends(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the end points (N, 2, 2) in mm of segments at their least and largest parameter.
+    """Return the end points (N, 2, 2) in mm of N segments: first at the least parameter, then at the largest.
 
-    ``rows`` (N, 10 or more) are rows of :func:`segment_rows`.
+    ``rows`` (N, 10 or more) are those of :func:`make_segment_rows`.
     """
     half, axis = rows[:, HALF_EXTENT, None] * np.array([-1.0, 1.0]), rows[:, None, AXIS_X : AXIS_Y + 1]
     cosine, sine = np.cos(half), np.sin(half)
@@ -274,8 +278,8 @@ def find_row_ends(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def cross_carrying_lines(a: Line, b: Line) -> list[Point]:
-    """Return the one common point of the infinite lines
-    of two segments; none where parallel within 1e-12 rad.
+    """Return the common point of the infinite lines through two segments; an empty list where they are
+    parallel (1e-12 rad).
     """
     (ax, ay), (atx, aty) = a.middle, a.tangent
     (bx, by), (btx, bty) = b.middle, b.tangent
@@ -287,8 +291,9 @@ def cross_carrying_lines(a: Line, b: Line) -> list[Point]:
 
 
 def cross_carrying_line_and_circle(line: Line, center: Point, radius: float) -> list[Point]:
-    """Return the common points of an infinite line and a circle;
-    one where they touch or miss by at most ``TOUCH`` mm.
+    """Return the common points of the infinite line through a segment and a circle: none, one or two.
+
+    There is one point where they touch, or miss each other by at most ``TOUCH`` mm.
     """
     (px, py), (tx, ty) = line.middle, line.tangent
     dx, dy = center[0] - px, center[1] - py
@@ -302,8 +307,10 @@ def cross_carrying_line_and_circle(line: Line, center: Point, radius: float) -> 
 
 
 def cross_carrying_circles(center_a: Point, radius_a: float, center_b: Point, radius_b: float) -> list[Point]:
-    """Return the common points of two circles; one where they touch
-    or miss by at most ``TOUCH`` mm, none for concentric ones.
+    """Return the common points of two circles: none, one or two.
+
+    There is one point where they touch, or miss each other by at most ``TOUCH`` mm. Concentric circles have
+    none.
     """
     dx, dy = center_b[0] - center_a[0], center_b[1] - center_a[1]
     distance = hypot(dx, dy)
@@ -324,8 +331,9 @@ def cross_carrying_circles(center_a: Point, radius_a: float, center_b: Point, ra
 
 
 def find_carrier_crossings(a: Segment, b: Segment) -> list[Point]:
-    """Return the common points of the infinite lines or
-    whole circles of two segments; none where these coincide.
+    """Return the common points of the whole lines or circles on which two segments lie.
+
+    The list is empty where both lie on the same line or circle.
     """
     if isinstance(a, Line):
         return (
@@ -339,8 +347,9 @@ def find_carrier_crossings(a: Segment, b: Segment) -> list[Point]:
 
 
 def holds(segment: Segment, point: Point, tolerance: float) -> bool:
-    """Return whether a point on a segment's line or circle lies
-    on the segment, ends included, within a tolerance in mm.
+    """Return whether a point that is on a segment's whole line or circle lies on the segment itself.
+
+    Both ends count, with a tolerance in mm.
     """
     slack = tolerance if isinstance(segment, Line) else tolerance / segment.radius
     return abs(segment.find_parameter(point)) <= segment.half_extent + slack
@@ -355,10 +364,10 @@ def measure_distance_to_segment(point: Point, segment: Segment) -> float:
 
 
 def find_common_points(a: Segment, b: Segment, tolerance: float) -> list[Point]:
-    """Return the points at which two segments meet or touch
-    within a tolerance in mm, in no order; some may be repeated.
+    """Return the points at which two segments meet or touch within a tolerance in mm.
 
-    Overlapping segments (same line or circle) give the ends of each that lie on the other.
+    They are in no particular order, and some may be repeated. Segments that overlap on one line or circle
+    give those ends of each that lie on the other.
     """
     points = [p for p in find_carrier_crossings(a, b) if holds(a, p, tolerance) and holds(b, p, tolerance)]
     points += [p for p in (a.start, a.end) if measure_distance_to_segment(p, b) <= tolerance]
@@ -381,7 +390,7 @@ def compute_bounding_box(segment: Segment) -> tuple[float, float, float, float]:
 
 
 def are_parallel_lines(segments: Iterable[Segment]) -> bool:
-    """Return whether all segments are lines with parallel directions, either way; False without any."""
+    """Return whether all segments are lines that are parallel or antiparallel; False where there are none."""
     found = list(segments)
     if not found or not all(isinstance(one, Line) for one in found):
         return False
@@ -432,7 +441,7 @@ class Box:
         return Box(self.x0 - margin, self.y0 - margin, self.x1 + margin, self.y1 + margin)
 
     def unite(self, other: Box) -> Box:
-        """Return the smallest box around both."""
+        """Return the smallest box that contains this box and ``other``."""
         return Box(
             min(self.x0, other.x0), min(self.y0, other.y0), max(self.x1, other.x1), max(self.y1, other.y1)
         )
@@ -444,5 +453,5 @@ class Box:
         return max(width, 0.0) * max(height, 0.0)
 
     def contains(self, other: Box) -> bool:
-        """Return whether another box lies in this one, borders included."""
+        """Return whether the box ``other`` lies in this box; borders may coincide."""
         return self.x0 <= other.x0 and self.y0 <= other.y0 and self.x1 >= other.x1 and self.y1 >= other.y1

@@ -62,13 +62,16 @@ Inside = Callable[[Sequence[Point]], Sequence[bool]]
 
 @define
 class CutCurve:
-    """A line or a circle with the spans that segments cover, and the positions at which it is cut.
+    """A whole line or circle (a carrier), the ranges of it that segments cover, and where it is cut.
+
+    Positions are in mm on a line and in radians on a circle.
 
     Parameters
     ----------
-    segment : one segment on it; positions are its parameters.
-    spans : (low, high) positions; on a circle low is in [-pi, pi) and high less than a turn above it.
-    cuts : positions.
+    segment : one segment on the carrier; positions are parameters of this segment.
+    spans : the ranges (low, high) that segments cover. On a circle low is in [-pi, pi) and high less than a
+        turn above.
+    cuts : positions at which the carrier is cut.
     owners : for each span, the number of the segment that covers it.
     """
 
@@ -81,11 +84,11 @@ class CutCurve:
 
     @property
     def slack(self) -> float:
-        """Change of position, in mm or radians, that corresponds to a length of ``ONE``."""
+        """The change of position, in mm or radians, that moves a point by ``ONE`` mm."""
         return ONE if isinstance(self.segment, Line) else ONE / self.segment.radius
 
     def is_carrier_of(self, other: Segment) -> bool:
-        """Return whether another segment lies on the same infinite line or circle, within ``ONE`` mm."""
+        """Return whether a segment lies on this same whole line or circle, within ``ONE`` mm."""
         own = self.segment
         if isinstance(own, Line) and isinstance(other, Line):
             (x, y), (tx, ty) = own.middle, own.tangent
@@ -95,16 +98,17 @@ class CutCurve:
         return False
 
     def find_position(self, point: Point) -> float:
-        """Return the position of the point of the carrier nearest to ``point``."""
+        """Return the position of that point of the whole line or circle that is nearest to ``point``."""
         return self.segment.find_parameter(point)
 
     def compute_point(self, position: float) -> Point:
-        """Return the point at a position."""
+        """Return the point at a position, in mm on a line and in radians on a circle."""
         return self.segment.compute_point(position)
 
     def compute_left_normal(self, position: float) -> Point:
-        """Return the unit vector to the left of the direction
-        of growing positions; on a circle, to the centre.
+        """Return the unit vector to the left of the direction in which positions grow.
+
+        On a circle positions grow counter-clockwise, so it points to the centre.
         """
         if isinstance(self.segment, Line):
             tx, ty = self.segment.tangent
@@ -113,7 +117,11 @@ class CutCurve:
         return -cos(angle), -sin(angle)
 
     def cover_segment(self, segment: Segment) -> None:
-        """Add the span of a segment on this carrier, and cuts at its ends."""
+        """Add the range that a segment on this carrier covers to ``spans``, and its ends to ``cuts``, in
+        place.
+
+        A full circle has no ends.
+        """
         if isinstance(segment, Arc) and segment.is_full:
             self.spans.append((-pi, pi))
             return
@@ -127,7 +135,9 @@ class CutCurve:
         self.cuts += [first, last]
 
     def list_ends_near(self, segment: Segment) -> list[Point]:
-        """Return the ends of spans that lie within 2 ``ONE`` mm of the line or circle of ``segment``."""
+        """Return those ends of spans that lie within 2 ``ONE`` mm of the whole line or circle of
+        ``segment``.
+        """
         if self.ends is None or self.ends[0] != len(self.spans):
             found = [
                 self.compute_point(position) for position in {end for span in self.spans for end in span}
@@ -143,7 +153,7 @@ class CutCurve:
         return [(float(px), float(py)) for px, py in points[away <= 2 * ONE]]
 
     def is_covered(self, position: float) -> bool:
-        """Return whether any span contains a position, ends included."""
+        """Return whether a position lies in one of the spans, ends included."""
         turns = (0.0,) if isinstance(self.segment, Line) else (-tau, 0.0, tau)
         slack = self.slack
         return any(
@@ -156,9 +166,9 @@ class CutCurve:
         return away if isinstance(self.segment, Line) else abs((away + pi) % tau - pi)
 
     def list_covered_pieces(self) -> list[tuple[float, float]]:
-        """Return the (low, high) positions of the pieces between neighbouring cuts that a span covers.
+        """Return the pieces between neighbouring cuts that a span covers, as positions (low, high).
 
-        Pieces as short as rounding errors are left out; a circle is in at least two pieces.
+        Pieces shorter than ``SHORT`` mm are left out. A whole circle is given as at least two pieces.
         """
         slack = self.slack
         cuts = np.array(self.cuts)
@@ -185,7 +195,9 @@ class CutCurve:
 
 
 def sort_distinct(values: NDArray[np.float64], slack: float) -> list[float]:
-    """Return the values in ascending order, without those within ``slack`` above one that is kept."""
+    """Return values in ascending order, without each value that is at most ``slack`` above the last one
+    kept.
+    """
     distinct: list[float] = []
     for value in np.sort(values):
         if not distinct or value - distinct[-1] > slack:
@@ -198,7 +210,8 @@ def subdivide(
     cuts: Iterable[tuple[Segment, Point]] = (),
     comparisons: ComparisonBudget | None = None,
 ) -> list[CutCurve]:
-    """Return the carriers of segments, each once, cut wherever two of them meet.
+    """Return the carriers (whole lines and circles) of segments, each once, cut wherever covered parts of two
+    meet.
 
     Parameters
     ----------
@@ -238,7 +251,11 @@ def subdivide(
 
 
 def cut_twins(carriers: CutCurveIndex, cuts: Sequence[tuple[CutCurve, Point]]) -> None:
-    """Cut carriers that run beside a further cut of another carrier, so that twins have the same ends."""
+    """Cut, in place, each carrier that runs within ``THIN`` mm of one of ``cuts``, which are points on other
+    carriers.
+
+    So pieces of two carriers that nearly coincide have the same ends.
+    """
     for number, other in carriers.iterate_pairs_near(
         np.array([point for _, point in cuts]).reshape(-1, 2), THIN
     ):
@@ -256,10 +273,10 @@ def find_or_make_carrier(
     found: dict[tuple[int, ...], list[CutCurve]],
     comparisons: ComparisonBudget | None = None,
 ) -> CutCurve:
-    """Return the carrier of a segment from ``found``; if
-    there is none, add one to ``carriers`` and ``found``.
+    """Return the carrier of a segment from ``found``; where it is missing, make it and add it to ``carriers``
+    and ``found``.
 
-    ``found`` maps rough keys to carriers.
+    The keys of ``found`` are those of :func:`list_rough_keys`.
     """
     keys = list_rough_keys(segment)
     for key in keys:
@@ -275,8 +292,10 @@ def find_or_make_carrier(
 
 
 def list_rough_keys(segment: Segment) -> list[tuple[int, ...]]:
-    """Return the keys under which the carrier of a segment
-    may be found: its own cell first, then neighbouring cells.
+    """Return the keys under which the carrier of a segment may be stored: that of its own cell, then of
+    neighbouring cells.
+
+    Cells are ranges of direction for lines, and of centre and radius for circles.
     """
     around = (0, -1, 1)
     if isinstance(segment, Arc):
@@ -290,10 +309,9 @@ def list_rough_keys(segment: Segment) -> list[tuple[int, ...]]:
 
 
 def bound_covered(carrier: CutCurve) -> tuple[float, float, float, float]:
-    """Return a box (smallest x, smallest y, largest x, largest
-    y) around a carrier's spans, enlarged by ``ONE`` mm.
+    """Return a box around the spans of a carrier: smallest x, smallest y, largest x, largest y, in mm.
 
-    For circles it is that of the whole circle.
+    It is ``ONE`` mm larger on each side. For a circle it is the box of the whole circle.
     """
     own = carrier.segment
     if isinstance(own, Arc):
@@ -305,9 +323,10 @@ def bound_covered(carrier: CutCurve) -> tuple[float, float, float, float]:
 
 
 def cut_each_other(a: CutCurve, b: CutCurve) -> None:
-    """Add cuts to two carriers where covered parts meet, and where a span of one ends on the other.
+    """Add cuts to two carriers, in place, where covered parts of both meet, and where a span of one ends on
+    the other.
 
-    Two crossings at most ``REACH`` mm apart become one in the middle between them.
+    Two crossings at most ``REACH`` mm apart are replaced by one in the middle between them.
     """
     points = list(find_carrier_crossings(a.segment, b.segment))
     if len(points) == 2 and SHORT < dist(*points) <= REACH:
@@ -326,15 +345,15 @@ def cut_each_other(a: CutCurve, b: CutCurve) -> None:
 
 @frozen(eq=False)
 class CutCurveIndex:
-    """An index of carriers that finds those near points.
+    """An index of carriers (whole lines and circles) with which those near given points are found.
 
     Parameters
     ----------
     every : the carriers.
-    lines, circles : indices of those that are lines, and of the others.
-    across : (3, L) coefficients of the distance of (x, y, 1) from each line.
-    powers : (4, C) coefficients of (x² + y², x, y, 1) for the squared distance from each circle's centre,
-        minus the squared radius.
+    lines, circles : indices of the L lines and of the C circles among them.
+    across : (3, L) coefficients of x, y and 1 in the distance from each line.
+    powers : (4, C) coefficients of x² + y², x, y and 1 in the squared distance from each circle's centre
+        minus its squared radius.
     radii : (C,) of the circles, in mm.
     """
 
@@ -369,8 +388,10 @@ class CutCurveIndex:
         )
 
     def iterate_pairs_near(self, points: NDArray[np.float64], reach: float) -> Iterator[tuple[int, CutCurve]]:
-        """Yield (index of a point, carrier) for points (N, 2) and
-        carriers whose infinite line or circle is within ``reach`` mm.
+        """Yield pairs (index of a point, carrier) where a point is within ``reach`` mm of a carrier's whole
+        line or circle.
+
+        ``points`` is an array (N, 2).
         """
         step = max(1, AT_ONCE // max(1, len(self.every)))
         for first in range(0, len(points), step):
@@ -384,8 +405,8 @@ class CutCurveIndex:
                     yield first + int(row), self.every[numbers[column]]
 
     def measure_distance(self, carrier: CutCurve, point: Point) -> float:
-        """Return the distance in mm of a point from a carrier;
-        inf where its foot on the carrier is not covered.
+        """Return the distance in mm from a point to its nearest point on a carrier; inf where no span covers
+        that.
         """
         position = carrier.find_position(point)
         return dist(point, carrier.compute_point(position)) if carrier.is_covered(position) else inf
@@ -393,7 +414,7 @@ class CutCurveIndex:
 
 @frozen
 class BorderPiece:
-    """A piece of a region's border, run with the region on its left.
+    """A piece of the border of a region, in the direction that has the region on its left.
 
     Parameters
     ----------
@@ -428,8 +449,8 @@ class BorderPiece:
         return (self.high - self.low) * (1.0 if isinstance(own, Line) else own.radius)
 
     def compute_heading(self, *, at_end: bool) -> float:
-        """Return the direction in radians in which the piece
-        runs, at its last point if ``at_end``, else at its first.
+        """Return the direction in radians in which the piece runs, at its last point if ``at_end``, else at
+        its first point.
         """
         nx, ny = self.carrier.compute_left_normal(self.high if at_end == self.forward else self.low)
         return atan2(-nx, ny) if self.forward else atan2(nx, -ny)
@@ -446,13 +467,16 @@ class BorderPiece:
 def find_border_pieces(
     carriers: Sequence[CutCurve], inside: Inside, beside: float = BESIDE
 ) -> list[BorderPiece]:
-    """Return the pieces of carriers that have a region on exactly one side, run with it on their left.
+    """Return the pieces of carriers that have a region on one side only, in the direction with the region on
+    the left.
 
     Parameters
     ----------
     carriers : see :func:`subdivide`; they contain the region's whole border.
-    inside : returns which of some points (x, y) belong to the region; no point lies on a carrier.
-    beside : distance in mm from a piece of the two points that are tested, where nothing else is near.
+    inside : takes points (x, y) and returns for each whether it belongs to the region; no point lies on a
+        carrier.
+    beside : distance in mm from a piece at which a point on either side is tested, where no other carrier is
+        near.
     """
     known = CutCurveIndex.from_cut_carriers(carriers)
     every = [
@@ -503,8 +527,11 @@ def find_border_pieces(
 def find_inside_sides(
     places: Sequence[tuple[CutCurve, float, float]], inside: Inside
 ) -> list[tuple[bool, bool]]:
-    """Return, for each (carrier, position, distance in mm),
-    whether the points to the left and to the right are inside.
+    """Return for each place whether a point to the left of a carrier, and one to the right, belong to a
+    region.
+
+    A place is (carrier, position, distance of both points from the carrier in mm). Left is as seen in the
+    direction of growing positions.
     """
     points: list[Point] = []
     for carrier, position, beside in places:
@@ -517,10 +544,11 @@ def find_inside_sides(
 def find_clearest_positions(
     pieces: Mapping[int, BorderPiece], carriers: CutCurveIndex, beside: float
 ) -> dict[int, tuple[float, float]]:
-    """Return, by a piece's number, the position on it with enough
-    clearance, else with the most, and that clearance in mm.
+    """Return for each piece, by its number, (1) a position clear of other carriers and (2) the clearance in
+    mm there.
 
-    Only carriers within twice ``beside`` mm count.
+    It is the first of some positions with enough clearance, or else the one with the most. Carriers farther
+    than twice ``beside`` mm are not considered.
     """
     found: dict[int, tuple[float, float]] = {}
     enough = {number: 2 * choose_side_distance(piece, beside) for number, piece in pieces.items()}
@@ -544,13 +572,18 @@ def find_clearest_positions(
 
 
 def choose_side_distance(piece: BorderPiece, beside: float) -> float:
-    """Return the distance in mm from a piece of the points to test on both sides, where nothing is near."""
+    """Return how far from a piece, in mm, the points to its left and right are tested where no other carrier
+    is near.
+
+    It is ``beside``, or less for a short piece.
+    """
     return min(beside, BESIDE_SHARE * piece.length)
 
 
 def group_twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
-    """Return groups of the numbers of pieces with the same two
-    ends but different carriers; single pieces are left out.
+    """Return groups of pieces that have the same two ends but different carriers, as lists of their numbers.
+
+    A piece without such a twin is left out.
     """
     groups: list[list[int]] = []
     for number, piece in pieces.items():
@@ -571,9 +604,9 @@ def group_twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
 def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> list[list[BorderPiece]]:
     """Return the pieces of a border joined to closed loops, each with the region on its left.
 
-    Where several pieces leave a point, the one that turns farthest to the left is taken, so that two corners
-    of a region that touch stay in separate loops. Loops are not begun with pieces shorter than ``reach``, so
-    these may be left out.
+    Where several pieces start at one point, the loop follows the piece that turns farthest to the left; so
+    two corners of a region that touch stay in separate loops. No loop starts with a piece shorter than
+    ``reach``, so such pieces may be left out.
 
     Parameters
     ----------
@@ -582,7 +615,7 @@ def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> li
     Raises
     ------
     InputError
-        When a loop does not close, so that some of the border is missing.
+        Where a loop does not close, so that some of the border is missing.
     """
     left = set(range(len(pieces)))
     starts = np.array([piece.start for piece in pieces]).reshape(-1, 2)
@@ -615,5 +648,7 @@ def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> li
 
 
 def measure_left_turn(before: float, after: float) -> float:
-    """Return the turn from one direction to another in radians, in (-pi, pi], positive to the left."""
+    """Return the angle in radians, in (-pi, pi], from the direction ``before`` to the direction ``after``,
+    positive to the left.
+    """
     return -((before - after + pi) % tau - pi)

@@ -48,7 +48,7 @@ ALONG = (0.7548776662, 0.5698402910)
 
 @define(frozen=True, eq=False)
 class Rotation:
-    """A rotation of an outline onto itself.
+    """A rotation that carries an outline onto itself.
 
     Parameters
     ----------
@@ -61,8 +61,9 @@ class Rotation:
 
 
 def find_centroid_of_joints(segments: Sequence[Segment]) -> Point:
-    """Return the mean of the segments' middles, weighted by
-    length, in mm; every rotation onto itself keeps this point.
+    """Return the mean of the segments' middles, weighted by their lengths, in mm.
+
+    Every rotation of the outline onto itself leaves this point in place.
     """
     total = sum(s.length for s in segments)
     middles = [find_middle(s) for s in segments]
@@ -72,19 +73,20 @@ def find_centroid_of_joints(segments: Sequence[Segment]) -> Point:
 
 
 def find_middle(segment: Segment) -> Point:
-    """Return the middle of a segment, or the centre of a whole circle: a point that moves along with it."""
+    """Return the middle of a segment, or the centre of a whole circle."""
     return segment.center if isinstance(segment, Arc) and segment.is_full else segment.compute_point(0.0)
 
 
 @define(frozen=True, eq=False)
 class CenteredOutline:
-    """N segments relative to a point that every rotation of the outline onto itself keeps.
+    """The N segments of an outline, relative to a point that rotations of the outline onto itself leave in
+    place.
 
     Parameters
     ----------
-    points : (N, 4, 2) anchor, start, end and centre, in mm. The anchor is the middle; for a whole circle all
-        four are the centre, for a line the centre is the middle.
-    kinds : (N, 3) signed radius (0 for a line), 1 for a whole circle, and the mark.
+    points : (N, 4, 2) for each segment four points in mm: anchor, start, end and centre. The anchor is the
+        middle. For a whole circle all four are its centre; for a line the centre is the middle.
+    kinds : (N, 3) signed radius (0 for a line), 1 for a whole circle, and the segment's mark.
     """
 
     points: Array
@@ -92,8 +94,10 @@ class CenteredOutline:
 
     @classmethod
     def from_segments(cls, segments: Sequence[Segment], marks: Sequence[int] = ()) -> CenteredOutline:
-        """Return the outline of segments; with marks, one for each,
-        segments of different marks are no images of each other.
+        """Return the outline of segments, relative to their centroid.
+
+        ``marks`` has a number for each segment: no segment is the image of a segment with another mark. Empty
+        for no marks.
         """
         points, kinds = [], []
         for s, mark in zip(segments, marks or [0] * len(segments), strict=True):
@@ -109,8 +113,8 @@ class CenteredOutline:
 
     @cached_property
     def levels(self) -> tuple[Array, NDArray[np.int64]]:
-        """Anchors' coordinates (N,) along one direction in
-        ascending order, and the indices (N,) of their segments.
+        """The anchors sorted along one direction: (1) their coordinates (N,) ascending, (2) the indices (N,)
+        of their segments.
         """
         level = self.points[:, 0] @ ALONG
         order = np.argsort(level, kind="stable")
@@ -118,21 +122,25 @@ class CenteredOutline:
 
     @property
     def first(self) -> int | None:
-        """Index of the first segment whose anchor is not at the kept point; None where all are."""
+        """The index of the first segment whose anchor is not at the centroid; None where all are."""
         off_center = np.flatnonzero(np.hypot(*self.points[:, 0].T) > SAME_AFTER_TURN)
         return int(off_center[0]) if len(off_center) else None
 
     def list_candidate_angles(self, other: CenteredOutline) -> Array:
-        """Return the angles (M,) in [0, 2 pi) that carry the anchor
-        of the first segment in direction of anchors of ``other``.
+        """Return the rotations that could carry this outline onto ``other``, as angles (M,) in [0, 2 pi).
+
+        They are the rotations that turn the anchor of segment ``first`` into the direction of an anchor of
+        ``other``.
         """
         assert self.first is not None
         x, y = other.points[np.hypot(*other.points[:, 0].T) > SAME_AFTER_TURN, 0].T
         return np.asarray((np.arctan2(y, x) - np.arctan2(*self.points[self.first, 0, ::-1])) % tau)
 
     def find_image(self, other: CenteredOutline, angle: float) -> NDArray[np.int64] | None:
-        """Return the index (N,) of the segment of ``other`` that
-        a rotation carries each to; None if any has no image.
+        """Return for each segment the index (N,) of the segment of ``other`` onto which a rotation carries
+        it.
+
+        ``angle`` is in radians. None where some segment has no image.
         """
         assert self.first is not None
         # One segment rules most angles out.
@@ -141,8 +149,10 @@ class CenteredOutline:
         return None if (found < 0).any() else found
 
     def find_images_of(self, other: CenteredOutline, angle: float, chosen: slice) -> NDArray[np.int64]:
-        """Return the index (M,) of the segment of ``other`` that a
-        rotation carries each chosen segment to; -1 without an image.
+        """Return for each of M chosen segments the index (M,) of the segment of ``other`` onto which a
+        rotation carries it.
+
+        ``angle`` is in radians. -1 where there is none.
         """
         points, kinds = self.points[chosen], self.kinds[chosen]
         turned = np.stack(rotate_vectors(points[..., 0], points[..., 1], angle), axis=-1)
@@ -190,11 +200,11 @@ def find_rotations_onto_itself(segments: Sequence[Segment], marks: Sequence[int]
 
 
 def find_symmetries(segments: Sequence[Segment], marks: Sequence[int] = ()) -> list[NDArray[np.int64]]:
-    """Return the images, index arrays (N,), of segments under
-    every rotation and mirror image of an outline onto itself.
+    """Return all rotations and mirror images of an outline onto itself, each as an index array (N,).
 
-    The identity comes first, then rotations, then mirror images. Concentric circles alone have only the
-    identity here. Marks are those of :func:`find_rotations_onto_itself`.
+    Entry k is the index of the segment onto which segment k is carried. The identity comes first, then the
+    other rotations, then mirror images. For an outline of concentric circles alone, only the identity is
+    returned. See :func:`find_rotations_onto_itself` for ``marks``.
     """
     images = [rotation.image for rotation in find_rotations_onto_itself(segments, marks)]
     outline = CenteredOutline.from_segments(segments, marks)
@@ -203,7 +213,7 @@ def find_symmetries(segments: Sequence[Segment], marks: Sequence[int] = ()) -> l
 
 
 def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
-    """Return whether an outline has a mirror symmetry, about any axis."""
+    """Return whether an outline is symmetric about some axis."""
     outline = CenteredOutline.from_segments(segments)
     return outline.first is None or match_mirror_image(outline, segments) is not None
 
@@ -211,8 +221,9 @@ def is_own_mirror_image(segments: Sequence[Segment]) -> bool:
 def match_mirror_image(
     outline: CenteredOutline, segments: Sequence[Segment], marks: Sequence[int] = ()
 ) -> NDArray[np.int64] | None:
-    """Return the index (N,) of each segment's image under
-    one mirror symmetry of an outline; None without one.
+    """Return one mirror image of an outline onto itself; None where there is none.
+
+    It is given as the index (N,) of the segment onto which each segment is carried.
     """
     mirrored = CenteredOutline.from_segments([mirror_image(segment) for segment in segments], marks)
     found = (
@@ -222,7 +233,9 @@ def match_mirror_image(
 
 
 def mirror_image(segment: Segment) -> Segment:
-    """Return a segment reflected in the x axis and run the other way, so that the material is on its left."""
+    """Return a segment reflected in the x axis, with its direction reversed, so that the material stays on
+    its left.
+    """
 
     def over(point: Point) -> Point:
         return point[0], -point[1]

@@ -27,7 +27,9 @@ Triangle = tuple[int, int, int]
 
 
 def triangulate(loops: Sequence[Sequence[Point]]) -> list[Triangle]:
-    """Return triangles, counter-clockwise, as indices of vertices counted through all loops.
+    """Return counter-clockwise triangles that fill a polygon with holes, as triples of vertex indices.
+
+    Vertices are numbered through all loops.
 
     Parameters
     ----------
@@ -56,21 +58,24 @@ def triangulate(loops: Sequence[Sequence[Point]]) -> list[Triangle]:
 
 
 def compute_turn(p: Point, q: Point, r: Point) -> float:
-    """Return twice the signed area of a triangle, positive when it is counter-clockwise."""
+    """Return twice the signed area of the triangle p, q, r: positive where it turns counter-clockwise."""
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 
 
 @define
 class SweepLine:
-    """A horizontal line that moves down over a polygon and finds diagonals that cut it into monotone pieces.
+    """A horizontal line that moves down over a polygon and finds diagonals that cut it into pieces monotone
+    in y.
 
     Parameters
     ----------
     points : the vertices.
-    after, before : index of each vertex's next and previous neighbour.
-    sides : downward sides that the line crosses, from left to right, each as the index of its upper vertex.
-    helpers : index of the helper vertex of each side.
-    merges : indices of merge vertices above the line.
+    after, before : for each vertex the index of the next and of the previous vertex on its loop.
+    sides : sides run downward that the line crosses, from left to right; a side is given by the index of its
+        upper vertex.
+    helpers : for each of ``sides`` the lowest vertex above the line that sees the side along a horizontal.
+    merges : indices of vertices passed whose interior angle is above a half turn, with both neighbours above
+        them.
     diagonals : for a vertex, the other ends of its diagonals.
     """
 
@@ -83,7 +88,7 @@ class SweepLine:
     diagonals: dict[int, list[int]] = field(factory=dict)
 
     def run(self) -> None:
-        """Move the line over all vertices from the top, and collect the diagonals."""
+        """Move the line over all vertices from top to bottom, and collect the diagonals in ``diagonals``."""
         points = self.points
         order = sorted(range(len(points)), key=lambda k: (-points[k][1], points[k][0], k))
         place = {vertex: k for k, vertex in enumerate(order)}
@@ -104,25 +109,32 @@ class SweepLine:
                 self.begin_side(v)
 
     def begin_side(self, v: int) -> None:
-        """Insert the downward side that begins at a vertex, with that as its helper."""
+        """Insert the side that runs down from vertex v into ``sides``; its helper is v."""
         self.sides.insert(self.count_left_of(v), v)
         self.helpers[v] = v
 
     def end_side(self, side: int, v: int) -> None:
-        """Remove a side that ends at vertex ``v``; join that to the helper if this is a merge vertex."""
+        """Remove from ``sides`` a side that ends at vertex v.
+
+        Where the side's helper is a merge vertex, add a diagonal from v to the helper.
+        """
         if self.helpers[side] in self.merges:
             self.add_diagonal(v, self.helpers[side])
         self.sides.remove(side)
 
     def help_left(self, v: int, is_split: bool) -> None:
-        """Make a vertex the helper of the side to its left; join it to the old helper if needed."""
+        """Make vertex v the helper of the side to its left.
+
+        Where v is a split vertex or the old helper is a merge vertex, add a diagonal from v to the old
+        helper.
+        """
         side = self.sides[self.count_left_of(v) - 1]
         if is_split or self.helpers[side] in self.merges:
             self.add_diagonal(v, self.helpers[side])
         self.helpers[side] = v
 
     def count_left_of(self, v: int) -> int:
-        """Return how many crossed sides are to the left of a vertex."""
+        """Return how many of ``sides`` are to the left of vertex v."""
         points, after = self.points, self.after
         return bisect_right(
             self.sides, 0, key=lambda side: compute_turn(points[side], points[after[side]], points[v]) <= 0
@@ -134,7 +146,9 @@ class SweepLine:
         self.diagonals.setdefault(other, []).append(v)
 
     def collect_pieces(self) -> list[list[int]]:
-        """Return the monotone pieces, each as indices of vertices in running order."""
+        """Return the pieces into which the diagonals cut the polygon, each as vertex indices with the piece
+        on the left.
+        """
         ways = {(v, after) for v, after in enumerate(self.after)}
         ways |= {(v, other) for v, others in self.diagonals.items() for other in others}
         out: list[list[int]] = []
@@ -150,7 +164,9 @@ class SweepLine:
         return out
 
     def find_next_vertex(self, u: int, v: int) -> int:
-        """Return the vertex that follows v, reached from u, on the border of the piece to the left."""
+        """Return the vertex after v on the border of the piece that lies to the left of the way from u to
+        v.
+        """
         others = self.diagonals.get(v)
         if not others:
             return self.after[v]
@@ -158,16 +174,19 @@ class SweepLine:
         back = atan2(points[u][1] - y, points[u][0] - x)
 
         def clockwise(w: int) -> float:
-            """Return the clockwise angle from the way back to a neighbour, in (0, 2 pi]."""
+            """Return the clockwise angle in radians, in (0, 2 pi], from the direction v to u to the direction
+            v to w.
+            """
             return (back - atan2(points[w][1] - y, points[w][0] - x)) % tau or tau
 
         return min((w for w in (self.after[v], *others) if w != u), key=clockwise)
 
 
 def triangulate_monotone_piece(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:
-    """Return triangles, counter-clockwise, of a polygon that every horizontal line meets in one span.
+    """Return counter-clockwise triangles that fill a polygon monotone in y, as triples of vertex indices.
 
-    ``piece`` are the indices of its vertices, counter-clockwise.
+    Each horizontal line meets such a polygon in one stretch. ``piece`` are the indices of its vertices,
+    counter-clockwise.
     """
     count = len(piece)
     order = sorted(range(count), key=lambda k: (-points[piece[k]][1], points[piece[k]][0], piece[k]))
@@ -178,7 +197,11 @@ def triangulate_monotone_piece(piece: Sequence[int], points: Sequence[Point]) ->
     out: list[Triangle] = []
 
     def add(a: int, b: int, c: int, left: bool) -> None:
-        """Add a triangle, oriented by the border that its first two vertices are on."""
+        """Add the triangle of the vertices at positions a, b, c of ``piece``.
+
+        ``left`` says whether a and b are on the left border, which decides the order that is
+        counter-clockwise.
+        """
         ends = (piece[a], piece[b], piece[c])
         out.append(ends if left else (ends[0], ends[2], ends[1]))
 

@@ -22,8 +22,9 @@ BoolArray = NDArray[np.bool_]
 
 
 def are_touching_all(table: FixtureTable, query: Query) -> BoolArray:
-    """Return which fixtures (N,) touch each face that the query
-    requires; a corner on a wall touches both of its faces.
+    """Return a mask (N,): True for fixtures that touch every face that the query requires.
+
+    A corner that lies on a wall touches both faces that meet there.
     """
     part, toolkit = query.workpiece, query.toolkit
     wanted, good = find_faces_named(query.restrictions.touch, part), np.ones(len(table), np.bool_)
@@ -39,20 +40,20 @@ def are_touching_all(table: FixtureTable, query: Query) -> BoolArray:
 
 
 def find_faces_named(numbers: tuple[int, ...], workpiece: Workpiece) -> set[int]:
-    """Return the numbers of the faces that have any of the numbered segments."""
+    """Return the numbers of the faces that contain any segment with one of the given numbers."""
     return {face.number for face in workpiece.numbered.faces if not set(face.segments).isdisjoint(numbers)}
 
 
 def are_precise(table: FixtureTable, query: Query) -> BoolArray:
-    """Return which fixtures (N,) of a measured table have
-    a location error no larger than the query allows.
-    """
+    """Return a mask (N,): True for fixtures of a measured table whose location error the query allows."""
     most = query.max_location_error
     return np.ones(len(table), np.bool_) if most is None else table.quality[:, LOCATION_ERROR] <= most
 
 
 def are_as_asked(table: FixtureTable, query: Query) -> BoolArray:
-    """Return which fixtures (N,) of a measured table touch
-    the required faces and keep the largest location error.
+    """Return a mask (N,): True for fixtures that touch the required
+    faces and whose location error is allowed.
+
+    The table must be measured.
     """
     return are_touching_all(table, query) & are_precise(table, query)

@@ -2,17 +2,18 @@
 
 Contacts of three locators and one clamp determine the locators' reactions to the clamp's force. So of any two
 clamps at one seat it is known approximately whether they close, how far their forces may differ, and how much
-the strongest peg carries. ``listing.order_seats`` uses this where a figure of the clamps is ranked by.
+the strongest peg carries. ``listing.seat_order`` uses this where the ranking has a figure of the clamps.
 
 Errors of the forces. The place of a clamp's contact is uncertain by what its record says. An error of place e
 turns a normal by e over the radius of its arc, and changes a moment by e / L. The error of the reactions is
-that times the inverse of the locators' wrenches, divided by the clamp's push, since the clamp moves along its
-line. All is to first order, and generous; where it is not small, the forces count as unknown.
+the error of normals and moments times the inverse of the locators' wrenches, divided by the clamp's push,
+since the clamp moves along its line. All bounds are to first order, and generous; where a bound is not small,
+the forces count as unknown.
 
 A tilt costs points, and the location error has a lower bound. Pegs are off by p and faces by f, so a contact
-is off by t = p + f along its normal. Along the tangent it is off by p or more as well, and by t where no two
-pegs touch one arc. So the location error is at least sqrt(t^2 + p^2), or t sqrt 2 (theorem "tilted fixtures"
-of docs/method-theorems.md).
+is off by t = p + f along its normal. Along the tangent the contact is off by at least p, and by at least t
+where no two pegs touch the same arc. So the location error is at least sqrt(t^2 + p^2), or t sqrt 2 (theorem
+"tilted fixtures" of docs/method-theorems.md).
 """
 
 from __future__ import annotations
@@ -82,7 +83,9 @@ MANY = 1 << 20
 
 def find_first_clamp_figure(query: Query) -> int | None:
     """Return the index in the query's ranking of the first figure
-    that pairs of clamps bound (:data:`BOUNDED`); None without one.
+    that pairs of clamps bound; None without one.
+
+    The figures that pairs of clamps bound are the keys of :data:`BOUNDED`.
     """
     keys = {FIGURES[number].key for number in BOUNDED}
     return next((place for place, key in enumerate(query.rank_by) if key in keys), None)
@@ -95,14 +98,15 @@ def bound_pairs(
     problems: Sequence[Problem],
     query: Query,
 ) -> Array:
-    """Return bounds (S, 3) of figures over all pairs of
-    clamps at each of S seats, see ``kernels.contact.seats``.
+    """Return bounds of figures over all pairs of clamps at each of S seats, (S, 3).
+
+    Columns: see ``kernels.contact.seats``.
 
     Parameters
     ----------
     order : (M,) indices of contacts, seat by seat, counted through the records of all directions.
     starts : (S,) index in ``order`` at which each seat begins.
-    records, problems : one of each for each direction of the clamp.
+    records, problems : contacts and problem of each direction of the clamp.
     """
     forces, directions = np.empty((len(order), FORCE_LENGTH)), np.empty(len(order), np.int64)
     seat = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
@@ -125,11 +129,11 @@ def bound_pairs(
 
 
 def compute_clamp_forces(records: Array, c: CandidateFixtures, problem: Problem) -> Array:
-    """Return the forces (N, 5) of contacts of three locators and a clamp, see ``kernels.contact.seats``.
+    """Return the forces of N contacts of three locators and a clamp, (N, 5); see ``kernels.contact.seats``.
 
     Columns: the locators' forces in the order of their holes on the plate, the force at the clamp's face, and
-    an error bound. The bound is inf where forces are not known, and -1 for a clamp that surely holds the part
-    alone.
+    an error bound. The bound is inf where the forces are not known, and -1 for a clamp that surely holds the
+    part alone. ``records`` (N, 19) and ``c`` describe the same contacts.
     """
     column, row = problem.frame.map_step_to_toolkit(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
     places = np.argsort(column * MANY + row, axis=1)
@@ -157,11 +161,11 @@ BESIDE = 1e-3
 
 
 def list_preferred_angles(query: Query) -> list[tuple[float, float]]:
-    """Return the four ranges (low, high) in degrees of the
-    part's angle that the ranking prefers, a quarter turn apart.
+    """Return the four ranges (low, high) in degrees of the part's angle that the ranking prefers.
 
-    In the usual ranking they are at multiples of 90 degrees, else where the part's main direction is square.
-    They are as narrow as ``SQUARE_TILT``.
+    They are a quarter turn apart, about as narrow as ``SQUARE_TILT`` on each side of their middles. In the
+    usual ranking the middles are the multiples of 90 degrees; in any other, the angles at which the part's
+    main direction is square to the toolkit.
     """
     direction = 0.0 if query.has_house_order else find_main_direction(query.workpiece)
     beside = SQUARE_TILT + BESIDE
@@ -170,14 +174,14 @@ def list_preferred_angles(query: Query) -> list[tuple[float, float]]:
 
 
 def bound_keys_when_tilted(query: Query, problem: Problem) -> OrderKeys | None:
-    """Return lower bounds, one row, of the ranking keys of fixtures at other than the preferred angles.
+    """Return lower bounds of the ranking keys of all fixtures at other than the preferred angles, one row.
 
-    None where the angle makes no difference, or there is no bound: for flat jaws or fences, and parts with
-    several outlines.
+    None where the angle makes no difference, and where no bound is known: for flat jaws or fences, and for
+    parts with several outlines.
 
     Parameters
     ----------
-    problem : of the query, or of one direction of its clamps.
+    problem : problem of the query, or of one direction of its clamps.
     """
     toolkit, part = query.toolkit, query.workpiece
     if toolkit.has_flats or part.outlines:
@@ -191,9 +195,9 @@ def bound_keys_when_tilted(query: Query, problem: Problem) -> OrderKeys | None:
 
 
 def list_shared_arcs(query: Query) -> list[int]:
-    """Return the numbers of the arcs that two locating pegs may touch, ascending.
+    """Return the numbers of the arcs that two locating pegs may touch at the same time, ascending.
 
-    Pegs are at least a pitch or the gap apart, so the arc must have such a chord.
+    Two pegs are at least a pitch or the smallest gap apart, so a chord of the offset arc must be as long.
     """
     carriers, gap = query.toolkit.carriers, query.toolkit.gap
     least = min((*(min(one.pitch) for one in carriers if one.has_lattice), *(() if gap is None else (gap,))))
@@ -210,9 +214,9 @@ def list_shared_arcs(query: Query) -> list[int]:
 
 
 def bound_keys_of_tilt(query: Query, problem: Problem, tilt: float) -> OrderKeys:
-    """Return lower bounds, one row, of the ranking keys of fixtures tilted by ``tilt`` degrees or more.
+    """Return lower bounds of the ranking keys of all fixtures tilted by ``tilt`` degrees or more, one row.
 
-    The fixtures are at other than the preferred angles.
+    The fixtures must be at other than the preferred angles.
     """
     part, tolerance = query.workpiece, query.tolerance
     sizes, off = measure_faces(part), tolerance.peg + tolerance.face

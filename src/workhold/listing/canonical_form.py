@@ -1,4 +1,5 @@
-"""Candidates for fixtures: arrays of them in canonical form, each once, before they become a table."""
+"""Candidates for fixtures, as arrays: brought to canonical form and listed once, before they become a
+table."""
 
 from __future__ import annotations
 
@@ -54,13 +55,13 @@ class RowArrays:
         return len(getattr(self, fields(type(self))[0].name))
 
     def take(self, order: NDArray[np.int64] | NDArray[np.bool_]) -> Self:
-        """Return the rows that an index array or a mask selects."""
+        """Return the rows that an index array or a mask selects, as a new object."""
         indices = np.flatnonzero(order) if order.dtype == np.bool_ else order
         return type(self)(*(getattr(self, one.name).take(indices, axis=0) for one in fields(type(self))))
 
     @classmethod
     def concatenate(cls, parts: Sequence[Self]) -> Self:
-        """Return the rows of several objects, at least one, in order."""
+        """Return the rows of several objects in order, as one object; there must be at least one."""
         return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
 
@@ -70,13 +71,14 @@ class CandidateFixtures(RowArrays):
 
     Parameters
     ----------
-    standing : (N,) how many of the four pegs are on the carrier that stands still.
+    standing : (N,) number of pegs, the first ones, on the carrier that stands still.
     feature : index of the feature that each peg touches.
     column, row : each peg's hole; columns count on each carrier by itself, rows on both carriers together.
     theta : (N,) orientation of the workpiece in radians.
     point : (N, 4, 2) centres of pegs in the part's frame, relative to the centre of the part, in mm.
     gap : (N,) x distance in mm from the rightmost standing to the leftmost moving peg.
-    null, force : null vector, and forces per unit of the clamping force.
+    null : null vector of the pegs' wrenches.
+    force : forces of the pegs, divided by the clamping force.
     """
 
     standing: IntArray
@@ -91,7 +93,10 @@ class CandidateFixtures(RowArrays):
 
 
 def make_candidates(records: Array, problem: Problem) -> CandidateFixtures:
-    """Return the candidates that kernel records (N, 19) describe, row by row."""
+    """Return the candidates that kernel records (N, 19) describe, in the same order.
+
+    Columns of a record: see ``kernels.contact.record``.
+    """
     count = len(records)
     feature, column, row = read_peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
@@ -102,9 +107,10 @@ def make_candidates(records: Array, problem: Problem) -> CandidateFixtures:
 
 
 def make_canonical(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
-    """Return the candidates each in its canonical form, row by row; see ``kernels.proof.canonical_form``.
+    """Return each candidate in its canonical form, in the same order; see ``kernels.proof.canonical_form``.
 
-    ``swapped`` is the number of pegs on each carrier with which a half turn exchanges the carriers.
+    ``swapped`` is the number of pegs on each carrier at which a half turn exchanges the two carriers; 0 if
+    none does.
     """
     theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
     order = np.empty((len(c.standing), 4), np.int64)
@@ -116,10 +122,10 @@ def make_canonical(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
 
 
 def assign_contacts_to_faces(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
-    """Return every way to assign the contacts of records (N, 19) near joints to the features that meet there.
+    """Return records with every way to assign contacts near joints to the features that meet there.
 
-    Only the first ``pegs`` contacts of a record vary. Returned are indices (M,) into the records, ascending,
-    and records (M, 19), the originals included.
+    The result is (1) for each new record the index (M,) of the record it comes from, ascending, and (2) the
+    records (M, 19), the original ones included. Only the first ``pegs`` contacts of a record are varied.
     """
     ends = find_row_ends(problem.rows)
     # Features shorter than this have neighbours that do not begin where they end.
@@ -138,11 +144,11 @@ def assign_contacts_to_faces(records: Array, problem: Problem, pegs: int) -> tup
 
 
 def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.bool_]:
-    """Return whether (N,) all contacts that lie at a joint are on the feature with the lowest index there.
+    """Return a mask (N,): True where every contact at a joint is on the feature with the lowest index there.
 
-    ``feature`` is (N, P), ``point`` (N, P, 2) in mm from the part's centre. Up to a limit of the location
-    error a contact may be found on another feature alone; the same contact on the lowest feature is then
-    beyond the limit.
+    ``feature`` (N, P) and ``point`` (N, P, 2), in mm from the part's centre, describe P contacts each. With a
+    limit of the location error, a contact may be found on another feature alone; the same contact on the
+    lowest feature then has an error beyond the limit.
     """
     one, other = find_joints(problem, JOINT)
     is_lowest = np.ones((len(problem.rows), 2), np.bool_)
@@ -152,11 +158,10 @@ def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.
 
 
 def find_joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
-    """Return pairs (J,), (J,) of ends of features that meet
-    within ``within`` mm and can be touched by the same pegs.
+    """Return two arrays (J,) of ends of features that meet each other within ``within`` mm.
 
-    Feature f has the ends 2 f and 2 f + 1. Each pair comes in both orders as ``find_meeting_ends`` gives
-    them.
+    Entry j of the one meets entry j of the other; each pair comes in both orders. Only ends that the same
+    pegs can touch are paired. Feature f has the ends 2·f and 2·f + 1.
     """
     one, other = find_meeting_ends(find_row_ends(problem.rows).reshape(-1, 2), within)
     begin, last = problem.moving
@@ -165,12 +170,12 @@ def find_joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
 
 
 def pack_integers(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
-    """Return int64 words (N,) that sort lexicographically
-    as the given columns do, as few as have room for them.
+    """Return as few int64 arrays (N,) as possible that sort lexicographically as the given columns do.
 
     Parameters
     ----------
-    columns : pairs of integers (N, K) from 0 up, and the largest value possible among them.
+    columns : pairs of (1) an array (N, K) of integers from 0 up, and (2) the largest value that they may
+        have.
     """
     words: list[IntArray] = []
     free = 0
@@ -186,8 +191,8 @@ def pack_integers(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArr
 
 
 def bound_holes(problem: Problem) -> tuple[int, int]:
-    """Return the largest column and row that a candidate
-    in canonical form can have, from the width of the part.
+    """Return upper bounds (column, row) of the holes of candidates in
+    canonical form, from the width of the part.
     """
     lattice = problem.frame.lattice
     reach = problem.diameter + abs(lattice.row_offset)
@@ -195,17 +200,19 @@ def bound_holes(problem: Problem) -> tuple[int, int]:
 
 
 def pack_holes(c: CandidateFixtures, most: tuple[int, int] | None = None) -> list[IntArray]:
-    """Return packed words (N,) of the candidates' arrangements and holes.
+    """Return packed integers, each (N,), that are equal for candidates of equal arrangement and holes.
 
-    ``most`` are the largest column and row; give them if words of several calls are compared. None for those
-    of these candidates.
+    ``most`` is (largest column, largest row); give it if the integers of several calls are compared. None
+    takes the largest ones of these candidates.
     """
     column, row = (c.column.max(initial=0), c.row.max(initial=0)) if most is None else most
     return pack_integers((c.standing[:, None], MOST_PEGS), (c.column, column), (c.row, row))
 
 
 def mark_changes(words: list[IntArray]) -> NDArray[np.bool_]:
-    """Return which rows (N,) differ from the row before in any word; the first row does."""
+    """Return a mask (N,): True for rows that differ from the row before
+    in any of the arrays; True for the first row.
+    """
     fresh = np.zeros(len(words[0]), np.bool_)
     fresh[:1] = True
     for word in words:
@@ -216,14 +223,14 @@ def mark_changes(words: list[IntArray]) -> NDArray[np.bool_]:
 def split_into_clusters(
     order: IntArray, fresh: NDArray[np.bool_], *values: tuple[Array, float]
 ) -> tuple[IntArray, NDArray[np.bool_]]:
-    """Return an order (N,) and a mask of group starts (N,), with groups split at leaps of values.
+    """Return (1) an order (N,) and (2) a mask (N,) of group starts, with each group split where values leap.
 
     Parameters
     ----------
-    order : (N,) indices, group by group.
-    fresh : (N,) where in the order a group begins.
-    values : pairs of numbers (N,) and a leap; in turn, each group is sorted by the numbers and split where
-        neighbours differ by more than the leap.
+    order : (N,) indices of items, group by group.
+    fresh : (N,) mask of the positions in ``order`` at which a group begins.
+    values : pairs of (1) a number (N,) for each item and (2) a leap. With each pair in turn, every group is
+        sorted by the numbers, and split where neighbours differ by more than the leap.
     """
     for numbers, leap in values:
         group = np.cumsum(fresh)
@@ -235,9 +242,11 @@ def split_into_clusters(
 
 
 def order_by_same_holes(c: CandidateFixtures) -> tuple[IntArray, IntArray]:
-    """Return an order (N,) by type, holes and orientation, and in that order the group number (N,) from 1.
+    """Return (1) the order (N,) of candidates by type, holes and
+    orientation; (2) in that order the group numbers (N,).
 
-    A group has the same type and holes, and orientations within ``SAME_POSE`` of the neighbour.
+    Groups are numbered from 1. Members have the same type and holes, and each an orientation within
+    ``SAME_POSE`` of its neighbour's.
     """
     words = pack_holes(c)
     order = sort_keys(make_keys(*words, c.theta))
@@ -249,8 +258,8 @@ def order_by_same_holes(c: CandidateFixtures) -> tuple[IntArray, IntArray]:
 def list_each_once(c: CandidateFixtures) -> CandidateFixtures:
     """Return the candidates without repetitions, sorted by type, holes, orientation, faces and place.
 
-    A contact at a tangent joint is found on both faces that meet there; the lower feature is kept. Candidates
-    with the same holes and orientation may differ in where the part lies; they are all kept.
+    A contact at a tangent joint is found on both features that meet there; the one on the lower feature is
+    kept. Candidates with the same holes and orientation, but with different places of the part, are all kept.
     """
     if len(c.standing) == 0:
         return c
@@ -267,20 +276,20 @@ def list_each_once(c: CandidateFixtures) -> CandidateFixtures:
 
 
 def number_places(point: Array, gap: Array) -> Array:
-    """Return one number (N,) in mm that distinguishes places of the part at equal holes and orientation.
+    """Return one number in mm that tells places of the part apart at equal holes and orientation, (N,).
 
-    It mixes the centre of a peg (N, 2) in the part's frame and the gap (N,), in mm, with fixed irrational
-    factors.
+    It mixes the centre of a peg in the part's frame, ``point`` (N, 2), and ``gap`` (N,), both in mm, with
+    fixed irrational factors.
     """
     return np.asarray(point @ np.array([1.0, 0.7548776662]) + 0.5698402910 * gap)
 
 
 def are_at_different_places(c: CandidateFixtures, first: IntArray, group: IntArray) -> IntArray:
-    """Return positions in ``first`` of one candidate for
-    each place, in the order of group, place and features.
+    """Return positions in ``first`` of one candidate for each place,
+    in the order of group, features and place.
 
-    ``first`` (K,) are indices of candidates, ``group`` (K,) their group of equal holes and orientation. Of
-    candidates at the same place the one with the lowest features is kept.
+    ``first`` (K,) are indices of candidates; ``group`` (K,) are their groups of equal holes and orientation,
+    ascending. Of several candidates at the same place the one with the lowest features is kept.
     """
     place = number_places(c.point[first, 0], c.gap[first])
     order = np.lexsort([place, group])

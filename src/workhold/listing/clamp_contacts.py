@@ -42,25 +42,26 @@ BESIDE = 1e-8
 
 @define(frozen=True, eq=False)
 class ClampContacts:
-    """M contacts of L locators and one clamp. Columns and rows
-    count from the locators' lowest; rows from a wall, if any.
+    """M contacts of L locators and one clamp.
+
+    Columns and rows count from the locators' lowest ones; beside a wall, rows count from the wall.
 
     Parameters
     ----------
     direction : (M,) number of the clamp's direction in ``DIRECTION_NAMES``.
-    feature, column, row : (M, L) of the locators, sorted by column, then row.
-    face : (M, 3) numbers of the faces that locators and wall touch, those on a wall last.
+    feature, column, row : (M, L) feature touched and hole of each locator; sorted by column, then by row.
+    face : (M, 3) numbers of the faces that locators and wall touch; faces on the wall come last.
     theta : (M,) orientation of the part on the plate in radians.
-    point : (M, 2) a point of the part in its own coordinates, in mm.
+    point : (M, 2) a point of the part in the coordinates of its drawing, in mm.
     start : (M, 2) vector on the plate from that point to the first locator's centre.
     clamp_feature : (M,) index of the feature that the clamp touches.
     line : (M,) row or column along which the clamp moves.
     tip : (M, 2) centre of the tip on the plate in mm; beside a wall x counts from the locator.
-    taken : (M, 3) forces of locators and wall per unit of the force at the clamp's face.
-    push : (M,) share of the clamp's own force per unit of that at its face.
+    taken : (M, 3) forces of locators and wall, divided by the force at the clamp's face.
+    push : (M,) force of the clamp along its line, divided by the force at its face.
     doubt : (M,) error bound of ``taken``.
-    holes : (H, 2) columns and rows in which clamps may be bolted.
-    hole_of : (H,) index of the contact that each of these holes belongs to.
+    holes : (H, 2) column and row of every hole in which one of the clamps may be bolted.
+    hole_of : (H,) index of the contact whose clamp may be bolted there.
     """
 
     direction: IntArray
@@ -93,10 +94,10 @@ class ClampContacts:
 
 
 def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
-    """Return, each once, the contacts with a wall and a
-    locator whose clamp may be one of two and can be bolted.
+    """Return the contacts with a wall and a locator whose clamp may
+    be one of two and can be bolted, each once.
 
-    ``found`` are the proven pairs of one direction.
+    ``found`` are the proven pairs of locator and clamp of one direction.
     """
     found = found.list_each_once()
     found = found.take(is_one_of_two(found.null[:, :3], found.push))
@@ -129,7 +130,7 @@ def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContact
 def make_contacts_of_candidates(c: CandidateFixtures, problem: Problem) -> ClampContacts:
     """Return the contacts of three locators and a clamp whose clamp may be one of two and can be bolted.
 
-    ``c`` are the proven candidates of one direction.
+    ``c`` are the proven candidates of one direction of the clamp.
     """
     frame = problem.frame
     rows = problem.rows[c.feature]
@@ -191,11 +192,10 @@ def make_contacts_of_candidates(c: CandidateFixtures, problem: Problem) -> Clamp
 def sharpen_reactions(
     c: CandidateFixtures, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
 ) -> tuple[Array, Array, Array]:
-    """Return the forces of the locators (N, 3), the clamp's
-    pushes (N,) and error bounds (N,), improved where too rough.
+    """Return (taken, push, doubt) of N contacts, computed in ball arithmetic where doubles are too coarse.
 
-    Those are computed in ball arithmetic. ``push_off`` and ``doubt`` (N,) are error bounds of the given
-    pushes and forces.
+    They are the locators' forces (N, 3), the clamp's pushes (N,) and error bounds of the forces (N,), see
+    :class:`ClampContacts`. ``push_off`` (N,) are error bounds of the given pushes.
     """
     from workhold.proof.exact_contacts import bound_reactions
 
@@ -213,8 +213,9 @@ def sharpen_reactions(
 
 
 def make_candidate_box(c: CandidateFixtures, number: int, problem: Problem) -> CandidateBox:
-    """Return candidate ``number``, three locators and a clamp,
-    as a box about its solution in the frame of the search.
+    """Return candidate ``number``, three locators and a clamp, as a box about its solution.
+
+    The box is in the frame of the search.
     """
     column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
     x, y = (column[LOCATOR_CONTACTS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
@@ -236,8 +237,9 @@ def make_box_beside(
     Parameters
     ----------
     features : indices of the four features, the clamp's last.
-    offsets : x and y in mm of each peg from the first; of the clamp x is 0, its position being unknown.
-    middle : approximate psi in radians, x and y of the first peg in the part's frame, and separation, in mm.
+    offsets : (x, y) in mm of each peg from the first peg; x of the clamp is 0, since its position is unknown.
+    middle : approximate solution: psi in radians; x and y of the first peg in the part's frame, and the
+        separation, in mm.
     """
     from flint import ctx
 
@@ -253,10 +255,11 @@ def make_box_beside(
 
 
 def is_one_of_two(taken: Array, push: Array) -> BoolArray:
-    """Return which clamps (N,) may be one of two: they do not hold the part alone, nor overload a locator.
+    """Return a mask (N,): True for clamps that neither hold the part alone nor overload a locator.
 
-    A locator is overloaded beyond ``MOST_FORCE`` times the clamp's own force. ``taken`` (N, 3) are locators'
-    forces and ``push`` (N,) the clamp's, per unit of the force at the clamp's face.
+    A locator is overloaded beyond ``MOST_FORCE`` times the clamp's own force. ``taken`` (N, 3) are the
+    locators' forces and ``push`` (N,) is the clamp's force along its line, each divided by the force at the
+    clamp's face.
     """
     needs_another = taken.min(axis=1, initial=inf) <= NO_REACTION * (1.0 + np.abs(taken).sum(axis=1))
     return np.asarray(needs_another & (np.abs(taken).max(axis=1, initial=0.0) <= MOST_FORCE * push))
@@ -265,16 +268,17 @@ def is_one_of_two(taken: Array, push: Array) -> BoolArray:
 def bound_rounding_doubts(
     inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem
 ) -> tuple[Array, Array]:
-    """Return error bounds (N,) of the clamp's push, and (N,) of the locators' forces, from rounding.
+    """Return error bounds due to rounding (1) of the clamp's push,
+    (N,), and (2) of the locators' forces, (N,).
 
     The error of a place is that of the contact equations times their inverse; along a clamp's line it is
-    divided by the push. An error turns a normal by itself over the radius, and changes a moment by itself
-    over L. The bounds are to first order, doubled.
+    divided by the push. An error of place e turns a normal by e over the arc's radius, and changes a moment
+    by e / L. The bounds are to first order, doubled.
 
     Parameters
     ----------
-    inverse : (N, 3, 3) inverses of the locators' wrenches.
-    taken, push : as of :func:`is_one_of_two`.
+    inverse : (N, 3, 3) inverses of the matrices of the locators' wrenches.
+    taken, push : see :func:`is_one_of_two`.
     rows : (N, 4, 12) kernel rows of the features touched.
     """
     size = float(np.abs(problem.rows[:, [X, Y, RADIUS]]).max()) + problem.wrench_length

@@ -48,29 +48,31 @@ OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values
 
 
 def find_direction_number(toolkit: Toolkit) -> int:
-    """Return the index in :data:`DIRECTION_NAMES` of the direction of a toolkit with one clamp direction."""
+    """Return the index in :data:`DIRECTION_NAMES` of a toolkit's
+    direction; the toolkit must have a single one.
+    """
     return DIRECTION_NAMES.index(toolkit.arrangements[0].direction or "")
 
 
 def is_upright(direction: IntArray) -> BoolArray:
-    """Return which directions, by their index in :data:`DIRECTION_NAMES`, are along columns (y)."""
+    """Return a mask: True for directions along columns (y), given by
+    their index in :data:`DIRECTION_NAMES`.
+    """
     return np.asarray(direction >= DIRECTION_NAMES.index("-y"))
 
 
 def find_axis(carrier: Carrier) -> int:
-    """Return the axis along which a carrier slides: 0 for x, also if it stands still, 1 for y."""
+    """Return the axis along which a carrier slides: 0 for x, 1 for y; 0 if it stands still."""
     return 0 if carrier.travel is None or carrier.travel.unit[0] != 0.0 else 1
 
 
 def is_bolted(clamp: Carrier) -> bool:
-    """Return whether a clamp is bolted in a hole; one without a longest travel is its tip alone."""
+    """Return whether a clamp is bolted in a hole; a clamp without a longest travel is its tip alone."""
     return clamp.travel is not None and clamp.travel.most is not None
 
 
 def find_last_holes(plate: Carrier) -> tuple[float, float]:
-    """Return the largest differences of columns and of
-    rows between holes of a plate; inf where it has no end.
-    """
+    """Return (last column, last row) of a plate, counted from 0; inf where the plate has no end."""
     columns, rows = (inf if count is None else count - 1.0 for count in (plate.columns, plate.rows))
     return columns, rows
 
@@ -81,15 +83,16 @@ class ClampPlacement:
 
     Parameters
     ----------
-    clamp : the carrier that slides, for its radius and its travel.
-    axis : 0 where it slides along x, 1 along y.
-    back : sign of the direction in which it opens, 1 or -1.
-    tip, locators : (N, 2) and (N, K, 2) centres.
+    clamp : the carrier that slides, with its radius and its travel.
+    axis : 0 where the clamp slides along x, 1 where along y.
+    back : 1 where the clamp opens toward larger coordinates, -1 where toward smaller ones.
+    tip : (N, 2) centres of the clamps' tips.
+    locators : (N, K, 2) centres of the K locators.
     place : (N,) coordinate of the tip along its line, from hole 0.
     pitch : distance of holes along the lines.
     first, last : (N,) the lowest and the highest hole that the plate has on the line.
     fits : (N,) whether the plate has the locators' holes and the clamp's line.
-    seen : (N, 2) centres of tips in the part's frame, relative to its centre.
+    seen : (N, 2) centres of the tips in the part's frame, relative to the part's centre.
     theta : (N,) orientations of the part in radians.
     """
 
@@ -107,9 +110,10 @@ class ClampPlacement:
     theta: Array
 
     def find_nearest_holes(self, problem: Problem) -> tuple[IntArray, BoolArray]:
-        """Return the nearest permitted hole (N,) on each clamp's line, and whether (N,) there is one.
+        """Return (1) the nearest permitted hole on each clamp's line,
+        (N,), and (2) whether there is one, (N,).
 
-        The hole is 0 for a clamp without longest travel, and where there is none.
+        The hole is 0 for a clamp without longest travel, and where none is permitted.
         """
         index, number = self.choose_holes(problem, every=False)
         hole, fits = np.zeros(len(self.tip), np.int64), np.zeros(len(self.tip), np.bool_)
@@ -125,7 +129,8 @@ class ClampPlacement:
 
         Returns
         -------
-        indices (M,) of fixtures, ascending; holes (M,) on their lines, 0 for a clamp without longest travel
+        (indices (M,) of fixtures, ascending; numbers (M,) of holes on their lines, 0 for a clamp without
+        longest travel)
         """
         travel, waiting = self.clamp.travel, np.flatnonzero(self.fits)
         assert travel is not None
@@ -149,10 +154,11 @@ class ClampPlacement:
         return index[order], numbers[order]
 
     def is_clear(self, index: IntArray, stroke: Array, problem: Problem) -> BoolArray:
-        """Return whether (M,) clamps' bodies, from tip to hole,
-        are clear of locators, part, and the program's tools.
+        """Return a mask (M,): True for clamps whose bodies are clear of
+        locators, part, and the program's tools.
 
-        ``index`` (M,) selects fixtures, ``stroke`` (M,) is the distance in mm from tip to hole.
+        The body reaches from the tip to the hole. ``index`` (M,) selects fixtures, ``stroke`` (M,) is the
+        distance in mm from tip to hole.
         """
         radius, behind = self.clamp.peg_radius, np.zeros((len(index), 2))
         behind[:, self.axis] = self.back * stroke

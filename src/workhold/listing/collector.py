@@ -1,8 +1,8 @@
 """Fixtures collected while a search goes on, all or the best: decided, listed once, measured and ranked.
 
 Records of the kernels are decided, brought to canonical form, placed in the toolkit and listed once. If the
-query asks for the best, only as many are kept, and they determine which closure margin further ones must
-reach.
+query asks for the best, only as many are kept, and they determine which closure margin further fixtures
+must reach.
 
 If it asks for all, the fixtures are sorted by holes, so that repetitions are neighbours. Each part of that
 order is listed and measured on some thread, and the parts are sorted by rank. Fixtures of equal rank stay in
@@ -75,8 +75,10 @@ BLOCK = 1 << 14
 def finish(
     records: list[Array], problem: Problem, cancel: Event | None = None
 ) -> tuple[CandidateFixtures, SearchReport]:
-    """Decide records on this thread; return their fixtures in
-    canonical form, each once, and a report on all records.
+    """Decide records on this thread; return (1) their fixtures in
+    canonical form, each once, and (2) a report.
+
+    The report is on all records.
 
     Parameters
     ----------
@@ -91,7 +93,7 @@ def finish(
 
 
 def split_into_blocks(records: Iterable[Array]) -> Iterator[Array]:
-    """Yield the records (N, 19), regrouped in blocks of about
+    """Yield records (N, 19) regrouped in blocks of about
     :data:`BLOCK` rows; at least one block, perhaps empty.
     """
     batches = RecordBlocks()
@@ -103,10 +105,9 @@ def split_into_blocks(records: Iterable[Array]) -> Iterator[Array]:
 def decide_and_list(
     records: Array, problem: Problem, course: DecidingProgress
 ) -> tuple[CandidateFixtures, SearchReport]:
-    """Decide records (N, 19); return the fixtures that fit
-    the toolkit and are as asked, and a report on all records.
+    """Decide records (N, 19); return (1) the fixtures that fit the toolkit and the query, and (2) a report.
 
-    The fixtures are in canonical form; repetitions are not removed.
+    The report is on all records. The fixtures are in canonical form; repetitions are not removed.
     """
     proven, account = decide_records(records, problem, course)
     candidates = make_canonical(make_candidates(proven, problem), problem.frame.swapped_peg_count)
@@ -127,8 +128,10 @@ class RecordBlocks:
     waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
 
     def add(self, records: Array) -> list[Array]:
-        """Take records (N, 19); return blocks once at least
-        :data:`BLOCK` rows wait, the last one perhaps shorter, else none.
+        """Take records (N, 19); return the blocks that are ready.
+
+        None are ready until :data:`BLOCK` rows wait; then all rows are returned, the last block perhaps
+        shorter.
         """
         self.waiting.append(records)
         if sum(map(len, self.waiting)) < BLOCK:
@@ -138,7 +141,7 @@ class RecordBlocks:
         return [together[k : k + BLOCK] for k in range(0, len(together), BLOCK)]
 
     def take_rest(self) -> Array:
-        """Return the records still waiting, perhaps none; they are not removed."""
+        """Return the records that still wait, perhaps none, as one array; they stay in the buffer."""
         return np.concatenate(self.waiting)
 
 
@@ -148,8 +151,9 @@ WAITING, WAITING_LONG = 64, 1 << 13
 
 
 class InterestLimits(NamedTuple):
-    """Limits that fixtures must reach to be of interest: a least
-    closure margin, and a largest effective location error in mm.
+    """Limits that fixtures must keep to be of interest to a search.
+
+    They are a least closure margin, and a largest effective location error in mm.
     """
 
     margin: float = 0.0
@@ -158,15 +162,16 @@ class InterestLimits(NamedTuple):
 
 @define(eq=False)
 class BestFixtures:
-    """The best of the fixtures added so far, as many as the query asks for, with ties for the last place.
+    """The best of the fixtures added so far, as many as the query asks
+    for, and those that tie with the last of them.
 
     Parameters
     ----------
-    problem : what is searched.
+    problem : the problem that is searched.
     cancel : when set, records that need slow methods are left undecided.
     is_limited : whether the search has a limit of the location error.
-    needed : what further fixtures must reach to be among the best; may be set beforehand.
-    keys : ranking keys of those kept, once more fixtures are known than are asked for; None before.
+    needed : limits that further fixtures must keep to be among the best; may be set beforehand.
+    keys : ranking keys of the fixtures kept, once more fixtures are known than are asked for; None before.
     """
 
     problem: Problem
@@ -194,7 +199,7 @@ class BestFixtures:
         return self.problem.query.best
 
     def add(self, records: NDArray[np.float64]) -> InterestLimits:
-        """Take records (N, 19) from the search; return what further fixtures must reach."""
+        """Take records (N, 19) from the search; return the limits that further fixtures must keep."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
         if sum(map(len, self.waiting)) >= max(least, self.most):
@@ -219,10 +224,9 @@ class BestFixtures:
         self.kept = self.drop_beaten(list_each_once(CandidateFixtures.concatenate(parts)))
 
     def drop_beaten(self, everything: CandidateFixtures) -> CandidateFixtures:
-        """Return the candidates that may be among the best, or tie
-        with the last of these; updates ``keys`` and ``needed``.
+        """Return the candidates that may be among the best, or tie with the last of the best.
 
-        ``everything`` must be free of repetitions.
+        Updates ``keys`` and ``needed``. ``everything`` must be free of repetitions.
         """
         if len(everything.standing) <= self.most:
             return everything
@@ -243,14 +247,14 @@ class BestFixtures:
 
     @property
     def found_keys(self) -> OrderKeys:
-        """Ranking keys of all fixtures kept, after deciding what waits."""
+        """Ranking keys of all fixtures kept; records that wait are decided first."""
         self.decide()
         assert self.kept is not None
         table = measure_table(place_candidates(self.kept, self.problem), self.problem)
         return make_table_keys(table, self.problem.query, self.effective)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Return whether a fixture with keys no less than ``bound`` is surely not among the best.
+        """Return whether every fixture whose keys are at least ``bound`` is surely not among the best.
 
         False until more fixtures are known than are asked for.
         """
@@ -281,16 +285,17 @@ class ResultCollector:
 
     Parameters
     ----------
-    problem : what was searched.
+    problem : the problem that was searched.
     pool : threads that share the work.
     ahead : how many pieces of work may be under way.
     cancel : when set, records that need slow methods are left undecided, remaining fixtures are not measured,
         and at most the best ``LISTED_LATE`` measured ones are listed.
-    folder : for temporary files; None to keep all in memory.
+    folder : folder for temporary files; None to keep all in memory.
     is_part : whether this is one of several searches that are joined and ranked later; fixtures then come in
         the order of their identities where the ranking counts steps of error.
     course : progress of deciding.
-    found, distinct : (A,) fixtures, and sets up to symmetry, of each arrangement, once measured.
+    found : (A,) number of fixtures of each of A arrangements, once measured.
+    distinct : (A,) the same, where fixtures that the part's symmetry makes equal count once.
     """
 
     problem: Problem
@@ -324,7 +329,7 @@ class ResultCollector:
 
     @contextmanager
     def give_up_on_errors(self) -> Iterator[None]:
-        """Yield a context that, on any exception, makes deciding end soon, and raises the exception again."""
+        """Yield a context in which any exception makes deciding end soon; the exception is raised again."""
         try:
             yield
         except BaseException:
@@ -332,24 +337,22 @@ class ResultCollector:
             raise
 
     def take_records(self, records: NDArray[np.float64]) -> InterestLimits:
-        """Take records (N, 19), in the order of the search;
-        return limits that require nothing of further ones.
-        """
+        """Take records (N, 19), in the order of the search; return limits that every fixture keeps."""
         self.course.total += len(records)
         for block in self.batches.add(records):
             self.submit_block(block)
         return InterestLimits()
 
     def submit_block(self, block: NDArray[np.float64]) -> None:
-        """Begin to decide a block of records on the pool;
-        wait if more than ``ahead`` blocks are under way.
+        """Begin to decide a block of records on the pool; wait if more than
+        ``ahead`` blocks are under way.
         """
         self.deciding.append(self.pool.submit(self.decide_block, block))
         while len(self.deciding) > self.ahead:
             self.keep_run(*self.deciding.popleft().result())
 
     def decide_block(self, block: NDArray[np.float64]) -> tuple[SortedRun, SearchReport]:
-        """Return the fixtures of a block as a run sorted by holes, and the report on its records."""
+        """Return (1) the fixtures of a block as a run sorted by holes, and (2) the report on its records."""
         candidates, account = decide_and_list(block, self.problem, self.course)
         return self.sort_by_holes(candidates), account
 
@@ -359,16 +362,16 @@ class ResultCollector:
         return SortedRun.from_columns(key, astuple(candidates, recurse=False))
 
     def keep_run(self, run: SortedRun, account: SearchReport) -> None:
-        """Add a run sorted by holes and its report to what is collected."""
+        """Add a run of fixtures sorted by holes, and the report on their records."""
         self.by_holes.add_run(run)
         self.accounts.append(account)
 
     def add_candidates(self, candidates: CandidateFixtures, account: SearchReport) -> None:
-        """Add candidates that are decided already, with the report on them."""
+        """Add candidates that are decided already, and the report on their records."""
         self.keep_run(self.sort_by_holes(candidates), account)
 
     def finish_deciding(self, progress: Progress | None = None) -> SearchReport:
-        """Decide the rest, wait for all that is under way, and return the report on all records."""
+        """Decide the rest, wait for all blocks under way, and return the report on all records."""
         self.submit_block(self.batches.take_rest())
         while self.deciding:
             wait([self.deciding[0]], timeout=NAP)
@@ -379,8 +382,9 @@ class ResultCollector:
         return SearchReport.sum_up(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """List each fixture once, measure, count and rank; return
-        whether all of them were measured before ``cancel``.
+        """List each fixture once, measure, count and rank them.
+
+        Return whether all fixtures were measured before ``cancel``.
         """
         parts, done = self.by_holes.list_parts(), 0
         course = DecidingProgress(len(parts), cancel=self.cancel)
@@ -411,15 +415,17 @@ class ResultCollector:
     def measure_part(
         self, numbered: tuple[int, Callable[[], SortedRun]]
     ) -> tuple[SortedRun, SortedRun | None, OrderKeys]:
-        """Return a part's fixtures listed once, measured and
-        sorted by rank as far as known without other parts.
+        """Return (1) a part's fixtures, (2) their smallest images, (3)
+        the keys of the fixture with the least error.
 
-        With it come, for a symmetric part, the smallest images of the fixtures under its rotations, else
-        None; and the ranking keys of the fixture with the least effective error.
+        (1) The fixtures are listed once, measured, and sorted by rank as far as it is known without other
+        parts. (2) The smallest images are those under rotations of the part onto itself; None for a part
+        without symmetry. (3) The least error is the effective one; the keys are one row, or none where steps
+        of error do not count.
 
         Parameters
         ----------
-        numbered : number of the part, and a function that reads it.
+        numbered : number of the part of the sort, and a function that reads it.
         """
         number, part = numbered
         candidates = list_each_once(CandidateFixtures(*part().columns))
@@ -440,14 +446,14 @@ class ResultCollector:
 
     @property
     def least_error(self) -> int | None:
-        """Least effective error that steps count from, in
-        billionths of a mm; None where steps do not count.
+        """Least effective error in billionths of a mm, from which steps of
+        error count; None where they do not count.
         """
         return None if self.fine is None else self.fine.least_error
 
     def rank(self) -> None:
-        """Sort the measured fixtures by the final keys, in
-        which errors count in steps above the least error.
+        """Sort the measured fixtures by their final keys, in which
+        errors count in steps above the least error.
         """
         if self.effective is None:
             return
@@ -457,7 +463,10 @@ class ResultCollector:
         measured.close()
 
     def rank_run(self, part: Callable[[], SortedRun]) -> SortedRun:
-        """Return a measured run sorted by the final keys, without the column of errors."""
+        """Return a measured run sorted by the final keys, without the column of errors.
+
+        With ``is_part`` the order is not changed.
+        """
         run = part()
         *columns, error = run.columns
         if self.is_part and not self.course.is_stopped:
@@ -476,7 +485,7 @@ class ResultCollector:
         return min(found, LISTED_LATE) if self.course.is_stopped else found
 
     def iterate_tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
-        """Yield the fixtures, best first, in tables, up to
+        """Yield the fixtures in tables, best first, up to
         ``listed_count`` in all; the collector is then empty.
         """
         parts, listed = self.by_rank.list_parts(), 0
@@ -492,5 +501,5 @@ class ResultCollector:
 
 
 def take_run(part: Callable[[], SortedRun]) -> SortedRun:
-    """Return the run that a function reads."""
+    """Return the run that a function reads: ``part()``."""
     return part()

@@ -1,7 +1,7 @@
 """Contacts of three locators and a clamp, in packed form, and groups of them that contain whole seats.
 
-Packed they need half the memory of records; all contacts of a range wait to be ordered
-(``listing.order_seats``).
+In packed form they need half the memory of records, since all contacts of a range of orientations are held
+until they are ordered (``listing.seat_order``).
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ TOGETHER = 1 << 16
 
 @frozen(eq=False)
 class PackedContacts:
-    """Kernel records (N, 19), see ``kernels.contact.record``,
-    with integer columns stored apart to save memory.
+    """Kernel records (N, 19), see ``kernels.contact.record``, with
+    integer columns stored apart to save memory.
 
     Parameters
     ----------
-    whole : (N, 13) the columns that hold integers, in 16 bits where these suffice.
+    whole : (N, 13) the columns that hold integers, as 16-bit integers where these suffice.
     reals : (N, 6) the other columns.
     """
 
@@ -42,8 +42,8 @@ class PackedContacts:
 
     @classmethod
     def from_blocks(cls, blocks: list[Array]) -> PackedContacts:
-        """Return the records of blocks, each (N, 19), in
-        order; the list ``blocks`` is emptied to save memory.
+        """Return the records of blocks, each (N, 19), in order; the
+        list ``blocks`` is emptied to save memory.
         """
         end = sum(map(len, blocks))
         small = all(np.abs(block[:, :PSI]).max(initial=0.0) < SMALL for block in blocks)
@@ -79,16 +79,17 @@ FIRST_CONTACTS = 1 << 12
 
 @frozen(eq=False)
 class SeatGroups:
-    """Contacts of all directions in groups; every seat lies wholly in one group.
+    """Contacts of all directions of the clamp in groups; every seat lies wholly in one group.
 
     Parameters
     ----------
-    order : (M,) indices of contacts, group by group, counted through the records of all directions.
+    order : (M,) indices of contacts, group by group; indices count on from one direction's records to the
+        next's.
     starts : (G,) index in ``order`` at which each group begins.
     bounds : (G,) lower bounds of the ranking keys of fixtures in each group.
-    sharpened : called with the contacts and starts of some groups; returns better bounds, from pairs of
-        clamps. None where these cannot improve bounds, or bounds are final.
-    alike : how many leading key numbers pairs of clamps do not change.
+    sharpened : called with ``order`` and ``starts`` of some groups; returns better bounds, from pairs of
+        clamps. None where pairs cannot improve the bounds, or have done so.
+    alike : how many leading numbers of the keys are not changed by ``sharpened``.
     """
 
     order: IntArray
@@ -103,17 +104,17 @@ class SeatGroups:
     def iterate_batches(
         self, kept: RankedTable, floor: int, together: int = FIRST_CONTACTS
     ) -> Iterator[IntArray]:
-        """Yield ascending indices of contacts of more and more groups,
-        best bound first, until no group can be among the best.
+        """Yield, batch by batch, the indices of contacts of groups,
+        best bound first, ascending within a batch.
 
-        The caller adds what it finds in a batch to ``kept`` before the next. Groups that may hold the least
-        error come first.
+        The iteration ends when no remaining group can have one of the best. The caller adds what it finds in
+        a batch to ``kept`` before the next. Groups that may have the least error come first.
 
         Parameters
         ----------
-        floor : a lower bound of the errors, in billionths of a mm, of fixtures not yet found outside these
-            groups.
-        together : how many contacts the first batch has, about; it doubles each time.
+        floor : a lower bound of the errors, in billionths of a mm, of all fixtures outside these groups that
+            are not yet found.
+        together : about the number of contacts in the first batch; it doubles from batch to batch.
         """
         left = np.arange(len(self))
         sizes = np.diff(self.starts, append=len(self.order))
@@ -147,14 +148,17 @@ class SeatGroups:
             left, together = left[end:], 2 * together
 
     def select_contacts(self, groups: IntArray) -> tuple[IntArray, IntArray]:
-        """Return the contacts of some groups, concatenated, and the index at which each group begins."""
+        """Return (1) the contacts of some groups, concatenated, and (2)
+        the index at which each group begins there.
+        """
         sizes = np.diff(self.starts, append=len(self.order))[groups]
         starts = np.cumsum(sizes) - sizes
         return self.order[np.arange(sizes.sum()) + np.repeat(self.starts[groups] - starts, sizes)], starts
 
     def append_group(self, last: IntArray) -> SeatGroups:
-        """Return the groups with one more at the end: contacts
-        (N,) that surely make no fixture, with the worst bounds.
+        """Return the groups with one more at the end: contacts ``last`` (N,) that surely make no fixture.
+
+        The new group has the worst bounds; without contacts, none is added.
         """
         if len(last) == 0:
             return self
@@ -162,7 +166,10 @@ class SeatGroups:
         return SeatGroups(order, starts, self.bounds.concatenate(self.bounds.keys_of_nothing))
 
     def select_groups_between(self, groups: IntArray) -> SeatGroups:
-        """Return some groups with bounds by pairs of clamps; groups without a bound stay so."""
+        """Return some groups, given by index, with bounds improved by pairs of clamps.
+
+        Groups without a bound stay without.
+        """
         assert self.sharpened is not None
         order, starts = self.select_contacts(groups)
         sharp, bounds = self.sharpened(order, starts), self.bounds.take(groups)

@@ -66,7 +66,7 @@ class FixtureIdentity:
 
     Parameters
     ----------
-    toolkit, part : what holds, and what is held.
+    toolkit, part : the toolkit, and the part that it holds.
     every : whether each choice of clamps is a fixture of its own; if False, one fixture stands for all clamps
         with its directions.
     rotations : rotations of the part onto itself, the identity first.
@@ -89,11 +89,11 @@ class FixtureIdentity:
         return len(self.rotations) > 1
 
     def find_smallest_images(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
-        """Return the smallest image of each fixture under the
-        part's rotations and allowed half turns of the toolkit.
+        """Return the smallest image of each of N fixtures under the
+        part's rotations and the toolkit's half turns.
 
-        It is made of packed words, each (N,), and poses (N, P): orientation in radians and places in mm.
-        Fixtures with the same image are one set.
+        It is given as packed integers, each (N,), and poses (N, P): orientation in radians and places in mm.
+        Fixtures with the same image are the same up to symmetry.
         """
         x, y = self.toolkit.compute_hole_places(
             table.arrangement, table.column, table.row, table.jaw_separation
@@ -134,10 +134,10 @@ class FixtureIdentity:
     def make_form(
         self, table: FixtureTable, x: Array, y: Array, sign: int
     ) -> tuple[list[IntArray], Array, Array]:
-        """Return the identity of fixtures without their pose: packed
-        words (N,), the first peg's place (N, 2), and offsets (N, M).
+        """Return the identity of N fixtures without their pose: (integers, places, offsets).
 
-        The offsets in mm are how far moving pegs or clamps are along their direction from the first peg.
+        They are packed integers, each (N,), for holes and lines; the place of the first peg in mm, (N, 2);
+        and how far in mm moving pegs or clamps are from the first peg along their direction, (N, M).
 
         Parameters
         ----------
@@ -171,9 +171,11 @@ class FixtureIdentity:
         return pack_integers(*numbers), anchor, sign * away[:, : None if self.every else 0]
 
     def count_sets(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
-        """Return the number of sets of each arrangement (A,) among fixtures, given their smallest images.
+        """Return the number of fixtures of each arrangement, (A,), where
+        fixtures with the same image count once.
 
-        ``words`` and ``pose`` are as of :meth:`find_smallest_images`, ``arrangement`` is (N,).
+        ``words`` and ``pose`` are the two results of :meth:`find_smallest_images`; ``arrangement`` (N,) is
+        that of each fixture.
         """
         order = np.lexsort(words[::-1])
         fresh = mark_changes([word[order] for word in words])
@@ -182,15 +184,18 @@ class FixtureIdentity:
 
 
 def allows_half_turns(toolkit: Toolkit) -> bool:
-    """Return whether half a turn of everything leaves the toolkit as it is, as without a wall."""
+    """Return whether half a turn of pegs and part together gives a set-up of the same toolkit.
+
+    It does unless the toolkit has a wall.
+    """
     return WALL_END not in toolkit.contacts
 
 
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
-    """Return whether half a turn of everything maps an arrangement to itself.
+    """Return whether half a turn of pegs and part together maps an arrangement to itself.
 
-    So it is with equally many pegs on both jaws, and with two clamps in opposite directions on a plate
-    without a wall.
+    Two cases: (a) two jaws with equally many pegs that a half turn may exchange; (b) two clamps in opposite
+    directions on a plate without a wall.
     """
     ways = [
         toolkit.carriers[number].travel
@@ -207,9 +212,11 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
 def precedes(
     words: Sequence[IntArray], pose: Array, others: Sequence[IntArray], other_pose: Array
 ) -> BoolArray:
-    """Return whether (N,) each row of words and pose comes before the same row of others lexicographically.
+    """Return a mask (N,): True for rows of ``words`` and ``pose`` that
+    come lexicographically before the others' row.
 
-    Poses that differ by at most ``SAME_IMAGE`` count as equal.
+    Row k is compared with row k of ``others`` and ``other_pose``. Poses that differ by at most ``SAME_IMAGE``
+    count as equal.
     """
     before = np.zeros(len(pose), np.bool_)
     for one, other in zip(pose.T[::-1], other_pose.T[::-1], strict=True):
@@ -221,11 +228,11 @@ def precedes(
 
 @define(eq=False)
 class SetCounter:
-    """A running count of fixtures, and of the sets that they form under symmetry.
+    """A running count of fixtures, and of fixtures that are distinct under the part's symmetry.
 
     Parameters
     ----------
-    identity : the identities of the fixtures.
+    identity : decides which fixtures are the same up to symmetry.
     found : (A,) number of fixtures of each arrangement so far.
     """
 
@@ -245,15 +252,17 @@ class SetCounter:
 
     @property
     def distinct(self) -> IntArray:
-        """Number of sets (A,) of each arrangement so far."""
+        """Number of fixtures of each arrangement so far, (A,), where
+        those that symmetry makes equal count once.
+        """
         if not self.images:
             return self.found
         arrangement, pose, *words = (np.concatenate(values) for values in zip(*self.images, strict=True))
         return self.identity.count_sets(words, pose, arrangement)
 
     def count_by_type(self, counts: IntArray) -> dict[str, int]:
-        """Return counts (A,) of arrangements as a dict by
-        the name of the type, summed over its arrangements.
+        """Return counts (A,) of arrangements as a dict by name of the
+        type, summed over the type's arrangements.
         """
         toolkit = self.identity.toolkit
         each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
@@ -263,7 +272,7 @@ class SetCounter:
 def order_by_identity(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArray[np.intp]:
     """Return the indices (N,) that sort fixtures by type, holes, orientation, faces and place.
 
-    Give the toolkit if it may have a wall with ends; columns then count from the first peg's.
+    Give the toolkit if it may have a wall with ends; columns are then counted from the first peg's.
     """
     position, column = table.position, table.column
     if toolkit is not None and toolkit.wall_with_ends is not None:
@@ -283,12 +292,12 @@ BLOCK, MOST_LOOKED_AT = 1 << 14, 200_000
 
 @frozen(eq=False)
 class ShownEntries:
-    """The entries to show of a list of fixtures, near duplicates left out.
+    """The entries to show of a list of fixtures, where near duplicates are left out.
 
     Parameters
     ----------
     index : (E,) index of the fixture that stands for each entry, ascending.
-    like : (E,) how many near duplicates follow it.
+    like : (E,) number of near duplicates of each entry that are left out.
     unfit : how many fixtures are left out as unfit for a workshop.
     """
 
@@ -319,8 +328,9 @@ def make_entries(result: Result, with_unfit: bool = False) -> ShownEntries:
 
 
 def make_entries_of_holds(result: Result, with_unfit: bool) -> ShownEntries:
-    """Return the entries of a result that holds by friction:
-    every fixture by itself; see :func:`make_entries`.
+    """Return the entries of a result that holds by friction, where no two fixtures are near duplicates.
+
+    See :func:`make_entries`.
     """
     bad = np.array([hold.is_unfit for hold in result.holds], np.bool_)
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
@@ -328,10 +338,10 @@ def make_entries_of_holds(result: Result, with_unfit: bool) -> ShownEntries:
 
 
 def find_first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the indices (E,), ascending, of the first member
-    of each group, and how many further members (E,) it has.
+    """Return (1) the indices of the first member of each group,
+    ascending, and (2) how many more members it has.
 
-    ``groups`` (N,) numbers the group of each item.
+    Both are (E,) for E groups. ``groups`` (N,) has the group number of each item.
     """
     _, first, count = np.unique(groups, return_index=True, return_counts=True)
     order = np.argsort(first)
@@ -339,9 +349,9 @@ def find_first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def number_near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """Return a group number (N,) for each fixture, equal for near duplicates.
+    """Return a group number for each fixture, (N,), equal for near duplicates.
 
-    Without pegs (flat jaws, straps) every fixture is a group.
+    Fixtures without pegs (flat jaws) are a group each.
     """
     if len(table) == 0 or table.column.shape[1] == 0:
         # Fixtures of flat jaws differ in side, parallels or stop.
@@ -359,10 +369,10 @@ def number_near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: T
 
 
 def find_distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the index at which each distinct row of integers
-    (N, K) from 0 up first occurs, and which (N,) each row is.
+    """Return (1) the index of the first occurrence of each distinct
+    row, and (2) the number of each row, (N,).
 
-    Distinct rows are in lexicographic order.
+    Distinct rows are numbered in lexicographic order. ``keys`` (N, K) are integers from 0 up.
     """
     words = np.column_stack(pack_integers((keys, int(keys.max()))))
     # One word, which is enough for most parts, is sorted far sooner than rows.
@@ -373,10 +383,11 @@ def find_distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def find_smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """Return the lexicographically smallest image of each row (K, 2 + P) of arrangement, tilt and faces.
+    """Return the lexicographically smallest image of each row of ``keys``, (K, 2 + P).
 
-    Images are those under the part's rotations and mirror images, and under a half turn that swaps the
-    carriers, if that is a symmetry.
+    The columns of a row are arrangement, tilt (0 or 1), and the faces that its P pegs touch. The images are
+    those under the part's rotations and mirror images, and under a half turn that swaps the carriers, where
+    it is a symmetry of the toolkit.
     """
     every = workpiece.numbered
     numbers = np.array([face.number for face in every.faces])

@@ -3,8 +3,8 @@
 Pegs stand in the columns nearest to those of the other carrier. The largest travel or a blocked hole may
 demand that they move outward, first the standing ones, then the moving ones. Rows are shifted so that the
 lowest is 0, or centred where the carriers have an end; a blocked hole shifts them no farther than it must. A
-clamp on a plate of locators is bolted in a hole of its line instead (``listing.make_clamp_placement``). All this
-is in the frame of the search; the way back to the toolkit's own is the last step.
+clamp on a plate of locators is bolted in a hole of its line instead (``listing.make_clamp_placement``). All
+this is in the frame of the search; the way back to the toolkit's own is the last step.
 """
 
 from __future__ import annotations
@@ -44,14 +44,15 @@ LOCATOR_CONTACTS, TIP = slice(0, 3), 3
 
 @define(frozen=True, eq=False)
 class PlacedCandidates:
-    """N fixtures in the holes of the carriers.
+    """N candidates in the holes of the carriers.
 
     Parameters
     ----------
-    candidates : the fixtures, turned by half a turn where they fit only so.
-    standing, moving : (N,) by how many columns each carrier's pegs stand outward of the innermost place.
+    candidates : the candidates, turned by half a turn where they fit only so.
+    standing : (N,) number of columns by which the standing pegs are outward of their innermost place.
+    moving : (N,) the same for the moving pegs.
     lift : (N,) by how many rows all pegs are shifted up.
-    fits : (N,) whether there is such a place.
+    fits : (N,) whether the candidate has a place in the holes.
     """
 
     candidates: CandidateFixtures
@@ -67,10 +68,10 @@ class PlacedCandidates:
 
 
 def arrange_candidates(c: CandidateFixtures, problem: Problem) -> PlacedCandidates:
-    """Return the places of candidates in the holes of both
-    carriers; ``fits`` says which have one at an allowed angle.
+    """Return the places of candidates in the holes of both carriers.
 
-    Half turns that swap the carriers are tried where a candidate does not fit otherwise.
+    ``fits`` says which have a place at an allowed angle. Where a candidate does not fit otherwise, a half
+    turn that swaps the carriers is tried.
     """
     angles, frame = problem.restrictions.angles, problem.frame
     clear = are_bodies_clear(c, frame)
@@ -89,8 +90,10 @@ def arrange_candidates(c: CandidateFixtures, problem: Problem) -> PlacedCandidat
 def replace_rows(
     one: PlacedCandidates, rows: IntArray, other: PlacedCandidates, chosen: BoolArray
 ) -> PlacedCandidates:
-    """Return ``one`` with its rows ``rows`` replaced by
-    the rows of ``other`` that the mask ``chosen`` selects.
+    """Return ``one`` with rows replaced by rows of ``other``.
+
+    ``rows`` are the indices to replace, ``chosen`` is the mask that selects as many rows of ``other``, in
+    order.
     """
     names = [a.name for a in fields(CandidateFixtures)]
     candidates = {name: getattr(one.candidates, name).copy() for name in names}
@@ -103,8 +106,9 @@ def replace_rows(
 
 
 def turn_half(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
-    """Return the fixtures after half a turn of everything,
-    which swaps two carriers with ``swapped`` pegs each.
+    """Return candidates after half a turn of pegs and part together, which swaps the two carriers.
+
+    Each carrier has ``swapped`` pegs.
     """
     column = c.column.copy()
     for carrier in (slice(0, swapped), slice(swapped, 2 * swapped)):
@@ -118,7 +122,7 @@ def turn_half(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
 
 
 def are_bodies_clear(c: CandidateFixtures, frame: SearchFrame) -> BoolArray:
-    """Return which fixtures (N,) have pegs whose bodies do not overlap."""
+    """Return a mask (N,): True for candidates whose pegs' bodies do not overlap."""
     clear = np.ones(len(c.standing), np.bool_)
     if all(carrier.body_radius == carrier.peg_radius for carrier in frame.carriers):
         # Neighbouring holes are far enough apart for the pegs themselves.
@@ -132,17 +136,17 @@ def are_bodies_clear(c: CandidateFixtures, frame: SearchFrame) -> BoolArray:
 
 
 def are_at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: SearchFrame) -> BoolArray:
-    """Return which orientations (N,), in radians in the search
-    frame, are in a range of degrees in the toolkit's frame.
+    """Return a mask (N,): True for orientations at which the part's angle lies in one of some ranges.
 
-    All where there are no ranges.
+    ``theta`` is in radians in the frame of the search; ``angles`` are ranges in degrees in the toolkit's
+    frame; without ranges all are True.
     """
     return np.asarray(lie_in_angle_ranges(np.degrees(theta) + 90.0 * frame.quarters, angles))
 
 
 def count_free_columns(c: CandidateFixtures, frame: SearchFrame) -> tuple[IntArray, IntArray]:
-    """Return how many columns (N,) are free outward of the
-    pegs on the standing carrier, and on the moving one.
+    """Return how many columns are free outward of the pegs (1) on the
+    standing, (2) on the moving carrier, each (N,).
     """
     standing = is_standing(c.standing)
     return (
@@ -152,10 +156,9 @@ def count_free_columns(c: CandidateFixtures, frame: SearchFrame) -> tuple[IntArr
 
 
 def count_free_rows(c: CandidateFixtures, frame: SearchFrame) -> IntArray:
-    """Return how many rows (N,) are free above the pegs, the
-    fewer of both carriers; 0 where no carrier has an end.
+    """Return how many rows are free above the pegs, (N,): the smaller number of both carriers.
 
-    Negative where the pegs do not fit.
+    0 where no carrier has an end; negative where the pegs do not fit.
     """
     if all(carrier.rows is None for carrier in frame.carriers):
         return np.zeros(len(c.standing), np.int64)
@@ -167,8 +170,9 @@ def count_free_rows(c: CandidateFixtures, frame: SearchFrame) -> IntArray:
 
 
 def place_as_is(c: CandidateFixtures, frame: SearchFrame) -> PlacedCandidates:
-    """Return the places of candidates without half turns, with the
-    fewest columns outward; ``fits`` ignores angles and bodies.
+    """Return the places of candidates without half turns, as few columns outward as possible.
+
+    ``fits`` does not take account of angles and bodies.
     """
     pitch, travel = frame.lattice.pitch_x, frame.moving.travel
     assert travel is not None
@@ -191,13 +195,14 @@ def place_as_is(c: CandidateFixtures, frame: SearchFrame) -> PlacedCandidates:
 def move_clear_of_blocked(
     found: PlacedCandidates, frame: SearchFrame, room: IntArray, spare: IntArray
 ) -> PlacedCandidates:
-    """Return the places with fixtures moved on until no peg stands
-    in a blocked hole; ``fits`` is False where none is free.
+    """Return the places with pegs moved outward and in rows until none stands in a blocked hole.
+
+    ``fits`` is False where there is no such place.
 
     Parameters
     ----------
-    room : (N, 4) fewest and most columns outward in all, and free columns on the standing and on the moving
-        carrier.
+    room : (N, 4) fewest and most columns outward, both carriers together; free columns on the standing and on
+        the moving carrier.
     spare : (N,) free rows above the topmost peg, where the carriers have an end.
     """
     c = found.candidates
@@ -228,10 +233,10 @@ def move_clear_of_blocked(
 
 
 def list_outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
-    """Yield (standing, moving) columns to move outward:
-    smallest sum first, then most on the standing carrier.
+    """Yield (columns of the standing pegs, columns of the moving pegs) to move outward.
 
-    The arguments are the numbers of columns of the carriers.
+    The smallest sum comes first; of equal sums the one that moves the standing pegs farthest. ``standing``
+    and ``moving`` are the numbers of columns of the carriers.
     """
     for total in range(standing + moving - 1):
         for two in range(max(0, total - standing + 1), min(total, moving - 1) + 1):
@@ -239,10 +244,10 @@ def list_outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
 
 
 def list_row_offsets(frame: SearchFrame, endless: bool, spare: IntArray) -> list[int]:
-    """Return the row shifts to try, smallest first.
+    """Return the numbers of rows to shift pegs by, smallest first.
 
-    On endless carriers from 0 to above the highest blocked row; else both ways by up to the largest of
-    ``spare``.
+    Two cases: (a) on endless carriers from 0 to one row above the highest blocked one; (b) otherwise both
+    ways, by up to the largest of ``spare``.
     """
     if endless:
         blocked = [
@@ -256,7 +261,10 @@ def list_row_offsets(frame: SearchFrame, endless: bool, spare: IntArray) -> list
 def are_in_blocked_holes(
     column: IntArray, row: IntArray, standing: BoolArray, frame: SearchFrame
 ) -> BoolArray:
-    """Return which fixtures (N,) have a peg in a blocked hole; column, row and standing are (N, 4)."""
+    """Return a mask (N,): True for fixtures with a peg in a blocked hole.
+
+    ``column``, ``row`` and ``standing`` (whether a peg is on the standing carrier) are (N, 4).
+    """
     hit = np.zeros(column.shape, np.bool_)
     for carrier in frame.carriers:
         for holes in carrier.blocked:
@@ -266,8 +274,9 @@ def are_in_blocked_holes(
 
 
 def make_clamp_placement(c: CandidateFixtures, problem: Problem) -> ClampPlacement:
-    """Return the placement problem of the clamps of candidates
-    on a plate; columns count from the locators' lowest.
+    """Return the data for placing the clamps of candidates on a plate.
+
+    They are in the frame of the search; columns count from the locators' lowest.
     """
     frame = problem.frame
     pitch_x, pitch_y = frame.lattice[:2]
@@ -293,7 +302,7 @@ def make_clamp_placement(c: CandidateFixtures, problem: Problem) -> ClampPlaceme
 
 
 def are_placeable(c: CandidateFixtures, problem: Problem) -> BoolArray:
-    """Return which candidates (N,) have a place in the toolkit at an allowed angle."""
+    """Return a mask (N,): True for candidates that have a place in the toolkit at an allowed angle."""
     if problem.frame.moving.on is None:
         return arrange_candidates(c, problem).fits
     _, fits = make_clamp_placement(c, problem).find_nearest_holes(problem)
@@ -301,7 +310,7 @@ def are_placeable(c: CandidateFixtures, problem: Problem) -> BoolArray:
 
 
 def place_candidates(c: CandidateFixtures, problem: Problem) -> FixtureTable:
-    """Return the table of candidates in the holes of the toolkit, row by row; all must have a place.
+    """Return the table of candidates in the holes of the toolkit, in the same order; all must have a place.
 
     Of the figures of quality only the closure margin is known, the others are NaN.
     """
@@ -343,8 +352,9 @@ def place_candidates_with_clamp(c: CandidateFixtures, problem: Problem) -> Fixtu
 def make_table(
     c: CandidateFixtures, problem: Problem, column: IntArray, row: IntArray, travel: Array
 ) -> FixtureTable:
-    """Return the table of candidates in holes ``column`` and
-    ``row`` (N, 4) of the toolkit, with a travel (N,) in mm.
+    """Return the table of candidates in given holes of the toolkit.
+
+    ``column`` and ``row`` (N, 4) are the holes, ``travel`` (N,) is that of the moving carrier in mm.
     """
     frame = problem.frame
     theta = c.theta if frame.quarters == 0 else (c.theta + frame.quarters * np.pi / 2) % (2 * np.pi)

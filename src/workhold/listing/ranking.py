@@ -4,18 +4,20 @@ If the query names figures, these are the keys: all but the last rounded to two 
 the next one decides among fixtures that are about as good; the last to nine decimals. Then a fixture's rank
 depends on no other fixture.
 
-In the usual ranking a warning counts first. Then come steps, of a tenth each, by which the effective location
-error is above the least error: that of all fixtures that are fit and without warning, or if there are none,
-of those nearest to that. Then comes the class of the angle, and then the figures. So a rank depends on the
+In the usual ranking a warning counts first. Then comes the number of steps, of a tenth each, by which the
+effective location error is above the least error. The least error is taken over all fixtures that are fit and
+without warning or, if there are none, over the best of the other classes (fit with a warning, then unfit).
+Then comes the class of the angle, and then the figures. So a rank depends on the
 least error, which is known only at the end. Until then fixtures are kept or dropped by rules that hold
 whatever the least error is (:meth:`OrderKeys.are_beaten`):
 
 - One fixture comes before another one whose effective error is a tenth larger or more, if it is fit and has
   no warning: steps count from an error no larger than either, so that the other has a step more.
-- It does so, too, if its effective error is no larger, and all that comes after the steps is better.
+- One fixture also comes before another one if its effective error is no larger, and all keys after the steps
+  are better.
 
 A fixture that surely comes after as many others as are asked for is not among the best. The fixture with the
-least error is never dropped, for only one with an error no larger surely comes before it.
+least error is never dropped, for only a fixture with an error no larger surely comes before it.
 
 Fixtures unfit for a workshop come last. Equal fixtures stay in the order of types, holes, poses and faces.
 """
@@ -82,8 +84,9 @@ TOGETHER = 1 << 22
 
 
 def measure_table(table: FixtureTable, problem: Problem) -> FixtureTable:
-    """Return a table with all figures of quality computed;
-    the search's closure margin and clamp freedom are kept.
+    """Return a table with all figures of quality computed.
+
+    Closure margin and clamp freedom keep the values that the search gave them.
     """
     touched = TouchableFeatures.from_workpiece(
         problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length
@@ -92,9 +95,9 @@ def measure_table(table: FixtureTable, problem: Problem) -> FixtureTable:
 
 
 def measure_table_as_touched(table: FixtureTable, query: Query, touched: TouchableFeatures) -> FixtureTable:
-    """Return a table with all figures of quality computed, given the touchable features.
+    """Return a table with all figures of quality computed, given the features that pegs can touch.
 
-    The search's closure margin and clamp freedom are kept to the last digit.
+    Closure margin and clamp freedom keep the values that the search gave them.
     """
     quality = measure_quality(
         table,
@@ -117,11 +120,12 @@ class OrderKeys:
 
     Parameters
     ----------
-    first : (N, A) numbers that count first. In the usual ranking: whether the fixture is unfit, and whether
-        it has a warning, 0 or 1; in any other all numbers there are. -inf in a bound that says nothing.
-    error : (N,) effective location errors in billionths of a mm, which then count in steps above the least of
-        all; None where steps do not count.
-    rest : (N, B) numbers that count after the steps.
+    first : (N, A) numbers that count first. Two cases: (a) in the usual ranking, whether the fixture is
+        unfit, and whether it has a warning, 0 or 1; (b) in any other ranking, all numbers. -inf in a bound
+        that says nothing.
+    error : (N,) effective location errors in billionths of a mm, which count after ``first``, in steps above
+        the least error; None where steps do not count.
+    rest : (N, B) numbers that count after the steps; no columns where steps do not count.
     """
 
     first: Array
@@ -137,7 +141,7 @@ class OrderKeys:
         return OrderKeys(self.first[chosen], error, self.rest[chosen])
 
     def concatenate(self, other: OrderKeys) -> OrderKeys:
-        """Return these keys followed by other ones of the same kind."""
+        """Return these keys followed by ``other``; both must be of the same ranking."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.concatenate([self.error, other.error])
@@ -151,8 +155,8 @@ class OrderKeys:
 
     @property
     def lowest_error(self) -> int:
-        """Least error in billionths of a mm of rows that may
-        be fit and without warning; ``MOST_ERROR`` without any.
+        """Least error in billionths of a mm of the rows that may be fit and
+        without warning; ``MOST_ERROR`` without any.
         """
         if self.error is None:
             return MOST_ERROR
@@ -160,7 +164,7 @@ class OrderKeys:
 
     @property
     def is_known(self) -> BoolArray:
-        """Mask (N,) of the bounds that say anything."""
+        """Mask (N,): False for bounds that say nothing."""
         return np.asarray(self.first[:, 0] != -inf)
 
     @property
@@ -170,7 +174,9 @@ class OrderKeys:
         return OrderKeys(np.full((1, self.first.shape[1]), inf), error, np.full((1, self.rest.shape[1]), inf))
 
     def choose(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
-        """Return the keys of these where ``chosen`` (N,), and of ``other`` elsewhere."""
+        """Return keys whose row k is that of this object where
+        ``chosen[k]``, and that of ``other`` elsewhere.
+        """
         error = None
         if self.error is not None and other.error is not None:
             error = np.where(chosen, self.error, other.error)
@@ -180,18 +186,16 @@ class OrderKeys:
         return OrderKeys(first, error, rest)
 
     def drop_bounds_where(self, chosen: BoolArray) -> OrderKeys:
-        """Return the keys with those rows that ``chosen``
-        (N,) selects replaced by bounds that say nothing.
-        """
+        """Return keys in which the rows that the mask ``chosen`` (N,) selects are bounds that say nothing."""
         error = None if self.error is None else np.where(chosen, 0, self.error)
         first, rest = (np.where(chosen[:, None], -inf, rows) for rows in (self.first, self.rest))
         return OrderKeys(first, error, rest)
 
     def find_least_of_groups(self, groups: IntArray) -> OrderKeys:
-        """Return one row for each group: the least ``first``,
-        the least error and the least ``rest``, each by itself.
+        """Return one row for each group: its least ``first``, its least
+        error, and its least ``rest``, each by itself.
 
-        ``groups`` (N,) are group numbers from 0; each group is contiguous and numbers ascend.
+        ``groups`` (N,) are group numbers from 0, ascending.
         """
 
         def least(rows: Array) -> Array:
@@ -206,13 +210,14 @@ class OrderKeys:
 
     @property
     def is_fine(self) -> BoolArray:
-        """Mask (N,) of rows that are fit and without a warning; none where steps do not count."""
+        """Mask (N,): True for rows that are fit and without a warning; all False where steps do not count."""
         return np.asarray((self.first <= 0.0).all(axis=1)) & (self.error is not None)
 
     @property
     def least_keys(self) -> OrderKeys:
-        """Keys, in one row, of the fixture with the least error;
-        no row without fixtures, and where steps do not count.
+        """Keys, in one row, of the fixture with the best ``first`` and, among equals, the least error.
+
+        No row without fixtures, and where steps do not count.
         """
         if self.error is None:
             return self.take(slice(0))
@@ -220,8 +225,9 @@ class OrderKeys:
 
     @property
     def least_error(self) -> int | None:
-        """Least error, in billionths of a mm, among the rows
-        with the best ``first``; None without rows or steps.
+        """Least error, in billionths of a mm, among the rows with the best ``first``.
+
+        None without rows, and where steps do not count.
         """
         if self.error is None or len(self) == 0:
             return None
@@ -229,16 +235,19 @@ class OrderKeys:
         return int(self.error[(self.first == best).all(axis=1)].min())
 
     def find_last_fine_error(self, count: int) -> float | None:
-        """Return the ``count``-th least effective error in mm of
-        fit fixtures without a warning; None with fewer of them.
+        """Return the ``count``-th least effective error in mm among rows that are fit and without a warning.
+
+        None with fewer such rows.
         """
         if self.error is None or (errors := self.error[self.is_fine]).size < count:
             return None
         return float(np.partition(errors, count - 1)[count - 1]) / PER_MM
 
     def make_order_numbers(self, least: int | None) -> Array:
-        """Return the numbers (N, R) to sort by, with errors as steps
-        above ``least`` in billionths of a mm; None counts as 0.
+        """Return the numbers (N, R) by which rows are sorted
+        lexicographically, with errors as steps above ``least``.
+
+        ``least`` is in billionths of a mm; None counts as 0.
         """
         if self.error is None:
             return self.first
@@ -248,13 +257,15 @@ class OrderKeys:
     def sort(self, least: int | None) -> NDArray[np.intp]:
         """Return the indices (N,) that put fixtures best first; equal ones keep their order.
 
-        ``least`` is the least error that steps count from, in billionths of a mm.
+        ``least`` is the error in billionths of a mm from which steps count; None counts as 0.
         """
         return np.lexsort(self.make_order_numbers(least).T[::-1])
 
     def are_among_best(self, most: int) -> BoolArray:
-        """Return which (N,) may be among the best ``most``, or tie
-        with the last, whatever the least error turns out to be.
+        """Return a mask (N,): True for rows that may be among the best
+        ``most``, or tie with the last of these.
+
+        The mask holds whatever the least error of all fixtures turns out to be.
         """
         if len(self) <= most:
             return np.ones(len(self), np.bool_)
@@ -272,9 +283,11 @@ class OrderKeys:
         return out
 
     def are_among_best_of(self, there: NDArray[np.intp], rest: IntArray, most: int) -> BoolArray:
-        """Return which (T,) of rows ``there`` with equal ``first`` may be among their best ``most``.
+        """Return a mask (T,): True for those of the rows ``there`` that
+        may be among the best ``most`` of these rows.
 
-        ``rest`` (T,) are the ranks of their ``rest``.
+        The rows ``there`` (T,), given by index, have equal ``first``; ``rest`` (T,) are the ranks of their
+        ``rest``.
         """
         assert self.error is not None
         error, out = self.error[there], np.ones(len(there), np.bool_)
@@ -301,7 +314,10 @@ class OrderKeys:
         return out
 
     def are_beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
-        """Return which (N,) of these bounds surely rank after at least ``most`` of the kept fixtures.
+        """Return a mask (N,): True for rows that surely rank after at
+        least ``most`` of the fixtures in ``kept``.
+
+        The rows of this object are bounds.
 
         Parameters
         ----------
@@ -331,8 +347,10 @@ class OrderKeys:
         return out
 
     def is_known_above(self, floor: int) -> bool:
-        """Return whether the least error of these is that of
-        all, if all others have errors of at least ``floor``.
+        """Return whether no fixture outside this set can have a smaller error than the least one here.
+
+        The fixtures outside have errors of at least ``floor``, in billionths of a mm. False where steps do
+        not count, and where no row is fit and without warning.
         """
         if self.error is None or not self.is_fine.any():
             return False
@@ -340,14 +358,18 @@ class OrderKeys:
 
 
 def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
-    """Return where ``error`` is surely a step (a tenth) or more above ``than``, whatever steps count from."""
+    """Return a mask: True where ``error`` surely has at least one step (a tenth) more than ``than``.
+
+    It holds whatever error the steps count from. Both are in billionths of a mm.
+    """
     eleven, ten = STEP_TENTHS
     return np.asarray((ten * error >= eleven * than) & (than > 0))
 
 
 def rank_rows(rows: Array) -> IntArray:
-    """Return the dense ranks (N,) from 0 of rows (N, K)
-    in lexicographic order; equal rows have equal ranks.
+    """Return the rank of each row in lexicographic order, (N,), counted from 0; equal rows have equal ranks.
+
+    Ranks have no gaps. ``rows`` is (N, K).
     """
     if len(rows) == 0 or rows.shape[1] == 0:
         return np.zeros(len(rows), np.int64)
@@ -361,9 +383,10 @@ def rank_rows(rows: Array) -> IntArray:
 
 
 def count_error_steps(error: IntArray, least: int) -> IntArray:
-    """Return how many steps (N,) errors (N,) are above the least of all, both in billionths of a millimetre.
+    """Return by how many steps each error is above the least one, (N,); all errors in billionths of a mm.
 
-    The steps are the number of j from 1 up with error >= 1.1^j least, in exact arithmetic.
+    The number of steps is the number of integers j from 1 up with error >= 1.1^j ``least``, in exact
+    arithmetic.
 
     Examples
     --------
@@ -379,25 +402,31 @@ def count_error_steps(error: IntArray, least: int) -> IntArray:
 
 
 def convert_to_billionths(error: Array) -> IntArray:
-    """Return errors (N,) in mm as integer billionths of a mm; NaN and too large ones as ``MOST_ERROR``."""
+    """Return errors (N,) in mm as integers in billionths of a mm;
+    ``MOST_ERROR`` for NaN and for larger errors.
+    """
     known = np.minimum(np.where(np.isnan(error), inf, error), MOST_ERROR / PER_MM)
     return np.rint(known * PER_MM).astype(np.int64)
 
 
 def convert_to_mm(error: int | None) -> float | None:
-    """Return an error in billionths of a mm as mm, rounded
-    as in files; None for None and for ``MOST_ERROR``.
+    """Return an error in billionths of a mm as mm, rounded as in files.
+
+    None for None and for ``MOST_ERROR``.
     """
     return None if error is None or error >= MOST_ERROR else round(error / PER_MM, FIGURE_DECIMALS)
 
 
 def find_usual_errors(query: Query) -> EffectiveErrors | None:
-    """Return the calculator of effective errors for a query with the usual ranking; None for any other."""
+    """Return what computes effective errors, for a query with the usual ranking; None for any other query."""
     return EffectiveErrors.from_query(query) if query.has_house_order else None
 
 
 def make_table_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | None) -> OrderKeys:
-    """Return the ranking keys of a measured table; ``effective`` is as of :func:`find_usual_errors`."""
+    """Return the ranking keys of a measured table.
+
+    ``effective`` is the result of :func:`find_usual_errors` for the query.
+    """
     error = None if effective is None else effective.compute_errors(table)
     return make_order_keys(table.quality, query, error, classify_angles(table.theta))
 
@@ -410,7 +439,7 @@ def make_order_keys(
     Parameters
     ----------
     quality : (N, Q) figures; NaN ranks worst.
-    error : (N,) effective errors, floats in mm or integers in billionths of a mm; None where they do not
+    error : (N,) effective errors, as floats in mm or integers in billionths of a mm; None where they do not
         count.
     angle : (N,) class of the angle: 0 as drawn, 1 quarter turn, 2 other.
     """
@@ -428,10 +457,10 @@ def make_order_keys(
 
 
 def make_figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """Return the arrays (N,) to sort by for the figures of
-    a ranking, smaller is better, the first counting most.
+    """Return arrays (N,) to sort fixtures by the figures of a
+    ranking; the first counts most, smaller is better.
 
-    All but the last are rounded to two significant digits. ``quality`` is (N, Q).
+    All but the last are rounded to two significant digits. ``quality`` (N, Q) are the figures.
     """
     keys, ranking = [], list_ranking_figures(ranking)
     for place, key in enumerate(ranking):
@@ -456,7 +485,7 @@ def round_coarsely(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def make_best_possible_figures(count: int, query: Query) -> NDArray[np.float64]:
-    """Return (count, F) figures of quality at least as good as those of any fixture of a query.
+    """Return ``count`` equal rows of figures of quality that no fixture of a query can surpass, (count, F).
 
     The closure margin is a share, so at most 1 / number of pegs; clamp freedom is at most 90 degrees.
     """
@@ -467,7 +496,9 @@ def make_best_possible_figures(count: int, query: Query) -> NDArray[np.float64]:
 
 
 def is_worse(keys: NDArray[np.float64], last: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which rows (N, R) of keys come after the row ``last`` (R,) in lexicographic order."""
+    """Return a mask (N,): True for rows of ``keys`` (N, R) that come
+    lexicographically after the row ``last`` (R,).
+    """
     worse, equal = np.zeros(len(keys), np.bool_), np.ones(len(keys), np.bool_)
     for values, one in zip(keys.T, last.tolist(), strict=True):
         worse |= equal & (values > one)

@@ -62,7 +62,7 @@ class SearchWork:
 
     Parameters
     ----------
-    complete : whether it came to its end.
+    complete : whether the search came to its end.
     statistics : see ``Result.statistics``.
     cells : how many ranges of orientation were examined.
     examined : how many sets of four contacts were examined; None for as many as there are records.
@@ -75,8 +75,10 @@ class SearchWork:
 
 
 def make_stage_progress(progress: Progress | None, low: float, high: float) -> Progress | None:
-    """Return a progress callback for a stage that takes the
-    whole from fraction ``low`` to ``high``; None for None.
+    """Return a progress callback for one stage of the work: its
+    fraction 0 to 1 is reported as ``low`` to ``high``.
+
+    None where ``progress`` is None.
     """
     if progress is None:
         return None
@@ -117,8 +119,9 @@ def list_result(
 def make_collected_result(
     collector: ResultCollector, work: SearchWork, progress: Progress | None = None
 ) -> Result:
-    """Finish a collector's work; return the result without
-    fixtures in its table, which the collector yields afterwards.
+    """Finish a collector's work and return its result, whose table is empty.
+
+    The collector yields the fixtures afterwards.
 
     Parameters
     ----------
@@ -145,7 +148,9 @@ def make_collected_result(
 
 
 def add_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
-    """Return the result with the collector's fixtures, marked as cut short if some are left out."""
+    """Return the result with the collector's fixtures as its table, marked
+    as cut short if some are left out.
+    """
     tables, listed = list(collector.iterate_tables(progress)), collector.listed_count
     # After a cancel in the meantime, millions of fixtures are not put together any more.
     enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
@@ -157,10 +162,11 @@ def add_table(result: Result, collector: ResultCollector, progress: Progress | N
 def make_best_result(
     kept: BestFixtures, work: SearchWork, is_part: bool = False, is_limited: bool = False
 ) -> Result:
-    """Return the result of a search for the best fixtures; with ``is_part`` all that may be among the best.
+    """Return the result of a search for the best fixtures; with
+    ``is_part``, of all that may be among the best.
 
-    With ``is_limited``, or once fixtures were dropped, only listed fixtures are counted, as the total is not
-    known.
+    Where fixtures were dropped, or with ``is_limited``, the total is not known; then only listed fixtures are
+    counted.
     """
     candidates, account = kept.finish()
     kept.has_dropped |= is_limited
@@ -187,8 +193,10 @@ def make_result(
     work: SearchWork,
     is_part: bool = False,
 ) -> Result:
-    """Return the result of candidates that are decided already,
-    with the report on their records and the search's statistics.
+    """Return the result of candidates that are decided already.
+
+    ``account`` is the report on their records, ``work`` the statistics of the search. ``is_part`` says that
+    the result is to be joined with others.
     """
     with ThreadPoolExecutor(max_workers=1) as pool:
         collector = ResultCollector(problem, pool, 1, is_part=is_part)
@@ -197,7 +205,7 @@ def make_result(
 
 
 def make_proof(account: SearchReport, work: SearchWork) -> ProofReport:
-    """Return the proof report from the report on records and the statistics of the search."""
+    """Return the proof report, made of the report on records and the statistics of the search."""
     # A pair of chords that was given up counts as one candidate.
     examined = work.examined
     candidates = account.records if examined is None else examined + account.given_up - account.left
@@ -215,8 +223,8 @@ class RankedTable:
 
     Parameters
     ----------
-    query : what is asked.
-    problem : of one direction of the clamp, for what all directions have in common.
+    query : the query.
+    problem : problem of one direction of the clamp; only what all directions have in common is used.
     waiting : tables not yet measured.
     has_dropped : whether fixtures were skipped uncounted since they cannot be among the best.
     """
@@ -248,8 +256,8 @@ class RankedTable:
             self.measure()
 
     def measure(self) -> None:
-        """Measure and count the waiting fixtures; where only
-        the best are asked for, keep what may be among them.
+        """Measure and count the fixtures that wait; where only the best are
+        asked for, keep those that may be among them.
         """
         if not self.waiting:
             return
@@ -274,14 +282,16 @@ class RankedTable:
 
     @property
     def keys(self) -> OrderKeys:
-        """Ranking keys of the fixtures kept, after measuring what waits."""
+        """Ranking keys of the fixtures kept; those that wait are measured first."""
         self.measure()
         if self.known is None:
             return make_table_keys(self.concatenate(), self.query, self.effective)
         return self.known
 
     def are_beaten(self, bounds: OrderKeys, floor: int) -> NDArray[np.bool_]:
-        """Return which (N,) bounds are of fixtures surely not among the best; none where all are asked for.
+        """Return a mask (N,): True for bounds of fixtures that are surely not among the best.
+
+        All False where all fixtures are asked for.
 
         Parameters
         ----------
@@ -292,7 +302,8 @@ class RankedTable:
         return bounds.are_beaten(self.keys, self.query.best, floor)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Return whether fixtures with keys no less than the one bound are surely not among the best.
+        """Return whether every fixture whose keys are at least
+        ``bound`` (one row) is surely not among the best.
 
         If so, ``has_dropped`` is set.
         """
@@ -334,8 +345,9 @@ class RankedTable:
 
 
 def join_ways(results: Sequence[Result], query: Query) -> Result:
-    """Return the results of the separate directions of a toolkit,
-    in the order of ``Toolkit.ways``, as one ranked result.
+    """Return one ranked result, joined from the results of the separate directions of a toolkit.
+
+    ``results`` are in the order of ``Toolkit.ways``.
     """
     table = join_tables([result.table for result in results])
     # After a cancel only the best of a direction may be listed; then no more of all directions can be.
@@ -371,10 +383,9 @@ def join_ways(results: Sequence[Result], query: Query) -> Result:
 
 
 def join_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
-    """Yield the notes of a joined result: those of its parts,
-    and one for undecided candidates or for no fixture.
+    """Yield the notes of a joined result: those of its parts, and one on undecided candidates or no fixture.
 
-    Of several reasons for no fixture, the one of the latest stage is chosen.
+    Where the parts give several reasons for having no fixture, the reason of the latest stage is chosen.
     """
     proofs = [result.proof for result in results if result.proof is not None]
     verified, undecided = (
@@ -399,7 +410,9 @@ def join_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
 
 
 def join_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
-    """Return the tables concatenated; the arrangement of table k, 0 in itself, becomes k."""
+    """Return the tables concatenated; fixtures of table k, whose
+    arrangement there is 0, get arrangement k.
+    """
     numbered = [
         evolve(table, arrangement=(table.arrangement + number).astype(np.int8))
         for number, table in enumerate(tables)

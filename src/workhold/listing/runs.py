@@ -5,10 +5,10 @@ instead of being merged row by row, which array operations do better.
 
 Glossary
 --------
-key : bytes that compare as rows are to be ordered; rows of one key stay in the order in which they were
-    added.
+key : a byte string for each row; rows are ordered by comparing their keys. Rows with equal keys stay in the
+    order in which they were added.
 run : rows in the order of their keys.
-part : the rows of all runs between two keys.
+part : all rows, of whatever run, whose keys lie between two given keys.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ MOST = (1 << 64) - 1
 
 
 def make_keys(*numbers: NDArray[Any]) -> Keys:
-    """Return keys (N,), byte strings that sort as the tuples of the given numbers (N,) do.
+    """Return byte strings (N,) that sort as the tuples (numbers[0][k], numbers[1][k], …) do.
 
-    Numbers are integers from 0 up, or floats, with NaN last.
+    Each argument is (N,): integers from 0 up, or floats, of which NaN comes last.
     """
     words = np.empty((len(numbers[0]), len(numbers)), ">u8")
     for k, values in enumerate(numbers):
@@ -61,10 +61,10 @@ def make_keys(*numbers: NDArray[Any]) -> Keys:
 
 
 def sort_keys(keys: Keys) -> NDArray[np.intp]:
-    """Return the indices (N,) that sort keys, stably.
+    """Return the indices (N,) that sort keys; equal keys keep their order.
 
     For speed the words of the keys are combined into one integer, each word as its distance from the least
-    or, where that takes too many bits, as its rank; the index is in the lowest bits.
+    word or, where that takes too many bits, as its rank; the index is in the lowest bits.
     """
     count = max(len(keys), 1)
     number, size = np.zeros(len(keys), np.uint64), 1
@@ -80,9 +80,9 @@ def sort_keys(keys: Keys) -> NDArray[np.intp]:
 
 
 def compress_numbers(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]:
-    """Return integers (N,) from 0 in the same order as ``word``, and a bound one above the largest.
+    """Return (1) integers from 0 up in the same order as ``word``, (N,), and (2) a number above all of them.
 
-    They are distances from the least if their range is at most ``most``, else ranks.
+    The integers are distances from the least word if these are below ``most``, else ranks.
     """
     least = int(word.min())
     span = int(word.max()) - least + 1
@@ -90,7 +90,9 @@ def compress_numbers(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.ui
 
 
 def rank_numbers(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
-    """Return the dense ranks (N,) of numbers, and how many distinct numbers there are."""
+    """Return (1) the ranks of numbers, (N,), from 0 without gaps,
+    and (2) how many distinct numbers there are.
+    """
     values, ranks = np.unique(word, return_inverse=True)
     return ranks.astype(np.uint64), len(values)
 
@@ -110,13 +112,13 @@ class SortedRun:
 
     @classmethod
     def from_columns(cls, keys: Keys, columns: Columns) -> SortedRun:
-        """Return a run of these rows, sorted by keys; rows of equal keys keep their order."""
+        """Return a run of rows, sorted by their keys; rows of equal keys keep their order."""
         order = sort_keys(keys)
         return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
     @classmethod
     def merge_runs(cls, runs: Sequence[SortedRun]) -> SortedRun:
-        """Return one run of the rows of several, at least one."""
+        """Return one run with the rows of several runs; there must be at least one."""
         if len(runs) == 1:
             return runs[0]
         columns = zip(*(run.columns for run in runs), strict=True)
@@ -137,7 +139,7 @@ class SortedRun:
         return int(np.searchsorted(self.keys, key)[0])
 
     def read_rows(self, first: int, end: int) -> SortedRun:
-        """Return the rows from ``first`` up to but without ``end``."""
+        """Return the rows ``first`` to ``end - 1`` as a run."""
         return SortedRun(self.keys[first:end], tuple(column[first:end] for column in self.columns))
 
 
@@ -147,7 +149,7 @@ class ScratchFile:
 
     Parameters
     ----------
-    folder : in which it is created.
+    folder : folder in which the file is created.
     """
 
     folder: Path
@@ -193,7 +195,7 @@ class StoredRun:
 
     @classmethod
     def from_run(cls, run: SortedRun, scratch: ScratchFile) -> StoredRun:
-        """Write a run to a scratch file, and return it as a stored one."""
+        """Write a run to a scratch file, and return the stored run."""
         arrays = (run.keys, *run.columns)
         places = tuple(scratch.write(array) for array in arrays)
         forms = tuple((array.dtype, array.shape[1:]) for array in arrays)
@@ -203,7 +205,7 @@ class StoredRun:
         return self.count
 
     def read_array(self, number: int, first: int, end: int) -> NDArray[Any]:
-        """Return rows ``first`` up to but without ``end`` of array ``number``; 0 are the keys."""
+        """Return the rows ``first`` to ``end - 1`` of one array; ``number`` 0 is the array of keys."""
         form, shape = self.forms[number]
         size = form.itemsize * int(np.prod(shape, dtype=np.int64))
         content = self.scratch.read(self.places[number] + first * size, (end - first) * size)
@@ -217,7 +219,7 @@ class StoredRun:
         )
 
     def read_rows(self, first: int, end: int) -> SortedRun:
-        """Return the rows from ``first`` up to but without ``end``, read into memory."""
+        """Return the rows ``first`` to ``end - 1``, read into memory, as a run."""
         keys, *columns = (self.read_array(number, first, end) for number in range(len(self.forms)))
         return SortedRun(keys, tuple(columns))
 
@@ -228,7 +230,7 @@ class ExternalSort:
 
     Parameters
     ----------
-    folder : for the temporary file; None to keep all in memory.
+    folder : folder for the temporary file; None to keep all in memory.
     """
 
     folder: Path | None = None
@@ -240,7 +242,7 @@ class ExternalSort:
         return sum(map(len, self.runs)) + sum(map(len, self.fresh))
 
     def add_run(self, run: SortedRun) -> None:
-        """Add a sorted run; write runs to disk once enough are in memory, if there is a folder.
+        """Add a sorted run; where there is a folder, runs are written to disk once enough are in memory.
 
         Raises
         ------
@@ -254,9 +256,10 @@ class ExternalSort:
             self.fresh = []
 
     def list_parts(self) -> list[Callable[[], SortedRun]]:
-        """Return functions that each read one part; the parts in order are all rows sorted by key.
+        """Return functions that each read one part; the parts, one after
+        the other, are all rows in order of key.
 
-        Rows of equal keys are in one part. Needs at least one run.
+        Rows of equal keys are in the same part. At least one run must have been added.
         """
         runs = [*self.runs, *self.fresh]
         keys = np.sort(np.concatenate([run.some_keys for run in runs]))
@@ -274,7 +277,7 @@ class ExternalSort:
     def make_part(
         self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]
     ) -> Callable[[], SortedRun]:
-        """Return a function that merges rows ``first[k]`` to ``end[k]`` of each run k."""
+        """Return a function that merges the rows ``first[k]`` to ``end[k] - 1`` of every run k."""
         return lambda: SortedRun.merge_runs(
             [run.read_rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
         )
@@ -289,10 +292,10 @@ class ExternalSort:
 def map_in_order(
     pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]
 ) -> Iterator[Other]:
-    """Yield ``work(item)`` for each item in order, computed on the pool.
+    """Yield ``work(item)`` for each item, in the order of the items, computed on the pool.
 
-    At most ``ahead`` items, besides the one awaited, are begun and not yet yielded. When the iteration ends
-    early, waits for what runs.
+    Apart from the item that is awaited, at most ``ahead`` items are begun and not yet yielded. If the caller
+    ends the iteration early, it waits until running work has finished.
     """
     running: deque[Future[Other]] = deque()
     try:

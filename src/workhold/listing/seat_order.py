@@ -4,8 +4,9 @@ Contacts of three locators and one clamp are grouped by seat before they are pro
 the rank of a fixture, whatever its two clamps are:
 
 - location error and tilt are the seat's alone, the same for all its clamps;
-- the least distance to an end or an edge, and the smallest face, are those of five contacts, so no larger
-  than those of three. Warnings of contacts near an edge are at least those of the locators;
+- the least distance to an end or an edge, and the smallest face, are taken over five contacts, so they are no
+  larger than the same figures over the three locators. At least as many contacts as locators are near an
+  edge;
 - points and warnings grow with location error, contacts near an edge, tilt, a strong peg and a small face.
   Without the clamps' share they can only be fewer;
 - the closure margin is at most 1/5, for five shares sum to 1, and clamp freedom at most 90 degrees; forces
@@ -17,15 +18,15 @@ search may stop once as many fixtures are kept as are asked for, and the next bo
 them. Then no further seat has a listed fixture. Seats with equal bounds are examined, since equal fixtures
 are listed in the order of holes.
 
-Bounds by pairs of clamps (``listing.bounds``) take longer. So they are computed only for groups that are
-next, or as good as these by all figures before the first that pairs bound.
+Bounds by pairs of clamps (``listing.bounds``) take longer. So they are computed only for the groups that come
+next, and for groups that are as good as these by all figures before the first figure that pairs bound.
 
-Seats are examined whole, with all contacts that may be theirs. A group has the same holes and nearly the same
-orientation. Contacts whose orientation is not well known are grouped with all others of the same holes. So a
-group contains every seat that it touches, and is examined independently of others. Each place of the part in
-a group is bounded by itself, and the best bound counts. A group with a contact whose place is not well known
-has no bound. If that is because the locators' lines of force are parallel or meet in a point, they hold
-nothing (``proof.degenerate``); such contacts are a group of their own, after all others.
+Seats are examined whole, with all contacts that may belong to them. A group has the same holes and nearly the
+same orientation. Contacts whose orientation is not well known are grouped with all others of the same holes.
+So a group contains every seat that it touches, and is examined independently of others. Each place of the
+part in a group is bounded by itself, and the best bound counts. A group with a contact whose place is not
+well known has no bound. If that is because the locators' lines of force are parallel or meet in a point, they
+hold nothing (``proof.degenerate``); such contacts are a group of their own, after all others.
 """
 
 from __future__ import annotations
@@ -108,11 +109,11 @@ ROUNDS = 3
 def make_ordered_groups(
     records: Sequence[PackedContacts], problems: Sequence[Problem], query: Query
 ) -> SeatGroups:
-    """Return the groups of seats of the contacts of all directions, with bounds of their rank.
+    """Return the contacts of all directions of the clamp in groups of seats, with bounds of their rank.
 
     Parameters
     ----------
-    records, problems : one of each for each direction of the clamp.
+    records, problems : contacts and problem of each direction of the clamp.
     """
     numbers = [
         number_seats(some, problem)
@@ -146,8 +147,9 @@ def make_ordered_groups(
         return groups
 
     def sharpened(order: IntArray, starts: IntArray) -> OrderKeys:
-        """Return bounds of some groups, given their contacts
-        and starts, by the pairs of their clamps as well.
+        """Return bounds of some groups that also take account of the pairs of their clamps.
+
+        ``order`` and ``starts`` are as in :class:`SeatGroups`.
         """
         group = np.cumsum(np.bincount(starts, minlength=len(order))) - 1
         return bound_groups(order, group, known, records, problems, query, by_pairs=True)
@@ -165,12 +167,13 @@ def bound_groups(
     query: Query,
     by_pairs: bool = False,
 ) -> OrderKeys:
-    """Return lower bounds (G,) of the ranking keys of fixtures in each group, the least over the seats in it.
+    """Return lower bounds of the ranking keys of the fixtures in each
+    of G groups; the best of its seats counts.
 
     Parameters
     ----------
-    order : (M,) indices of contacts, group by group, and by place in each.
-    group : (M,) group number of each, ascending from 0.
+    order : (M,) indices of contacts, group by group, and within a group by place.
+    group : (M,) group number of each contact in ``order``, ascending from 0.
     known : (orientations, their error bounds) in radians, and (places, their error bounds) in mm, of all
         contacts.
     by_pairs : whether pairs of clamps are to sharpen the bounds.
@@ -200,29 +203,33 @@ def bound_groups(
 
 
 def find_best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
-    """Return, for each slice of ``order`` (M,) that begins at
-    ``starts`` (G,), the lowest index with the least ``off``.
+    """Return, for each of G slices of ``order`` (M,), the index in it whose place is known best.
+
+    Slice g begins at ``starts[g]``. ``off`` (M,) are the error bounds of the places; of equal ones the lowest
+    index is taken.
     """
     least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
     return np.asarray(np.minimum.reduceat(np.where(off <= least, order, NO_CONTACT), starts))
 
 
 def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
-    """Return which numbers (N,) are among ``few`` (F,), which are ascending."""
+    """Return a mask (N,): True for numbers that occur in ``few`` (F,), which is ascending."""
     if len(few) == 0:
         return np.zeros(len(numbers), np.bool_)
     return np.asarray(few[np.minimum(np.searchsorted(few, numbers), len(few) - 1)] == numbers)
 
 
 def number_seats(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array, BoolArray]:
-    """Return six arrays (N,) that identify the seats of
-    contacts (N, 19), whatever the direction of the clamp.
+    """Return six arrays (N,) that identify the seat of each contact
+    (N, 19), whatever the direction of its clamp.
 
     Returns
     -------
     holes : a hash of the locators' holes, the same wherever they are on the plate.
-    theta, turn : orientation in radians counted from ``START``, and its error bound.
-    place, off : a number in mm for the place of the part relative to the holes, and its error bound.
+    theta : orientation in radians, counted from ``START``.
+    turn : error bound of ``theta`` in radians.
+    place : a number in mm that stands for the place of the part relative to the holes.
+    off : error bound of ``place`` in mm.
     holds : whether the locators may hold the part.
     """
     frame, count = problem.frame, len(records)
@@ -239,11 +246,12 @@ def number_seats(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
 
 
 def bound_places_off(records: Array, problem: Problem) -> Array:
-    """Return error bounds (N,) in mm of the locators' centres in contacts (N, 19); inf where not known.
+    """Return error bounds of the locators' centres in contacts (N, 19), in mm, (N,); inf where not known.
 
-    The records have one bound for all pegs. Where a clamp grazes an arc, that is poor, but the locators fix
-    the part. If centres are within r of their true places, each is off the tangent by at most r^2 (1/R + 1/L)
-    plus its residual, so the part is off by that times the inverse of the locators' wrenches, a smaller r.
+    A record has one bound for all its pegs, which is poor where the clamp grazes an arc; but the locators
+    alone fix the part. If the centres are within r of their true places, each is off the tangent by at most
+    r^2 (1/R + 1/L) plus its residual; R is the arc's radius, L the length that moments are divided by. So the
+    part is off by this times the inverse of the locators' wrenches, which is a smaller r.
     """
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH] * problem.wrench_length)
     off = np.asarray(records[:, record.LARGEST_RADIUS] + turn)
@@ -272,15 +280,14 @@ def bound_places_off(records: Array, problem: Problem) -> Array:
 def bound_keys(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> OrderKeys:
-    """Return lower bounds, one row for each record (N, 19),
-    of the ranking keys of fixtures with its three locators.
+    """Return lower bounds of the ranking keys of fixtures with the three locators of each record, N rows.
 
-    A contact at a joint may be listed on either face; the better one counts.
+    A contact at a joint may be listed on either of two faces; the better one counts. ``records`` is (N, 19).
 
     Parameters
     ----------
-    off : (N,) error bounds of places, in mm.
-    pairs : (N, 3) bounds by the pairs of clamps; None where not known.
+    off : (N,) error bounds of the locators' centres, in mm.
+    pairs : (N, 3) bounds by the pairs of clamps, see ``listing.bounds.bound_pairs``; None where not known.
     """
     number, records = assign_contacts_to_faces(records, problem, LOCATORS)
     off, pairs = off[number], None if pairs is None else pairs[number]
@@ -296,15 +303,16 @@ def bound_keys(
 
 
 def compute_seen_angles(records: Array, problem: Problem) -> Array:
-    """Return the orientations (N,) of the part on the plate in radians, from records (N, 19)."""
+    """Return the orientations of the part on the plate in radians, (N,), from records (N, 19)."""
     return np.asarray(problem.frame.quarters * (pi / 2) - records[:, record.PSI])
 
 
 def bound_error_factors(records: Array, off: Array, problem: Problem, query: Query) -> Array:
-    """Return lower bounds (N,) of the factors on the location error of fixtures with the records' locators.
+    """Return lower bounds of the factors on the location error, (N,),
+    of fixtures with the locators of each record.
 
-    Clamps and an overhanging part can only make the factors larger. ``off`` (N,) are error bounds of places
-    in mm.
+    Clamps and an overhanging part can only make the factors larger. ``off`` (N,) are error bounds of the
+    locators' centres in mm.
     """
     effective, c = EffectiveErrors.from_query(query), make_candidates(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
@@ -325,9 +333,10 @@ def bound_error_factors(records: Array, off: Array, problem: Problem, query: Que
 def bound_figures(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> Array:
-    """Return figures of quality (N, F) at least as good as those of any fixture with the records' locators.
+    """Return figures of quality (N, F) at least as good as those of
+    any fixture with the locators of each record.
 
-    NaN as location error where nothing is known. ``off`` and ``pairs`` are as of :func:`bound_keys`.
+    The location error is NaN where no bound is known. ``off`` and ``pairs`` are as in :func:`bound_keys`.
     """
     touched = TouchableFeatures.from_workpiece(
         problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length

@@ -70,13 +70,14 @@ IntArray = NDArray[np.int64]
 
 @define(frozen=True, eq=False)
 class Seats:
-    """S seats of L locators each, and their clamps; columns and
-    rows count as in :class:`listing.clamp_contacts.ClampContacts`.
+    """S seats of L locators each, and their clamps.
+
+    Columns and rows count as in :class:`listing.clamp_contacts.ClampContacts`.
 
     Parameters
     ----------
-    feature, column, row : (S, L) of the locators, sorted by column, then row.
-    face : (S, 3) numbers of the faces that locators and wall touch, those on a wall last.
+    feature, column, row : (S, L) feature touched and hole of each locator; sorted by column, then by row.
+    face : (S, 3) numbers of the faces that locators and wall touch; faces on the wall come last.
     theta : (S,) orientation of the part on the plate in radians, in [0, 2 pi) within rounding.
     point : (S, 2) a point of the part in its own coordinates, in mm.
     start : (S, 2) vector on the plate from that point to the first locator's centre.
@@ -99,7 +100,7 @@ class Seats:
 
     @property
     def spans(self) -> IntArray:
-        """Largest column and row (S, 2) of the locators."""
+        """Largest column and row of each seat's locators, (S, 2)."""
         return np.stack([self.column.max(axis=1, initial=0), self.row.max(axis=1, initial=0)], axis=1)
 
 
@@ -109,13 +110,13 @@ def make_seats(
     within: Sequence[tuple[float, float]] = ((-inf, inf),),
     is_limited: bool = False,
 ) -> Seats:
-    """Return the seats that contacts of some directions make:
-    contacts with the same locators and pose are one seat.
+    """Return the seats that contacts of some directions make; contacts
+    with equal locators and pose are one seat.
 
     Parameters
     ----------
-    parts : contacts of each direction.
-    problem : of one of them.
+    parts : contacts of each direction of the clamp.
+    problem : problem of one of the directions.
     within : ranges [low, high) of orientation in radians; seats in none of them are left out.
     is_limited : whether contacts were found up to a limit of the location error.
     """
@@ -157,8 +158,8 @@ def make_seats(
 def make_clamp_columns(found: ClampContacts, seat: IntArray, count: int, problem: Problem) -> dict[str, Any]:
     """Return the fields ``clamps`` and ``clamp_feature`` of :class:`Seats`: each clamp once, seat by seat.
 
-    In a seat they are sorted by direction, line and feature. ``seat`` (M,) is the seat of each contact, -1 to
-    leave it out; ``count`` is the number of seats.
+    The clamps of a seat are sorted by direction, line and feature. ``seat`` (M,) is the index of each
+    contact's seat, or -1 to leave the contact out; ``count`` is the number of seats.
     """
     chosen = np.flatnonzero(seat >= 0)
     words = pack_integers(
@@ -207,16 +208,19 @@ def make_clamp_columns(found: ClampContacts, seat: IntArray, count: int, problem
 
 @define(eq=False)
 class ClampedSeats:
-    """The fixtures with two clamps found so far, or the best of them.
+    """The fixtures with two clamps found so far, or only the best of them.
+
+    Pairs of clamps are rows (N, 10), whose columns ``kernels.contact.seats`` or the kernel that lists pairs
+    defines.
 
     Parameters
     ----------
-    query : what is asked, in a toolkit with two clamps.
-    problem : of one of its directions, for what all have in common.
+    query : the query, in a toolkit with two clamps.
+    problem : problem of one direction of the clamps; only what all directions have in common is used.
     is_limited : whether only fixtures without a warning are of interest.
-    looked_at : how many seats there were.
-    seats : at how many, counted for each pair of directions, two clamps hold the part.
-    pairs : how many such pairs of clamps there are.
+    looked_at : number of seats examined.
+    seats : number of combinations of a seat and a pair of directions in which two clamps hold the part.
+    pairs : number of pairs of clamps that hold the part.
     """
 
     query: Query
@@ -246,14 +250,15 @@ class ClampedSeats:
 
     @property
     def turns_half(self) -> bool:
-        """Whether half a turn of everything leaves the toolkit as it is."""
+        """Whether half a turn of pegs and part together gives a set-up of the same toolkit."""
         return allows_half_turns(self.toolkit)
 
     def mark_paired_seats(self, seats: Seats) -> IntArray:
-        """Return (S,) 1 for seats whose opposite clamps are to be paired, else 0.
+        """Return for each seat 1 if its opposite clamps are to be paired, else 0, (S,).
 
-        Where half a turn carries the toolkit onto itself, these are the seats with an orientation in [0, pi),
-        as each other fixture with opposite clamps is one of these turned; else all.
+        Two cases: (a) where half a turn carries the toolkit onto itself, 1 for the seats with an orientation
+        in [0, pi), since half a turn makes one of them of any other fixture with opposite clamps; (b)
+        otherwise 1 for all.
         """
         return ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
 
@@ -266,11 +271,15 @@ class ClampedSeats:
         return self.count_held_seats(rows)
 
     def count_held_seats(self, rows: Array) -> int:
-        """Return how many different (seat, pair of directions) the pairs (N, 10) have."""
+        """Return how many different combinations of seat and pair of
+        directions some pairs of clamps (N, 10) have.
+        """
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
-        """Find the pairs of clamps at more seats; add their fixtures, counts and undecided pairs."""
+        """Find the pairs of clamps that hold at some seats; add their
+        fixtures, counts and undecided pairs.
+        """
         self.looked_at += len(seats)
         half, every = self.mark_paired_seats(seats), self.query.listing == "all"
         rows = list_pairs(seats.spans, half, seats.clamps, self.hardware, every)
@@ -291,14 +300,18 @@ class ClampedSeats:
         self.ranked.add(self.make_table(rows, seats))
 
     def select_precise(self, rows: Array, seats: Seats) -> Array:
-        """Return the pairs (N, 10) at seats whose location error is no larger than the query allows."""
+        """Return the pairs of clamps at seats whose location error is no larger than the query allows.
+
+        ``rows`` (N, 10) are pairs of clamps at ``seats``.
+        """
         if self.query.max_location_error is None or not len(rows):
             return rows
         table = measure_table_as_touched(self.make_table(rows, seats), self.query, self.ranked.touched)
         return np.asarray(rows[are_precise(table, self.query)])
 
     def select_of_interest(self, rows: Array, seats: Seats) -> Array:
-        """Return the pairs (N, 10) at seats that may be among the best.
+        """Return the pairs of clamps at seats that may be among the
+        best; ``rows`` (N, 10) are pairs at ``seats``.
 
         An undecided pair hardly closes, so it has a warning, and is not the best of a seat that has another
         pair.
@@ -314,8 +327,9 @@ class ClampedSeats:
         return rows[wanted[seat]]
 
     def sharpen_seats(self, seats: Seats, rows: Array) -> Seats:
-        """Return the seats with the reactions to the clamps
-        of some pairs (N, 10) computed in ball arithmetic.
+        """Return the seats with the locators' reactions to some clamps computed in ball arithmetic.
+
+        They are the clamps of the pairs ``rows`` (N, 10).
         """
         from workhold.proof.exact_contacts import bound_reactions
 
@@ -330,9 +344,9 @@ class ClampedSeats:
         return evolve(seats, clamps=seats.clamps._replace(reals=reals))
 
     def make_candidate_box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
-        """Return a seat and one of its clamps, by their indices, as a box about the solution.
+        """Return a seat and one of its clamps, given by their indices, as a box about the solution.
 
-        Its frame has the clamp's travel along +x.
+        In the frame of the box the clamp opens along +x.
         """
         pitch, integers = np.array(self.toolkit.carriers[0].pitch), seats.clamps.integers[clamp]
         carrier = self.toolkit.find_carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
@@ -351,8 +365,9 @@ class ClampedSeats:
         return make_box_beside(features, offsets, middle, self.problem)
 
     def make_table(self, rows: Array, seats: Seats) -> FixtureTable:
-        """Return the pairs (N, 10) as a table in holes of the plate,
-        with closure margin and clamp freedom as only figures.
+        """Return pairs of clamps (N, 10) as a table of fixtures in holes of the plate.
+
+        Of the figures of quality only closure margin and clamp freedom are known, the others are NaN.
         """
         seat, clamp = rows[:, SEAT].astype(np.int64), rows[:, [CLAMPS, CLAMPS + 1]].astype(np.int64)
         direction, reals = seats.clamps.integers[clamp, DIRECTION], seats.clamps.reals[clamp]
@@ -382,10 +397,10 @@ class ClampedSeats:
         )
 
     def find_holes(self, rows: Array, seats: Seats) -> tuple[IntArray, IntArray, IntArray]:
-        """Return columns (N, 5), rows (N, 5), and the lowest
-        column and row (N, 2) that were subtracted from them.
+        """Return (1) columns (N, 5), (2) rows (N, 5), and (3) the lowest
+        column and row (N, 2) that were subtracted.
 
-        The contacts of a pair are in the order locators, wall ends, clamps; rows beside a wall are not
+        The contacts of a fixture are in the order locators, wall ends, clamps. Rows beside a wall are not
         shifted.
         """
         seat, clamp, bolted = (
@@ -434,10 +449,10 @@ def list_undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecide
 
 
 def compute_line_height(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
-    """Return the height in mm of a clamp's line above the
-    first locator (2,), in the frame turned by ``turn`` (2, 2).
+    """Return the height in mm of a clamp's line above the first locator, in a turned frame.
 
-    ``integers`` is the clamp's row of integers.
+    ``integers`` is the clamp's row of integers, ``first`` (2,) the locator's place in mm, ``turn`` (2, 2) the
+    matrix that turns vectors into the frame.
     """
     upright = bool(is_upright(integers[DIRECTION]))
     away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]

@@ -36,12 +36,12 @@ class WallFixtures(RowArrays):
     ----------
     edge : (N,) number of the hull edge that lies on the wall.
     row : (N,) row of the locator.
-    line : (N,) row of the clamp, or its column relative to the locator's.
-    locator, tip : (N, 2) centres.
+    line : (N,) row of the clamp or, if it moves along a column, its column counted from the locator's.
+    locator, tip : (N, 2) centres of the locator and of the clamp's tip.
     feature : (N, 2) indices of the features touched by locator and clamp.
-    null : (N, 4) null vectors of the wall's two ends, locator and clamp, not scaled.
-    push : (N,) share of its force that the clamp passes on along its direction.
-    doubt : (N,) error bounds of entries of the null vector, with two clamps; else 0.
+    null : (N, 4) null vectors: forces of the wall's two ends, locator and clamp, up to a common factor.
+    push : (N,) force of the clamp along its line, divided by the force at its face.
+    doubt : (N,) error bounds of the entries of ``null``; 0 unless there are two clamps.
     """
 
     edge: IntArray
@@ -60,14 +60,15 @@ class WallFixtures(RowArrays):
         return np.zeros(len(self.edge))
 
     def list_each_once(self) -> WallFixtures:
-        """Return the fixtures without repetitions: a contact
-        at a tangent joint is found on both features there.
+        """Return the fixtures without repetitions.
+
+        A contact at a tangent joint is found on both features that meet there; the lower one is kept.
         """
         place = self.locator[:, 0] + self.tip @ np.array([0.7548776662, 0.5698402910])
         return self.take(find_first_of_each((self.edge, self.row, self.line), place, self.feature))
 
     def make_clamp_placement(self, problem: Problem) -> ClampPlacement:
-        """Return the placement problem of the clamps; columns count from the locator's."""
+        """Return the data for placing the clamps of the fixtures; columns count from the locator's."""
         plate, clamp, flush = problem.toolkit.carriers[0], problem.toolkit.moving, problem.workpiece.flush
         assert clamp.travel is not None
         columns, rows = find_last_holes(plate)
@@ -92,14 +93,15 @@ class WallFixtures(RowArrays):
 
 
 def find_first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
-    """Return the indices of one fixture of each set that agrees
-    in integers and place, that with the lowest features.
+    """Return the index of one fixture of each set whose members agree in integers and place.
+
+    Kept is the member with the lowest features.
 
     Parameters
     ----------
-    columns : integers, each (N,), that identify fixtures.
-    place : (N,) one number in mm that mixes all places, as in ``canonical_form.list_each_once``.
-    feature : (N, 2) features touched.
+    columns : arrays (N,) of integers that agree within a set.
+    place : (N,) one number in mm that mixes all places, as in ``canonical_form.number_places``.
+    feature : (N, 2) indices of the features touched.
     """
     order = np.lexsort([place, *columns[::-1]])
     new = np.ones(len(order), np.bool_)
@@ -116,7 +118,7 @@ def turn_points(points: Array, angle: Array) -> Array:
 
 
 def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> FixtureTable:
-    """Return the table of fixtures whose clamps are in holes (N,) of their lines.
+    """Return the table of fixtures whose clamps are bolted in holes ``hole`` (N,) of their lines.
 
     Of the figures of quality only the closure margin is known, the others are NaN.
     """
@@ -152,7 +154,7 @@ def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fi
 
 
 def place_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
-    """Return the table of those fixtures whose clamps have a place, each once."""
+    """Return the table of those fixtures whose clamps have a place, each fixture once."""
     found = found.list_each_once()
     hole, fits = found.make_clamp_placement(problem).find_nearest_holes(problem)
     return make_wall_table(found.take(fits), hole[fits], problem)

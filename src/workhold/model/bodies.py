@@ -99,9 +99,10 @@ class FixtureBody:
     Parameters
     ----------
     name : such as "peg L-A1".
-    kind : what it is.
+    kind : kind of body, which gives it its colour.
     slabs : from below upward.
-    opens : unit vector along which it moves away when the toolkit is opened; None where it stands still.
+    opens : unit vector along which the body moves away when the toolkit is opened; None where it stands
+        still.
     """
 
     name: str
@@ -116,11 +117,11 @@ class BodySizes:
 
     Parameters
     ----------
-    thickness : of the part.
-    plate_thickness : of all plates.
-    top : how far the pegs reach above where the part lies.
-    peg_length : of the pegs.
-    others : how far clamps and walls reach above where the part lies.
+    thickness : thickness of the part.
+    plate_thickness : thickness of all plates.
+    top : height of the pegs' upper ends above the plane on which the part lies.
+    peg_length : length of the pegs.
+    others : height of the upper ends of clamps and walls above the plane on which the part lies.
     is_assumed : whether nobody said how thick the part is.
     support_height : how far the part lies above the plates, on supports; 0 on the plates.
     """
@@ -143,11 +144,11 @@ class BodySizes:
         peg_height: float | None = None,
         support_height: float = 0.0,
     ) -> BodySizes:
-        """Return all heights in mm, a default for each that is None.
+        """Return the heights of all bodies in mm; each argument that is None gets its default.
 
-        Defaults: the thickness is the height of the part's solid, else :data:`THICKNESS`; the plates' is
-        :data:`THICKNESS`; pegs reach up to ``solid.peg_height``, no higher than the part, else to the part's
-        top; a peg reaches from there down to the lower side of its plate.
+        Defaults: the thickness is that of the part's solid, else :data:`THICKNESS`; the plates' is
+        :data:`THICKNESS`. The peg height is the solid's ``peg_height``, at most the thickness; without a
+        solid it is the thickness. The peg length reaches from there down to the lower side of the plate.
 
         Raises
         ------
@@ -274,8 +275,8 @@ def reverse(direction: Point) -> Point:
 
 
 def make_peg_bodies(seen: ShownSetUp, sizes: BodySizes) -> Iterator[FixtureBody]:
-    """Yield the pegs of all carriers:
-    full cylinders inside the plate, above it the outline with the flat, if any.
+    """Yield one body for each peg of all carriers: inside the plate a full cylinder, above the plate the
+    peg's outline, which has a flat if the peg has one.
     """
     for each in seen.carriers:
         carrier = each.carrier
@@ -388,8 +389,8 @@ def make_notched_loop(box: Box, notches: dict[int, list[tuple[Point, float]]]) -
 
 
 def compute_inner_arc(side: Line, share: float) -> tuple[float, float]:
-    """Return the middle angle and half the sweep, in radians,
-    of that arc of a circle that lies left of a line.
+    """Return (angle of the middle, half the sweep), in radians, of the arc of a circle that lies left of a
+    line.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""Clamps that are bolted to a plate: what shows of them, and the ratio and order of the forces of two.
+"""Clamps that are bolted to a plate: how they are shown, and for two clamps the ratio of their forces and the
+order in which they are tightened.
 
 Let the locators carry b1 f1 + b2 f2 where the clamps push with f1 and f2. All three are pressed exactly for
-an open interval of f2 / f1. How far apart its ends are as angles is the clamp freedom: by how much the two
+an open interval of f2 / f1. The clamp freedom is atan(upper end) - atan(lower end): by how much the two
 forces may differ. Where the interval begins at zero the first clamp alone lifts the part off no locator;
 where it has no upper end, the second does not.
 """
@@ -69,10 +70,10 @@ def compute_force_ratios(reactions: Array) -> tuple[Array, Array]:
 
 
 def compute_working_forces(reactions: Array) -> Array:
-    """Return forces (N, P) of all pegs, divided by f1 + f2,
-    at the working ratio f2 / f1 of each of N fixtures.
+    """Return the forces (N, P) of all pegs at each fixture's working ratio f2 / f1, divided by f1 + f2.
 
-    As an angle, the working ratio is the middle of the interval of :func:`ratios`.
+    The working ratio is the tangent of the mean of atan(low) and atan(high), where (low, high) is the
+    interval of :func:`compute_force_ratios`.
 
     Parameters
     ----------
@@ -92,12 +93,12 @@ class ShownClamp:
 
     Parameters
     ----------
-    carrier : the whole of it.
+    carrier : the clamp's carrier in the toolkit.
     tip : the peg that touches the part.
-    hole : centre of the hole that it is bolted in; None where only the line is known that its tip moves
-        along.
-    clamping : unit vector along which it pushes.
-    pitch : distance along that line between holes.
+    hole : centre of the hole that the clamp is bolted in; None where only the line is known along which the
+        tip moves.
+    clamping : unit vector along which the clamp pushes.
+    pitch : distance between holes along the clamping direction.
     """
 
     carrier: Carrier
@@ -124,7 +125,7 @@ class ShownClamp:
 
         Parameters
         ----------
-        more : by how much the outline is offset outward from the body, in mm.
+        more : distance in mm by which the outline is offset outward from the body.
         """
         (ax, ay), (bx, by), radius = self.back, (self.tip.x, self.tip.y), self.carrier.peg_radius + more
         length = hypot(bx - ax, by - ay)
@@ -185,10 +186,11 @@ DIGITS = 2
 
 
 def name_clamps(fixture: Fixture) -> tuple[str, ...]:
-    """Return names of a fixture's clamps, the last two of its pegs: the names of their holes or lines.
+    """Return one name for each of a fixture's last two pegs, its clamps: the name of the clamp's hole or
+    line.
 
-    Where both have the same hole or line, the direction is added, or the face where the directions agree as
-    well.
+    Where both names are equal, "hole direction" is returned for each; where the directions are equal too,
+    "hole on face N". Only for a fixture with a pair of clamps.
     """
     tips = fixture.pegs[-2:]
     holes = [tip.hole for tip in tips]
@@ -201,8 +203,8 @@ def name_clamps(fixture: Fixture) -> tuple[str, ...]:
 
 
 def name_first_clamps(fixture: Fixture) -> tuple[str, ...]:
-    """Return names of the clamps that may be tightened first without lifting the part:
-    none, one or both of two.
+    """Return the names of those clamps of a pair that may be tightened first without lifting the part: none,
+    one or both.
 
     Return an empty tuple for a fixture without a pair of clamps.
     """
@@ -285,7 +287,9 @@ EASY = 45.0
 
 
 def round_ratio_inward(ratio: float, towards: type[int] | object) -> str:
-    """Return a positive ratio as text with two digits: rounded down if ``towards`` is ``floor``, else up."""
+    """Return a positive ratio as text with two digits, rounded down if ``towards`` is ``floor`` and up
+    otherwise.
+    """
     step = 10.0 ** (floor(log10(ratio)) - DIGITS + 1)
     whole = floor(ratio / step) if towards is floor else ceil(ratio / step)
     return f"{whole * step:.{DIGITS}g}" if 1e-4 < ratio < 100 else f"{whole * step:,.4g}"

@@ -5,11 +5,11 @@ minute, F = 60 000 P / (pi D S) with D in m. Or it is the sum over the teeth in 
 kc1.1 h^(1 - mc) b. A tooth at the angle a takes a chip h = f sin a thick, f being the feed per tooth. The sum
 is taken where the teeth add up to most (H. El-Hofy, *Fundamentals of Machining Processes*, 2013, 6.3.1).
 
-A drill cycle drills, and so does straight down what its table calls a drill: forces on both sides of the axis
-cancel, and a torque is left. With kc of the chip h = f sin(point / 2) the power of a drill makes F = f D kc / 4
-at its periphery, f per turn. It presses down with 0.7 (D / 2) f kc = 1.4 F ("Common Drilling Formulas", a sheet
-of tool makers). Any other tool plunges straight down: what it mills with presses down, with its torque. A move
-straight up cuts nothing.
+A drill cycle drills, and so does a tool that moves straight down and that its table calls a drill: the forces
+on both sides of the axis cancel, and a torque is left. With kc of the chip h = f sin(point / 2) the power of
+a drill makes F = f D kc / 4 at its periphery, f per turn. It presses down with 0.7 (D / 2) f kc = 1.4 F
+("Common Drilling Formulas", a sheet of tool makers). Any other tool that moves straight down plunges: its
+milling force presses down, with its torque. A move straight up cuts nothing.
 
 A program feeds through air as well, down to the work and into a cut from beside it. Forces act along the
 stretches of moves on which a tool meets the stock, see ``model.stock``.
@@ -75,10 +75,10 @@ class CuttingForces:
     torque : (M,) in N mm.
     axial : (M, 2) least and greatest, in N.
     height : (M,) above the tip at which the force acts, in mm.
-    direction : ``any``, or ``feed`` for within 60 degrees of against the feed.
-    reasons : for each tool, in words, from what its force follows.
+    direction : ``any``, or ``feed`` for a force within 60 degrees of the direction opposite to the feed.
+    reasons : by tool number, a sentence that says what the tool's force follows from.
     kind : (M,) what a move does, numbers of :data:`CUT_KINDS`.
-    stretches : where it does it; all along the moves that do anything if None.
+    stretches : the stretches of moves along which forces act; None where they act all along their moves.
 
     Raises
     ------
@@ -170,7 +170,7 @@ class CuttingForces:
         Parameters
         ----------
         rows : one entry for each move; a packed entry (bytes), or one without "cutting", has no force.
-        said : "direction", and "tools", sentences by the numbers of tools.
+        said : the result file's "direction", and "tools": sentences by tool number.
 
         Raises
         ------
@@ -202,8 +202,9 @@ class CuttingForces:
         )
 
     def to_dict(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[str, Any]:
-        """Return the direction and the sentence of each tool as plain data;
-        that of moves is made by :meth:`make_entry`.
+        """Return the direction, and the sentence of each tool, as plain data.
+
+        The forces on moves are left out; :meth:`make_entry` makes their data.
         """
         return {
             "direction": self.direction,
@@ -211,8 +212,8 @@ class CuttingForces:
         }
 
     def describe_tools(self, moves: Moves, tools: Mapping[int, Tool]) -> dict[int, str]:
-        """Return by tool number a sentence that says its largest
-        force at the periphery in N, and what it follows from.
+        """Return for each tool number a sentence with the tool's largest force at the periphery in N, and
+        what that force follows from.
         """
         found = {}
         for number, words in self.reasons.items():
@@ -231,13 +232,15 @@ def classify_moves(force: Floats, torque: Floats) -> NDArray[np.int64]:
 def compute_cutting_forces(
     moves: Moves, tools: Mapping[int, Tool], job: CuttingData, within: MoveStretches | None = None
 ) -> CuttingForces | None:
-    """Return the forces on moves;
-    None where neither ``job`` nor a tool gives anything that a force follows from.
+    """Return the forces on moves.
+
+    None is returned where neither ``job`` nor a tool says a force, or a power or material that a force
+    follows from.
 
     Parameters
     ----------
-    job : data for all tools that do not have their own.
-    within : the stretches of moves on which a tool may cut; all of every cutting move if None.
+    job : data for tools that have none of their own.
+    within : stretches of moves on which a tool may cut; None where each cutting move may cut all along.
 
     Raises
     ------
@@ -286,8 +289,8 @@ def compute_cutting_forces(
 
 
 def describe_force_reason(known: CuttingData) -> str:
-    """Return the words that follow the number of a tool's
-    force and say where it comes from, such as "as given."
+    """Return the words that say where a tool's force comes from, such as "as given."; they follow the force
+    in a sentence.
     """
     if known.cutting_force is not None:
         return "as given."
@@ -374,8 +377,9 @@ def compute_drill_force(turn: float, tool: Tool, known: CuttingData) -> float:
 
 
 def compute_teeth_force(turn: float, diameter: float, known: CuttingData) -> float:
-    """Return the sum in N of the forces of all teeth in the cut,
-    by Kienzle, from the feed per turn and diameter in mm.
+    """Return the sum in N of the forces of all teeth in the cut, by Kienzle's formula.
+
+    ``turn`` is the feed per turn and ``diameter`` that of the tool, both in mm.
     """
     assert known.material is not None and known.teeth is not None and known.cut_depth is not None
     width, exponent = min(known.cut_width or diameter, diameter), 1.0 - known.material.mc

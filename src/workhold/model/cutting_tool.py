@@ -1,6 +1,6 @@
 """A tool of the machine as a stack of upright cylinders, and what is said of how it cuts.
 
-Its force is said, or what the force follows from, by the tool itself or for the whole job. One way is the
+The force, or data that it follows from, are given for each tool or for the whole job. One such datum is the
 material: a chip of thickness h and width b, both in mm, takes the force kc1.1 h^(1 - mc) b (O. Kienzle, "Die
 Bestimmung von Kräften und Leistungen an spanenden Werkzeugen und Werkzeugmaschinen", VDI-Z 94, 1952).
 """
@@ -51,11 +51,11 @@ class CutMaterial:
 
     Parameters
     ----------
-    name : as it is asked for.
-    words : what it is.
+    name : by which the user asks for it.
+    words : description of the material.
     kc : kc1.1, the force in N on a chip 1 mm thick and 1 mm wide.
-    mc : by how much less than the chip's thickness the force grows.
-    source : of both numbers.
+    mc : Kienzle's exponent: the force grows with the chip's thickness to the power 1 - mc.
+    source : where kc and mc are taken from.
 
     Raises
     ------
@@ -156,14 +156,15 @@ class CuttingData(CuttingQuestion):
 
     Parameters
     ----------
-    cutting_force : at the periphery of the tool, in N; 0 where it hardly cuts.
-    power : at the spindle, in kW, from which the force follows.
-    material : that is cut, or its name, for the force of Kienzle.
+    cutting_force : force at the periphery of the tool, in N; 0 where it hardly cuts.
+    power : power at the spindle in kW, from which the force follows.
+    material : material that is cut, or its name; the force then follows from Kienzle's formula.
     teeth : how many there are.
-    cut_depth, cut_width : of the cut along the tool's axis and across the feed, in mm.
+    cut_depth, cut_width : sizes of the cut in mm, along the tool's axis and across the feed.
     point_angle : of a drill, in degrees.
     helix_angle : of the flutes, in degrees; a helix pulls the part up.
-    direction : ``any`` in the plane, or within 60 degrees of against the ``feed``.
+    direction : ``any`` for all directions in the plane; ``feed`` for those within 60 degrees of the direction
+        opposite to the feed.
 
     Raises
     ------
@@ -207,8 +208,9 @@ class CuttingData(CuttingQuestion):
 
     @classmethod
     def from_value(cls, value: CuttingData | Mapping[str, Any] | None) -> CuttingData:
-        """Return cutting data from fields by name;
-        data are returned as they are, and None gives data with all fields None.
+        """Return cutting data made from a mapping of field names to values.
+
+        Cutting data are returned as they are; None gives data with all fields None.
 
         Raises
         ------
@@ -228,9 +230,9 @@ class CuttingData(CuttingQuestion):
         return any(getattr(self, name) is not None for name in FORCES)
 
     def complete_with(self, other: CuttingData) -> CuttingData:
-        """Return these data with each None filled from ``other``.
+        """Return these data with each None replaced by the value in ``other``.
 
-        Where these data have a force, a power or a material, all three are kept as they are.
+        Where these data have a force, a power or a material, none of these three is replaced.
         """
         mine = {name: getattr(self, name) for name in FIELDS}
         theirs = {name: getattr(other, name) for name in FIELDS}
@@ -283,15 +285,17 @@ class Tool:
 
     Parameters
     ----------
-    number : as the program calls it, T; 0 is the one that is in the spindle at the start.
+    number : T in the program; 0 is the tool that is in the spindle at the start.
     cylinders : in any order; they may overlap.
     diameter : of the flute, in mm.
-    name : what the workshop calls it.
-    cutting : what is known of how it cuts; a file of a result has the forces instead.
-    flute_length : from the tip as far up as it cuts, in mm; None where it is as long as its lowest cylinder.
-    kind : what its table says it is, such as ``drill``; empty where it says nothing.
-    has_holder : whether one of the cylinders is its holder; None where nobody says, and one of several
-        cylinders is taken for it.
+    name : the workshop's name of it.
+    cutting : what is known of how the tool cuts; tools read from a result file have none, as the file has the
+        forces.
+    flute_length : length of the cutting part from the tip upward, in mm; None where it is as long as the
+        lowest cylinder.
+    kind : kind of tool by its table, such as ``drill``; empty where the table does not say.
+    has_holder : whether one of the cylinders is the holder; None where nobody says, and then one of several
+        cylinders is taken for the holder.
 
     Raises
     ------

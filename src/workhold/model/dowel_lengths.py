@@ -1,4 +1,5 @@
-"""Dowels as they are sold: which lengths there are of a diameter, and which of them stands out how far.
+"""Dowels as they are sold: the lengths that each diameter is sold in, and how far each stands out of its
+plate.
 
 A dowel sits in its hole at least 1.5 diameters deep (``conventions.DOWEL_DEPTH``), so one of length L stands out by
 no more than L - 1.5 d. Lengths and their sources are in ``data/dowels.toml``.
@@ -29,7 +30,7 @@ class DowelLengths:
     Parameters
     ----------
     standard : such as "ISO 8734".
-    unit : in which they are named.
+    unit : unit in which the sizes are named.
     diameter, lengths : in mm, the lengths rising.
     """
 
@@ -41,8 +42,8 @@ class DowelLengths:
 
 @cache
 def list_sold_dowels() -> tuple[DowelLengths, ...]:
-    """Return all diameters that are sold, standard by standard,
-    each with its lengths; read from ``data/dowels.toml``.
+    """Return one entry for each standard and diameter sold, standard by standard; read from
+    ``data/dowels.toml``.
     """
     text = (files("workhold") / "data" / "dowels.toml").read_text(encoding="utf-8")
     found = []
@@ -64,10 +65,9 @@ def find_dowel_lengths(diameter: float) -> DowelLengths | None:
 
 
 def list_standouts(diameter: float) -> tuple[float, ...]:
-    """Return the greatest standout in mm of each length of dowel
-    sold of a diameter (mm), ascending; positive ones only.
+    """Return, for each length in which a diameter (mm) is sold, the greatest standout in mm; ascending.
 
-    The result is empty for a diameter that is not sold.
+    Lengths that could not stand out are left out. The result is empty for a diameter that is not sold.
 
     >>> list_standouts(6.0)[:4]
     (5.0, 7.0, 9.0, 11.0)
@@ -101,7 +101,7 @@ class SoldDowel:
 
     @property
     def name(self) -> str:
-        """Name to order it by: diameter x length, inches as fractions.
+        """Name under which to order the dowel: diameter x length, inches as fractions.
 
         >>> find_shortest_dowel(6.0, 11.0).name, find_shortest_dowel(6.35, 15.0).name, find_shortest_dowel(12.7, 30.0).name
         ('6 × 20 mm', '1/4 × 1 in', '1/2 × 2 in')
@@ -111,7 +111,7 @@ class SoldDowel:
 
 
 def format_dowel_size(size: float, unit: Unit) -> str:
-    """Return a size in mm as text in the unit as catalogues print it, inches as a fraction.
+    """Return a size in mm as catalogues print it in the unit: inches as a fraction.
 
     >>> format_dowel_size(38.1, INCH), format_dowel_size(6.35, INCH)
     ('1-1/2', '1/4')

@@ -1,7 +1,7 @@
-"""Dowel pins and the plates drilled for them: limits of pins and holes, and the places of dowel and bolt
-holes.
+"""Dowel pins and the plates drilled for them: limits of pins and holes, and places of dowel and bolt holes.
 
-Of a plate, places are in mm in a frame of its own, whose origin is its hole A1; x and y run as in the vise.
+Places on a plate are in mm in the plate's own frame: the origin is its hole A1, and x and y run as in the
+vise.
 
 Glossary
 --------
@@ -83,7 +83,7 @@ class DowelFit:
     ----------
     pin, hole : smallest and largest diameters in mm.
     position : how far the centre of a hole may be from its place, in mm.
-    position_assumed : whether nobody said so, and it was assumed.
+    position_assumed : whether ``position`` is an assumption, because nobody gave it.
     standard : of the pin, such as "ISO 2338 m6"; empty where none is named.
     """
 
@@ -136,8 +136,8 @@ def describe_fit(fit: DowelFit, nominal: float) -> str:
 
 
 def compute_peg_error(peg_radius: float, pin: Limits, hole: Limits, position: float) -> float:
-    """Return by how much, in mm, the surface of a peg may be off along a normal;
-    see the formula at the head of this file.
+    """Return the largest error in mm of a peg's surface along a normal, by the formula at the head of this
+    file.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def refuse_limits(name: str, limits: Limits, peg_radius: float) -> None:
 
     Parameters
     ----------
-    name : what the limits are of, for the message.
+    name : name of the limits in the message, with which its sentence begins.
 
     Raises
     ------
@@ -202,11 +202,11 @@ class JawPlate:
 
     Parameters
     ----------
-    title : of its carrier, such as "left jaw".
+    title : name of the carrier, such as "left jaw".
     outline : of the plate.
     hole_diameter : of the dowel holes.
-    holes : the name and the centre of each dowel hole; blocked ones are not drilled.
-    bolts : that hold it, if any are given.
+    holes : name and centre of each dowel hole that is drilled; blocked holes are left out.
+    bolts : bolts that hold the plate; None where none are given.
     """
 
     title: str
@@ -224,14 +224,16 @@ def list_jaw_plates(
     bolts: Bolts | None = None,
     unit: Unit = MILLIMETRE,
 ) -> tuple[JawPlate, ...]:
-    """Return a plate to be drilled for each of ``toolkit.plates``,
-    in order, each in a frame with origin at its hole A1.
+    """Return a plate to be drilled for each of ``toolkit.plates``, in that order.
+
+    Each is in a frame of its own with the origin at its hole A1.
 
     Parameters
     ----------
-    hole_diameter : of the dowel holes, in mm; that of the pegs if None.
-    edge : from the centres of the outermost dowel holes to the plate's edges, in mm; half a pitch if None.
-    bolts : the same in every plate.
+    hole_diameter : diameter of the dowel holes, in mm; None for the diameter of the pegs.
+    edge : distance in mm from the centres of the outermost dowel holes to the plate's edges; None for half a
+        pitch.
+    bolts : bolts, the same in every plate; None for none.
     unit : of lengths in messages.
 
     Raises

@@ -1,4 +1,5 @@
-"""What makes one fixture the first choice before others: the order's own words, and what each doubt costs.
+"""The order in which fixtures are preferred, and the factors by which doubts about a fixture count against
+it.
 
 The order is lexicographic (docs/quality.md, "Which comes first"): unfit; warned or not; steps of the
 effective location error above the best; the angle; figures of quality; identity. The effective location error is the
@@ -31,8 +32,8 @@ class ErrorFactor:
     ----------
     key : its name.
     times : the factor.
-    words : what holds of the fixture, after "it is" or "it has".
-    reason : why it costs anything, in one sentence.
+    words : the doubt, as words that follow "it is" or "it has".
+    reason : why the doubt costs anything, in one sentence.
     """
 
     key: str
@@ -87,8 +88,9 @@ def has_house_order(ranking: Sequence[str]) -> bool:
 
 
 def list_ranking_figures(ranking: Sequence[str]) -> tuple[str, ...]:
-    """Return the keys of the figures in an order:
-    those behind :data:`HOUSE_ORDER`, or all where it does not begin so.
+    """Return the keys in an order of figures that follow :data:`HOUSE_ORDER`.
+
+    Where the order does not begin with it, all keys are returned.
 
     >>> list_ranking_figures(("warned", "error_steps", "angle", "penalty"))
     ('penalty',)

@@ -1,4 +1,5 @@
-"""Two set-ups of one solid: how the part is turned between them, and which of its faces play a part in both.
+"""Two set-ups of one solid: how the part is turned between them, and which of its faces are cut or touched in
+both.
 
 A face of the outline stands for faces of the solid, which keep their numbers whichever side is up. So a face
 that the first set-up cut, or located on, is found again in the second.
@@ -29,11 +30,11 @@ class FirstSide:
 
     Parameters
     ----------
-    up, up_before : directions of the file that point up, now and before.
-    turned : how the part is turned from the set-up before, in words.
-    cut : numbers of the outline's faces that were cut before and are not touched now.
-    cut_of_solid : numbers of the solid's faces that were cut before.
-    shared : numbers of the solid's faces that pegs touch in both.
+    up, up_before : axes of the file that point up, in this set-up and in the one before.
+    turned : sentence on how the part is turned after the set-up before.
+    cut : numbers of faces of this outline that were cut in the set-up before and that pegs do not touch now.
+    cut_of_solid : numbers of the solid's faces that were cut in the set-up before.
+    shared : numbers of the solid's faces that pegs touch in both set-ups.
     """
 
     up: str
@@ -47,12 +48,13 @@ class FirstSide:
 def compare_with_first_side(
     fixture: Fixture, query: Query, before: Query, located: Fixture | None
 ) -> FirstSide:
-    """Return what the set-up of a fixture shares with the set-up before it.
+    """Return how the set-up of a fixture relates to the set-up before it: the turn of the part and the shared
+    faces.
 
     Parameters
     ----------
-    query, before : of this set-up and of the one before.
-    located : the fixture of the set-up before; None where it had none.
+    query, before : queries of this set-up and of the one before.
+    located : the fixture of the set-up before, to find shared faces; None where it had none.
 
     Raises
     ------
@@ -97,11 +99,10 @@ def find_touched_faces(fixture: Fixture, workpiece: Workpiece) -> set[int]:
 
 
 def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
-    """Return the rotation (3, 3) from a file's coordinates to
-    those of an outline, for "x", "-x", …, "z", "-z" upward.
+    """Return the rotation matrix (3, 3) from a file's coordinates to those of the outline with this axis up.
 
-    With a minus the part lies on its other side: against the same axis without it, x and z change their
-    signs.
+    ``axis`` is "x", "-x", …, "z" or "-z". The matrices of "z" and "-z" differ in the signs of the first and
+    the last row, as the part lies on its other side; so for x and y.
     """
     signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
     turn = np.zeros((3, 3))
@@ -111,8 +112,8 @@ def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
 
 
 def describe_turn(before: str, now: str) -> str:
-    """Return in words how a part is turned from one upward axis to another,
-    about axes of the first set-up's drawing.
+    """Return in words how a part is turned between two set-ups; axes in the text are those of the first
+    set-up's drawing.
 
     Parameters
     ----------

@@ -42,16 +42,16 @@ class Peg:
 
     Parameters
     ----------
-    carrier : name of what it stands on: "left" or "right" of a vise.
+    carrier : name of the carrier that the peg stands on: "left" or "right" of a vise.
     column, row : the hole, counted from 0.
     x, y : the peg's centre in mm, in the toolkit's frame (see :class:`Pose`), with the jaw or the clamp closed.
     face : number of the face it touches.
-    force : how hard it presses, as a ratio without unit: its contact force over the clamping force; of two clamps
-        over the sum of theirs, at the working ratio. In N it is this times the jaw force.
-    place : what its place is called where that is no hole of its carrier: of a clamp its hole or its line.
-    beside : number of a second face that it touches: of a corner that lies on a wall; None of all others.
-    flat_deg : which way its flat looks, in degrees counter-clockwise from the toolkit's x axis; None of a peg
-        that touches with its round side.
+    force : contact force over the clamping force, without unit; with two clamps, over the sum of both at the
+        working ratio. In N it is this times the jaw force.
+    place : name of a clamp's hole or line, used instead of a hole of the carrier; None of other pegs.
+    beside : number of the second face touched, where a corner lies on a wall; None otherwise.
+    flat_deg : direction that the peg's flat faces, in degrees counter-clockwise from the toolkit's x axis;
+        None of a peg that touches with its round side.
     """
 
     carrier: str
@@ -102,11 +102,12 @@ class ClampPair:
 
     Parameters
     ----------
-    travels : how far each clamp has travelled from its hole, in mm.
+    travels : travel of each clamp from its hole, in mm.
     ratio : the open interval of the second clamp's force over the first's in which all locators are pressed;
         the upper end may be infinite.
-    reactions : of each peg its force per unit of the force of the first clamp, and of the second.
-    count : how many pairs of clamps there are at this seat, of which this one is listed.
+    reactions : for each peg, its force per unit of the first clamp's force and per unit of the second's.
+    count : number of pairs of clamps that hold the part with the same locators and pose and the same
+        directions; only this one is listed.
     """
 
     travels: tuple[float, float]
@@ -130,8 +131,8 @@ class ListPlace:
     ----------
     result : the :class:`workhold.Result`.
     row : of the fixture in the result's table.
-    rank, count : of the fixture, from 1, and how many fixtures are listed.
-    in_same_holes : how many of these use the same holes; None until it is counted.
+    rank, count : rank of the fixture, from 1, and number of fixtures listed.
+    in_same_holes : number of other fixtures in the result that use the same holes; None until it is counted.
     """
 
     result: Result
@@ -167,21 +168,20 @@ class Fixture:
     type : name of its arrangement: of a vise "I" for two pegs on each jaw, "II" for three on the left and one
         on the right.
     pegs : in the order of the arrangement, those of a vise's left jaw first.
-    pose : where the workpiece lies.
-    travel : how far what moves has travelled, in mm: a jaw, a clamp from its hole, a sliding lattice; of two
-        clamps the first, see :attr:`travels`.
+    pose : pose of the workpiece in the toolkit's frame.
+    travel : travel in mm of what moves (a jaw, a clamp from its hole, a sliding lattice); of two clamps the
+        first's, see :attr:`travels`.
     quality : figures of merit by name.
-    direction : in which the clamp moves when it clamps, such as "-x", or two clamps do, "-x -y"; None of a
-        vise.
-    pair : what is particular to two clamps; None of other fixtures.
-    listed : where it is listed, so that it can be drawn; None of one that was put together otherwise. It
-        makes no difference between fixtures.
-    seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not
-        asked.
+    direction : clamping direction, such as "-x", or "-x -y" for two clamps; None of a vise.
+    pair : data of the two clamps; None of fixtures without two clamps.
+    listed : place in the result that lists the fixture, which is needed to draw it; None of a fixture made
+        otherwise. It does not count when fixtures are compared.
+    seating : the other ways in which its pegs can hold the part, a ``model.seating.Seating``; None where
+        seating was not asked for.
     hold : how friction holds it, between flat jaws without pegs, or under straps against locators; None of other
         fixtures.
-    passing, asking : of a file that is verified, what it says of where the program's tools pass, and of the
-        forces that they ask for; None of all others.
+    passing, asking : of a file that is verified: what the file says about where the program's tools pass, and
+        about the forces that these tools need; None of other fixtures.
     """
 
     type: str
@@ -226,8 +226,8 @@ class Fixture:
 
     @property
     def travels(self) -> tuple[float, ...]:
-        """Travel in mm of each thing that moves:
-        (travel,), or that of both clamps of a pair in their order.
+        """Travel in mm of each thing that moves: (travel,), or the travels of both clamps of a pair in their
+        order.
         """
         return (self.travel,) if self.pair is None else self.pair.travels
 
@@ -242,7 +242,7 @@ class Fixture:
 
     @property
     def rank(self) -> int:
-        """Place in the list of its result, from 1.
+        """Rank of the fixture in its result, from 1.
 
         Raises
         ------
@@ -309,8 +309,8 @@ class Fixture:
         jaw_force : of the jaw or the clamps, in N; if None that of the query, else as much as is needed so
             that no peg lets go.
         friction : Coulomb's coefficient between pegs and part, to say what it could add; None for none.
-        jaw : what keeps the jaw in place: "screw" (locked), "constant" for a constant force, or how many
-            times as stiff as one contact the jaw is.
+        jaw : what keeps the jaw in place: "screw" (locked), "constant" (a constant force), or the jaw's
+            stiffness over that of one contact.
 
         Raises
         ------
@@ -368,8 +368,8 @@ class Fixture:
     def refuse_others(self, workpiece: Workpiece, toolkit: Toolkit) -> None:
         """Raise InputError for a part or a toolkit that this fixture does not belong to.
 
-        A listed fixture belongs to the part and the toolkit of its result. Any other fixture, and one changed
-        since, must stand on carriers of the toolkit and touch faces of the part.
+        A listed fixture belongs to the part and the toolkit of its result. Any other fixture, and a listed
+        one that was changed, must stand on carriers of the toolkit and touch faces of the part.
 
         Parameters
         ----------
@@ -407,7 +407,7 @@ class Fixture:
         Parameters
         ----------
         path : also write it into this file, whose name ends in .svg or .png.
-        title : what to call the fixture; its rank if None.
+        title : title of the drawing; the fixture's rank if None.
         unit : of the lengths written: "mm", "cm", "m" or "inch".
         overwrite : whether a file that workhold has not written may be replaced.
 
@@ -469,30 +469,30 @@ class Fixture:
         paper : "a4" or "letter"; None is letter for lengths in inches, else A4.
         day : the date on the sheet; today if None.
         part_name : written instead of the part's own name.
-        dowel : what the pegs are and how they fit their holes, in words; those of the tolerance if None.
-        material : what the part is of, such as "aluminium-6061": the sheet then shows how far clamping bends
-            it, see :meth:`bending`.
-        bend : in mm, beyond which the sheet warns of a part that bends or gives.
+        dowel : words on the pegs and how they fit their holes; if None, words on the dowels of the tolerance.
+        material : material of the part, such as "aluminium-6061": the sheet then shows how far clamping bends
+            the part, see :meth:`bending`.
+        bend : length in mm; the sheet warns where the part bends or gives by more.
         jaw_force : in N, per clamp; that of the query if None.
-        jaw : what keeps the jaw in place: "screw" (locked), "constant" for a constant force, or how many
-            times as stiff as one contact the jaw is.
+        jaw : what keeps the jaw in place: "screw" (locked), "constant" (a constant force), or the jaw's
+            stiffness over that of one contact.
         friction : Coulomb's coefficient, for what friction could add; None for none.
-        loads : in place of the result's.
-        at : name of the hole in which the lowest column and the lowest row stand, such as "D4"; None is the
-            middle of the plate.
+        loads : loads used instead of the result's; None for the result's.
+        at : name of the hole at which the lowest column and the lowest row of the set-up meet, such as "D4";
+            None for the middle of the plate.
         zero : part zero: "corner", "centre", "hole 2", or x and y of the drawing in ``unit``; its origin if
             None.
         machine_position : (x, y) of hole A1 in the machine's coordinates, in mm.
-        thickness, peg_length, peg_height, plate_thickness : of the part, the pegs, how far these stand out,
-            and of the plates, in mm; None leaves a line to write it on.
+        thickness, peg_length, peg_height, plate_thickness : thickness of the part, length of the pegs, how
+            far they stand out, and thickness of the plates, in mm; None leaves a line to write the value on.
         seating : whether the sheet shows where else the pegs can hold the part; None shows it where it is
             known.
-        supports : of what :meth:`supports` returns, also the pads under the part and the clamp on top, on a
-            sheet and in a .step.
-        best : which of its sets of three, from 1.
-        support_height : of the supports in mm; the toolkit's own if None.
-        clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
-        part : the STEP file of the part, for its own shape in a .step and for how far it bends.
+        supports : a result of :meth:`supports`; a sheet or a .step then also shows the pads under the part
+            and the clamp on top.
+        best : number, from 1, of the set of three among ``supports``.
+        support_height : height of the supports in mm; that of the toolkit's own supports if None.
+        clearance : distance in mm that the cutter keeps from the pegs of a .dxf; 1 if None.
+        part : STEP file of the part, for its own shape in a .step and for how far it bends.
         result_file : the file that the result was saved in; its hash then stands on the sheet.
         overwrite : whether a file that workhold has not written may be replaced.
 
@@ -550,9 +550,10 @@ class Fixture:
         Parameters
         ----------
         path : of the file, whose name ends in .glb.
-        thickness : of the part in mm; that of its solid, or 10, if None.
-        supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
-        best : which of its sets of three, from 1.
+        thickness : thickness of the part in mm; if None that of its solid, else 10.
+        supports : a result of :meth:`supports`; the model then also shows the pads under the part and the
+            clamp on top.
+        best : number, from 1, of the set of three among ``supports``.
         part : the STEP file that the part was read from, for its own shape; a prism of its outline if None.
         overwrite : whether a file that workhold has not written may be replaced.
 
@@ -583,9 +584,9 @@ class Fixture:
         ----------
         around : the part's own solid. The bodies then stand about it where it lies in its model, and it is
             the first of them. With None they stand in the frame of the toolkit, and the part is a prism.
-        thickness : of the part in mm; that of its solid, or 10, if None.
-        supports : also the pads under the part and the clamp on top, of what :meth:`supports` returns.
-        best : which of its sets of three, from 1.
+        thickness : thickness of the part in mm; if None that of its solid, else 10.
+        supports : a result of :meth:`supports`; its pads under the part and clamp on top are added.
+        best : number, from 1, of the set of three among ``supports``.
 
         Raises
         ------
@@ -643,13 +644,13 @@ class Fixture:
 
         Parameters
         ----------
-        thickness : of the part in mm; that of its solid if None.
-        best : how many sets; None for all.
+        thickness : thickness of the part in mm; that of its solid if None.
+        best : number of sets to return; None for all.
         loads : planar loads, which act at the top of the part, or ``SpatialLoad``; those of the query if
             None.
         jaw_force : in N; by default the one that keeps all pegs in contact.
-        pad_radius, tip_radius : of the supports' pads and of the clamp's tip, in mm; the toolkit's own, or
-            the usual ones, if None; the same holds for all that follow.
+        pad_radius, tip_radius : radii of the supports' pads and of the clamp's tip, in mm. For these and all
+            parameters that follow, None stands for the toolkit's own value, or else the usual one.
         pad_margin, tip_margin : smallest distances in mm from a pad and from the tip to the border of its
             face.
         head_radius : radius in mm around the clamp within which nothing may rise above the clamped face.
@@ -657,7 +658,7 @@ class Fixture:
         band : least and greatest height in mm at which pegs may press.
         bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge) in mm, the outer
             one first; "outline" is the whole outline, and None what a solid says.
-        bottom_zones, top_zones : where no pad and where no tip may stand, as in ``Restrictions``.
+        bottom_zones, top_zones : zones where no pad, and where no tip, may stand, as in ``Restrictions``.
         reach : rings (x, y, least, most) in mm in which the clamp can stand.
         point : (x, y) in mm in the part's coordinates where the clamp stands.
 
@@ -725,17 +726,17 @@ class Fixture:
 
         Parameters
         ----------
-        thickness : of the part in mm; that of its solid if None.
-        count : of straps, 1 to 4.
-        tip_radius : of their round tips, in mm.
+        thickness : thickness of the part in mm; that of its solid if None.
+        count : number of straps, 1 to 4.
+        tip_radius : radius of the straps' round tips, in mm.
         reach : least and greatest distance in mm of a tip from the middle of its bolt's hole.
-        max_force : that a strap is rated for, in N.
+        max_force : rated force of a strap in N; None where it is not known.
         loads : planar loads, which act at the top of the part, or ``SpatialLoad``; those of the query if
             None.
         friction : coefficients by name, of "tip" and "plate"; usual ones for those not given.
-        safety : the factor on the loads; 2 if None.
-        weight : of the part in N, without that factor.
-        top_zones : where no tip may stand, as in ``Restrictions``.
+        safety : factor on the loads; 2 if None.
+        weight : weight of the part in N, which the safety factor does not multiply.
+        top_zones : zones where no tip may stand, as in ``Restrictions``.
 
         Raises
         ------
@@ -780,24 +781,24 @@ class Fixture:
         best: int = 1,
         clamp_force: float | None = None,
     ) -> Bending:
-        """Return how far the clamps bend the part,
-        which springs back after the cut, and how far it gives at the cutter.
+        """Return how far clamping bends the part, which springs back after the cut, and how far the part
+        gives at the cutter.
 
-        The loads and the program are those of the query. It takes the extra ``bending``, and some seconds.
+        Loads and program are those of the query. Needs the extra ``bending``, and takes some seconds.
 
         Parameters
         ----------
         material : its name, such as "mild-steel", or Young's modulus in MPa and Poisson's ratio as
             "69000,0.33".
-        thickness : of the part in mm; that of its solid or of the query if None.
-        jaw_force : in N; that of the query if None, else the one that its loads need, else 1000 N.
+        thickness : thickness of the part in mm; that of its solid or of the query if None.
+        jaw_force : in N; if None that of the query, else the one that its loads need, else 1000 N.
         jaw : what keeps the jaw closed under loads, see :meth:`load_cases`.
-        faces : that are to be cut, whose bending counts: their numbers, "top" and "bottom"; all if there are
-            none.
+        faces : numbers of the faces to be cut, and "top" or "bottom": only their bending counts. Empty for
+            all faces.
         part : the STEP file that the part was read from; a part without a solid needs none.
-        supports : pads under the part and a clamp on top, of what :meth:`supports` returns.
-        best : which of its sets of three.
-        clamp_force : of the clamp on top in N; what it needs if None.
+        supports : pads under the part and a clamp on top: a result of :meth:`supports`.
+        best : number, from 1, of the set of three among ``supports``.
+        clamp_force : force in N of the clamp on top; None for the force that it needs.
 
         Raises
         ------

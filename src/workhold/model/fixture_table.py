@@ -36,25 +36,25 @@ BLOCK = 4096
 
 @define(frozen=True, eq=False)
 class FixtureTable:
-    """N fixtures as arrays; pegs stand in every row in the order of their arrangement.
+    """N fixtures as arrays; in every row pegs stand in the order of the arrangement.
 
-    Of a large result file the arrays are parts, read only where they are looked at: go through them by
-    ``take``. Tables of the same fixtures in the same order are equal.
+    The arrays of a large result file are read in parts, on access: go through them by ``take``. Tables are
+    equal where they have the same fixtures in the same order.
 
     Parameters
     ----------
     arrangement : (N,) int8, index into the toolkit's arrangements.
-    column, row : (N, P) int32, the hole; P is 4, of a toolkit with two clamps 5.
+    column, row : (N, P) int32, the peg's hole, counted from 0; P is 4, and 5 with two clamps.
     face : (N, P) int32, number of the face touched.
     theta : (N,) orientation of the workpiece in radians, in [0, 2 pi).
     position : (N, 2) translation of the pose in mm.
-    jaw_separation : (N,) in mm; of two clamps (N, 2), the travel of each.
-    force : (N, P) contact force per unit of clamping force; of two clamps (N, P, 2), per unit of the force of
-        each.
-    quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where one is not known,
-        and in a column more the program clearance where there is a program.
-    pairs : (N,) int32, how many pairs of clamps there are at the seat that a fixture stands for; 1 where each
-        is listed.
+    jaw_separation : (N,) in mm; with two clamps (N, 2), the travel of each clamp.
+    force : (N, P) contact force per unit of clamping force; with two clamps (N, P, 2), per unit of each
+        clamp's force.
+    quality : (N, Q) figures of quality in the order of ``model.quality.FIGURES``, NaN where unknown; with a
+        program, one more column has the program clearance.
+    pairs : (N,) int32, number of pairs of clamps with the locators, pose and directions that the row stands
+        for; 1 where each pair is listed.
     """
 
     arrangement: NDArray[np.int8]
@@ -119,12 +119,12 @@ class FixtureTable:
         return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """Return the table of the rows that an index array, a mask or a slice picks."""
+        """Return the table of the rows that an index array, a mask or a slice selects, in that order."""
         return FixtureTable(*(column[order] for column in self.columns))
 
     def count_in_same_holes(self, index: int) -> int:
-        """Return how many other fixtures have the arrangement
-        and the holes of the one at ``index``; 0 without pegs.
+        """Return how many other rows have the arrangement and the holes of row ``index``; 0 for fixtures
+        without pegs.
         """
         if self.column.shape[1] == 0:
             return 0
@@ -135,7 +135,7 @@ class FixtureTable:
 
     @classmethod
     def concatenate(cls, tables: Sequence[FixtureTable]) -> FixtureTable:
-        """Return one table of the rows of several, at least one; figures that a table lacks become NaN."""
+        """Return the rows of one or more tables as one table; figures that a table lacks become NaN."""
         most = max(table.quality.shape[1] for table in tables)
         return cls(
             *map(
@@ -145,8 +145,9 @@ class FixtureTable:
         )
 
     def with_figure_columns(self, columns: int) -> FixtureTable:
-        """Return the table with at least ``columns`` columns in ``quality``,
-        new ones filled with NaN; itself if it has them.
+        """Return a table whose ``quality`` has at least ``columns`` columns, new ones filled with NaN.
+
+        A table that has as many is returned itself.
         """
         missing = columns - self.quality.shape[1]
         if missing <= 0:
@@ -155,8 +156,8 @@ class FixtureTable:
 
     @classmethod
     def make_empty(cls, toolkit: Toolkit | None = None) -> FixtureTable:
-        """Return a table without rows, with the numbers of pegs and travels of a toolkit:
-        four and one for None.
+        """Return a table without rows, for a toolkit's numbers of pegs and of travels; for None, four pegs
+        and one travel.
         """
         count, travels = (4, 1) if toolkit is None else (toolkit.peg_count, toolkit.travels)
         several = (travels,) if travels > 1 else ()
@@ -175,7 +176,7 @@ class FixtureTable:
 
 
 def make_unknown_quality(closure_margin: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return ``quality`` (N, Q) with these closure margins (N,) and NaN in all other columns."""
+    """Return ``quality`` (N, Q) with the given closure margins (N,) and with NaN in all other columns."""
     quality = np.full((len(closure_margin), BEFORE_PINS), np.nan)
     quality[:, CLOSURE_MARGIN] = closure_margin
     return quality
@@ -211,8 +212,8 @@ def make_flat_jaw_table(
 
 
 def convert_to_whole_turn_degrees(theta: float) -> float:
-    """Return an angle in radians as degrees in
-    [0, 360); less than 1e-10 degrees below a whole turn becomes 0.
+    """Return an angle in radians as degrees in [0, 360); a result less than 1e-10 degrees below 360 becomes
+    0.
     """
     degrees = float(np.degrees(theta)) % 360.0
     return 0.0 if degrees > 360.0 - 1e-10 else degrees
@@ -233,10 +234,10 @@ def compute_peg_places(
 
 
 def list_flat_angles(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> list[list[float | None]]:
-    """Return for each row and peg the direction its flat faces,
-    in degrees counter-clockwise from the toolkit's x axis.
+    """Return, for each row and peg, the direction that the peg's flat faces.
 
-    None stands for a peg that touches with its round side.
+    It is in degrees counter-clockwise from the toolkit's x axis; None for a peg that touches with its round
+    side.
     """
     if not toolkit.has_flats:
         return [[None] * table.face.shape[1] for _ in range(len(table))]
@@ -269,11 +270,10 @@ def make_fixture_of_row(
 def make_fixtures(
     table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, listed: Iterable[ListPlace | None]
 ) -> Iterator[Fixture]:
-    """Yield the fixtures of a table's rows in order,
-    as many as ``listed`` has entries; the table has at least one row.
+    """Yield the fixtures of the table's first rows in order, one for each entry of ``listed``.
 
-    ``listed[n]`` becomes the place in a result of the fixture of row n. Arrays are converted once for all
-    rows.
+    ``listed[n]`` becomes the place of row n in a result, or None. The table has at least one row, and at
+    least as many as ``listed`` has entries. Arrays are converted once for all rows.
     """
     across, along = (places.tolist() for places in compute_peg_places(table, toolkit, workpiece))
     columns, rows, faces = table.column.tolist(), table.row.tolist(), table.face.tolist()

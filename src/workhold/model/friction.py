@@ -40,8 +40,8 @@ class FrictionCoefficient:
     Parameters
     ----------
     value : the number.
-    between : what it is between.
-    source : where it is from.
+    between : the two surfaces that rub, in words.
+    source : where the number is taken from.
     """
 
     value: float
@@ -63,8 +63,9 @@ COUNTED_OVER_SUPPORTS = "tip", "support"
 
 
 def to_coefficients(value: Any) -> Coefficients | None:
-    """Return pairs of name and coefficient, sorted by name,
-    from a mapping or from pairs; None for None or none at all.
+    """Return pairs (name, coefficient), sorted by name, from a mapping or from pairs.
+
+    Return None for None and for an empty mapping.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What is said of a part between flat jaws: how to set it up, what it asks for, and what to beware of."""
+"""Words about a part between flat jaws: how to set it up, the jaw force it needs, and warnings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = [
 
 
 def describe_touched_faces(patch: JawPatch) -> str:
-    """Return the faces that a jaw touches, in a few words, or that it touches corners only.
+    """Return a phrase that names the faces a jaw touches, or says that it touches corners only.
 
     >>> describe_touched_faces(JawPatch(((0, 5, 0, 9),), (3,))), describe_touched_faces(JawPatch(((0, 0, 0, 9),), (), True))
     ('face 3', 'a corner')
@@ -36,7 +36,10 @@ def describe_touched_faces(patch: JawPatch) -> str:
 
 
 def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
-    """Return at which end of the jaws the work stop is, and its offset in mm if not 0; "" without a stop."""
+    """Return a phrase with the end of the jaws at which the work stop is, and its offset in mm if not 0.
+
+    It is "" without a work stop.
+    """
     if hold.stop is None:
         return ""
     inward = ""
@@ -46,7 +49,9 @@ def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
 
 
 def format_short_length(length: float, unit: Unit) -> str:
-    """Return a length in mm as text in the unit, rounded to 4 decimals without trailing zeros."""
+    """Return a length in mm as text with the unit's abbreviation, rounded to 4 decimals without trailing
+    zeros.
+    """
     return f"{round(length / unit.millimetres, 4):g} {unit.abbreviation}"
 
 
@@ -59,7 +64,8 @@ def round_force_up(force: float) -> float:
 
 
 def format_set_force(force: float, unit: Unit) -> str:
-    """Return a jaw force in N as text in the unit, first rounded up to two significant digits of newtons.
+    """Return a jaw force in N as text in the unit's force unit, first rounded up to two significant digits of
+    newtons.
 
     >>> from workhold.units import MILLIMETRE
     >>> format_set_force(3432.8, MILLIMETRE)
@@ -103,8 +109,8 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
 
 
 def describe_coefficients(query: Query) -> str:
-    """Return a sentence that says which friction and safety
-    factor the forces are stated with, and their sources.
+    """Return a sentence on the friction coefficients and the safety factor that forces are stated with, and
+    their sources.
     """
     value, usual = find_friction_coefficient(query.friction, "jaw"), COEFFICIENTS["jaw"]
     is_given = "jaw" in dict(query.friction or ())
@@ -114,8 +120,8 @@ def describe_coefficients(query: Query) -> str:
 
 
 def list_hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
-    """Return phrases for what a hold is ranked by:
-    angle, grip and area, jaw force needed, height above the jaws.
+    """Return phrases on the figures that a hold is ranked by: angle, grip and area, jaw force needed, height
+    above the jaws.
     """
     hold = fixture.hold
     assert isinstance(hold, JawHold)
@@ -143,9 +149,9 @@ def write_warnings(hold: JawHold) -> list[str]:
 
 
 def list_jaw_cautions(hold: JawHold) -> list[tuple[str, str]]:
-    """Return pairs of kind and sentence for each warning of a hold.
+    """Return a pair (kind, sentence) for each warning of a hold.
 
-    The kind of all is "unfit" where a jaw touches corners only or cannot press all over, else "load".
+    All have the same kind: "unfit" where a jaw touches corners only or cannot press all over, else "load".
     """
     kind = "unfit" if hold.is_unfit or not hold.full_contact else "load"
     return [(kind, sentence) for sentence in write_warnings(hold)]

@@ -58,10 +58,9 @@ HOLD_RANKING = ("square", "contact_area", "clamp_needed", "above", "fixed_area")
 
 
 def choose_hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the keys of the figures that holds between flat
-    jaws are ranked by, from names as a user writes them.
+    """Return the keys of the figures to rank holds between flat jaws by, from names as a user writes them.
 
-    Return the usual order, :data:`HOLD_RANKING`, for None and for an order of fixtures with pegs.
+    Return the usual order, :data:`HOLD_RANKING`, for None, and for an order that ranks fixtures with pegs.
 
     >>> choose_hold_ranking(["clamp-needed", "grip"])
     ('clamp_needed', 'grip')
@@ -85,9 +84,9 @@ class JawPatch:
 
     Parameters
     ----------
-    rectangles : in mm, those of a line without width; in order.
-    segments : numbers of the faces that touch; none where corners do.
-    is_corner : whether corners alone touch, which mark the part.
+    rectangles : contact rectangles in mm, in order; a rectangle without width is a line.
+    segments : numbers of the faces that touch; empty where only corners touch.
+    is_corner : whether only corners touch, which the jaw would mark.
     """
 
     rectangles: tuple[Rectangle, ...]
@@ -119,13 +118,13 @@ class JawPatch:
 
 @frozen
 class ProgramJawForce:
-    """The jaw force that the tools of a program ask for.
+    """The jaw force needed against the forces of a program's tools.
 
     Parameters
     ----------
     force : in N, with the safety factor; None where no jaw force is enough.
-    line, tool : of the program, where it asks for it.
-    move : number of the program's move, from 0.
+    line, tool : line of the program, and tool, for which this force is needed.
+    move : index of that move in the program, from 0.
     """
 
     force: float | None
@@ -140,19 +139,19 @@ class JawHold:
 
     Parameters
     ----------
-    parallels : the height in mm of those under the part; 0 without.
-    stop : at which end of the jaws the work stop is; None without.
-    fixed, moving : what each jaw touches.
+    parallels : height in mm of the parallels under the part; 0 without parallels.
+    stop : end of the jaws at which the work stop is; None without a stop.
+    fixed, moving : contacts of the fixed and of the moving jaw.
     opening : S in mm.
-    above : how far the part stands out above the jaws, in mm; None where nobody knows how thick it is.
-    full_contact : whether both jaws can press all over what they touch, so that loads are held at all.
-    clamp_needed_each : the jaw force in N that each load asks for, in their order; None where none is enough.
-    program_need : what the tools of the program ask for; None without their forces.
+    above : how far in mm the part stands out above the jaws; None where its thickness is not known.
+    full_contact : whether each jaw can press over all of its contact; if not, loads are not held.
+    clamp_needed_each : jaw force in N that each load needs, in the order of loads; None where no force is
+        enough.
+    program_need : jaw force that the program's tools need; None without their forces.
     max_pressure : in MPa, at the jaw force needed; None where it is not known.
-    max_force : what the vise is rated for, in N; None where nobody says.
-    unit_force : the jaw force that is given times the safety factor that loads have, in N; None where none is
-        given.
-    warnings : what to beware of, sentences.
+    max_force : rated force of the vise in N; None where nobody says.
+    unit_force : given jaw force times the safety factor of the loads, in N; None where no jaw force is given.
+    warnings : warnings as sentences.
     """
 
     parallels: float
@@ -192,8 +191,8 @@ class JawHold:
 
     @property
     def clamp_needed(self) -> float | None:
-        """Jaw force in N that the worst load or tool asks for;
-        None without loads and program, or where no force is enough.
+        """Jaw force in N that the worst load or tool needs; None without loads and program, and where no
+        force is enough.
         """
         each = self.forces_needed
         known = [one for one in each if one is not None]
@@ -201,14 +200,16 @@ class JawHold:
 
     @property
     def forces_needed(self) -> tuple[float | None, ...]:
-        """Jaw forces in N that each load and last the program ask for; None where no force is enough."""
+        """Jaw forces in N that each load needs, then the one that the program needs, if any; None where no
+        force is enough.
+        """
         of_program = () if self.program_need is None else (self.program_need.force,)
         return (*self.clamp_needed_each, *of_program)
 
     @property
     def slip_reserve(self) -> float | None:
-        """Rated jaw force over the jaw force needed;
-        inf where none is needed, None where one of them is not known.
+        """Rated jaw force over the jaw force needed; inf where no force is needed, None where either is not
+        known.
         """
         if self.max_force is None or self.clamp_needed is None:
             return None
@@ -227,7 +228,7 @@ class JawHold:
 
     @property
     def is_beyond_rating(self) -> bool:
-        """Whether a load or the program asks for more than the vise is rated for, or no force is enough."""
+        """Whether a load or the program needs more than the rated jaw force, or no force is enough."""
         if None in self.forces_needed:
             return True
         return self.slip_reserve is not None and self.slip_reserve < 1
@@ -239,9 +240,7 @@ class JawHold:
         return {key: float(value) for key, value in named.items() if value is not None and value != inf}
 
     def to_quality(self) -> dict[str, Any]:
-        """Return the figures as result files have them,
-        with the keys "full_contact" and "clamp_needed_each" as well.
-        """
+        """Return the figures as result files have them, and "full_contact" and "clamp_needed_each"."""
         known: dict[str, Any] = {"tilt": 0.0, "full_contact": self.full_contact, **self.figures}
         if self.forces_needed:
             known["clamp_needed"] = self.clamp_needed

@@ -1,9 +1,10 @@
-"""Where on the shop's plate a set-up stands: in its middle, or where somebody says, and what hangs over.
+"""Where on the shop's plate a set-up stands: in the middle or at a hole asked for, and how far the part hangs
+over.
 
-A fixture is listed in the lowest columns and rows. Part, pegs and clamps may stand in others together: so
-many columns and rows further on. Where the plate's columns and rows are known, sheet and page show all of it
-in the middle of the plate. Jaws of a vise keep their columns, which are nearest to the opening, and what
-counts from a wall its rows. Where a flat jaw has ends its columns are listed as it holds best.
+A fixture is listed in the lowest columns and rows. Part, pegs and clamps may all be moved by the same number
+of columns and rows. Where the plate's columns and rows are known, sheet and page show all of it in the middle
+of the plate. Jaws of a vise keep their columns, which are those nearest to the opening; beside a wall the
+rows are kept. Beside a flat jaw with ends, the columns are listed where it holds best.
 """
 
 from __future__ import annotations
@@ -53,7 +54,8 @@ def shift_hole_numbers(
     ----------
     move : translation (x, y) in mm.
     shifts : by the name of a plate, the columns and rows to add to the holes on it.
-    travel : in mm, of the moved fixture; the share of ``move`` along a clamp's own travel is added to it.
+    travel : travel in mm of the moved fixture, without the share of ``move`` along a clamp's travel, which is
+        added where a clamp is measured from the first column or row.
     """
     dx, dy = move
 
@@ -85,8 +87,10 @@ def shift_hole_numbers(
 
 
 def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
-    """Return the column and row numbers, from 0, of pegs and clamps,
-    without those that are measured and not counted.
+    """Return (columns, rows), numbers from 0, of the holes of pegs and clamps.
+
+    A number is left out where it stands for no hole: along a clamp's line, where the place of its tip is
+    measured.
     """
     counted = [(peg, toolkit.find_carrier(peg.carrier).counted) for peg in fixture.pegs]
     return (
@@ -98,9 +102,9 @@ def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list
 def count_spare_holes(
     fixture: Fixture, toolkit: Toolkit
 ) -> tuple[tuple[int, int | None], tuple[int, int | None]]:
-    """Return ((left, right), (down, up)): by how many columns and rows a set-up may be moved each way.
+    """Return ((left, right), (down, up)): how many columns and rows a set-up may be moved in each direction.
 
-    None stands for any number, where the plate has no end; 0 for a direction in which it must not be moved.
+    None for any number, where the plate has no end; 0 for a direction in which the set-up must not be moved.
     """
     if toolkit.strap_set is not None:
         # Bolts and tips have their places beside the locators' as they are listed.
@@ -119,11 +123,11 @@ def count_spare_holes(
 
 
 def find_move_to_middle(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Hole:
-    """Return the columns and rows by which to move a set-up so that it stands in the middle of its plate.
+    """Return (columns, rows) by which to move a set-up so that it stands in the middle of its plate.
 
-    The middle of the extent of part, pegs and clamps comes as near to the plate's middle as holes allow; of
-    two equally near places the lower one is taken. A number is 0 where the plate has no end in that
-    direction, where :func:`count_spare_holes` allows none, and on two jaws, which are listed in the middle.
+    The middle of the bounding box of part, pegs and clamps comes as near to the plate's middle as holes
+    allow; of two equally near places the lower one is taken. A number is 0 where the plate has no end in that
+    direction or :func:`count_spare_holes` allows no move, as for the columns of two jaws.
     """
     if not toolkit.plates:
         return 0, 0
@@ -152,8 +156,8 @@ def find_move_to_middle(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece
 
 
 def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
-    """Return the columns and rows by which to move a set-up
-    so that its lowest column and row are those of a hole.
+    """Return (columns, rows) by which to move a set-up so that its lowest column and row are those of a named
+    hole.
 
     A direction in which the set-up must not be moved has 0, whatever the hole.
 
@@ -214,7 +218,7 @@ def make_row_name(row: int) -> str:
 
 
 def move_fixture_by_holes(fixture: Fixture, toolkit: Toolkit, move: Hole) -> Fixture:
-    """Return a fixture moved by so many columns and rows, at the pitch of the toolkit's first plate."""
+    """Return a fixture moved by (columns, rows), in pitches of the toolkit's first plate."""
     if move == (0, 0):
         return fixture
     pitch = toolkit.plates[0].pitch
@@ -268,7 +272,7 @@ def describe_overhang(
 
     Parameters
     ----------
-    text : function that returns a length in mm as text.
+    text : function that formats a length in mm.
     """
     found, wall = list(find_overhangs(fixture, toolkit, workpiece)), toolkit.wall_with_ends
     if not found:
@@ -282,8 +286,9 @@ def describe_overhang(
 
 
 def bound_plates(fixture: Fixture, toolkit: Toolkit) -> Box:
-    """Return the bounding box in mm of all plates, half a pitch beyond their holes;
-    ±inf along an axis without an end.
+    """Return the box in mm around all plates, which reach half a pitch beyond their outermost holes.
+
+    The bounds are ±inf along an axis on which a plate has no end.
     """
     boxes = []
     for plate in toolkit.plates:

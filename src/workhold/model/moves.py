@@ -7,7 +7,8 @@ Glossary
 --------
 tip : middle of the tool's lower end; its height is z, in mm above the plane on which the part lies.
 bulge : tan(sweep / 4) of a move's path in the plane, 0 for a straight one, positive counter-clockwise.
-share : how far along a move a moment is, from 0 to 1, by length on a line and by sweep on an arc.
+share : position along a move, from 0 at its start to 1 at its end, by length on a line and by sweep on an
+    arc.
 """
 
 from __future__ import annotations
@@ -96,12 +97,12 @@ class Moves:
     ----------
     line : (M,) line of the program, from 1.
     tool : (M,) number of the tool.
-    cutting : (M,) whether it moves at a feed, not rapidly.
-    start, end : (M, 3) tip in mm, in the part's coordinates; height is linear in the share.
+    cutting : (M,) True for a move at a feed, False for a rapid one.
+    start, end : (M, 3) tip in mm, in the part's coordinates; on the way its height is linear in the share.
     bulge : (M,) of the path in the plane.
     feed : (M,) along the path in mm/min, 0 for rapid moves and where none is given.
     spindle : (M,) revolutions per minute, 0 where none are given.
-    cycle : (M,) whether a drill cycle makes it; False where nobody knows, as of a file.
+    cycle : (M,) whether a drill cycle makes the move; False where unknown, as for moves of a result file.
 
     Raises
     ------
@@ -155,8 +156,9 @@ class Moves:
         return cls(*columns[:3], *ends, *columns[5:])
 
     def cut_to(self, stretches: MoveStretches) -> Moves:
-        """Return one move for each of the K stretches:
-        the stretch alone, with the line, tool and speeds of its move.
+        """Return K moves, one for each stretch, which run along that stretch only.
+
+        Each has the line, tool and speeds of the move it is a part of.
         """
         move, first, last = stretches.move, stretches.first, stretches.last
         start, end, bulge = self.start[move], self.end[move], self.bulge[move]
@@ -181,7 +183,7 @@ class Moves:
 
     @property
     def length(self) -> Floats:
-        """(M,) length of each move's path in mm, with its rise: of helices along the helix."""
+        """(M,) length of each move's path in mm, its rise included: a helix is measured along the helix."""
         chord = np.hypot(*(self.end - self.start).T[:2])
         half = 2.0 * np.arctan(self.bulge)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -192,12 +194,12 @@ class Moves:
 
 @frozen
 class MoveStretches:
-    """K stretches of moves, by the moves' numbers and along each.
+    """K stretches of moves, each from one share of its move to another.
 
     Parameters
     ----------
-    move : (K,) numbers of moves, never falling.
-    first, last : (K,) shares from which and until which each goes.
+    move : (K,) index of each stretch's move, ascending; a move may have several stretches.
+    first, last : (K,) shares of the move at which the stretch begins and ends.
     """
 
     move: NDArray[np.int64] = field(converter=to_integers, eq=SAME, hash=False, repr=False)
@@ -220,8 +222,9 @@ class MoveStretches:
 
 
 def compute_bulges_of_shares(bulge: Floats, part: Floats) -> Floats:
-    """Return the bulges (N,) of parts of arcs:
-    ``bulge`` is that of the arc, ``part`` the share of its sweep, both (N,).
+    """Return the bulges (N,) of parts of arcs.
+
+    ``bulge`` (N,) is that of the whole arc, ``part`` (N,) the fraction of its sweep that is kept.
     """
     return np.where(part == 1.0, bulge, np.tan(part * np.arctan(bulge)))
 
@@ -229,10 +232,11 @@ def compute_bulges_of_shares(bulge: Floats, part: Floats) -> Floats:
 def find_shares_between_heights(
     start: Floats, end: Floats, low: Floats, high: Floats
 ) -> tuple[Floats, Floats]:
-    """Return first and last share, (N,) each, between which the tips of moves are at heights in [low, high].
+    """Return the first and the last share, (N,) each, of N moves between which the tip's height is in [low,
+    high].
 
-    A tip goes from height ``start`` to ``end``; all are (N,) in mm. Where it never is at such a height, first
-    > last.
+    A tip goes from height ``start`` to ``end``; all arguments are (N,) in mm. Where the height is never in
+    that range, first > last.
     """
     rise = end - start
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -247,7 +251,8 @@ def find_shares_between_heights(
 
 
 def compute_path_points(start: Floats, end: Floats, bulge: Floats, share: Floats) -> Floats:
-    """Return the points (N, 2) in mm of paths in the plane at these shares; at 0 and 1 exactly the ends.
+    """Return the points (N, 2) in mm at one share of each of N paths in the plane; at 0 and 1 exactly the
+    ends.
 
     The chord from the start to the point is the whole chord, shortened and turned. For a sweep t and a share
     s its length is ``sin(s t / 2) / sin(t / 2)`` times that of the whole, and it is turned by ``(1 - s) t /
@@ -286,11 +291,11 @@ class SweptPiece:
     Parameters
     ----------
     line : of the program, from 1.
-    tool : its number.
+    tool : number of the tool.
     kind : ``rapid`` or ``cut``.
     path : of the axis: vertices x, y and the bulge of the span to the next. One vertex is an upright move,
         two are a segment or an arc; three or more return to the first and are filled, see :attr:`filled`.
-    tip : height of the tip at the start and at the end, linear in the share of the span.
+    tip : heights of the tip at the start and at the end; linear in the share of the span.
     radius : of the cylinder.
     heights : (l, u) of the cylinder above the tip, closed.
     """
@@ -329,10 +334,10 @@ class SweptPiece:
 
 
 def make_box_path(one: tuple[float, float], other: tuple[float, float]) -> tuple[PathVertex, ...]:
-    """Return the border of the rectangle between two corners as straight spans, closed:
-    the last vertex equals the first.
+    """Return the border of the rectangle between two opposite corners as closed straight spans: the last
+    vertex equals the first.
 
-    Where the rectangle has no width or height, the path goes from ``one`` to ``other`` and back.
+    Where the rectangle has no width or no height, the path goes from ``one`` to ``other`` and back.
     """
     (x, y), (to_x, to_y) = one, other
     corners = [(x, y), (to_x, y), (to_x, to_y), (x, to_y)] if x != to_x and y != to_y else [one, other]

@@ -1,8 +1,8 @@
 """What a user should read about a result: a class for each kind of note, with its data and the words for it.
 
-A note prints as its sentence. What decides something looks at kinds and data, never at sentences. Most notes
+A note prints as its sentence. Code that decides something reads kinds and data, never sentences. Most notes
 follow from the numbers of a result, so a verification can derive which there must be. Two notes are equal
-where they say the same of the same numbers; what a toolkit calls its things makes no difference.
+where kind and numbers are; the words that a toolkit has for its things do not count.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ class Note:
 
     Attributes
     ----------
-    kind : its name in files.
-    sentence : with its fields by name, of a kind that has one for all of them.
+    kind : name of the kind in files.
+    sentence : template of the sentence, with fields by name; only of kinds that have one template.
     """
 
     kind: ClassVar[str]
@@ -68,9 +68,7 @@ class Note:
 
     @property
     def data(self) -> dict[str, Any]:
-        """Fields by name and "kind", without those that do
-        not count in a comparison (the toolkit's words).
-        """
+        """ "kind" and the fields by name, without fields that equality ignores (the toolkit's words)."""
         return {"kind": self.kind, **asdict(self, filter=lambda one, _: bool(one.eq))}
 
     def __str__(self) -> str:
@@ -79,7 +77,7 @@ class Note:
 
 @frozen
 class Remark(Note):
-    """A sentence that nothing follows from."""
+    """A sentence given as it is, without data to derive it from."""
 
     kind = "remark"
     sentence = "{text}"
@@ -97,9 +95,10 @@ class NoFixture(Note):
 
     Parameters
     ----------
-    stage : what rules the last fixtures out; a toolkit may have a reason of its own for each.
-    line : of the program whose tools take most of the places for pegs away; None where none does.
-    asked : what was asked for that is to blame, where part and pitch alone are not.
+    stage : the step of the search that rules the last fixtures out; a toolkit may have its own words for
+        each.
+    line : line of the program whose tool rules out most places for pegs; None where none does.
+    asked : names of requirements that are to blame; empty where the part and the pitch alone are.
     """
 
     kind = "no_fixture"
@@ -177,8 +176,8 @@ class NoPair(Note):
 
     Parameters
     ----------
-    seats : at which two clamps were tried.
-    contacts : of three locators, or wall and locator, and a clamp.
+    seats : number of seats (locators and pose) at which pairs of clamps were tried.
+    contacts : number of simultaneous contacts of the locators (or wall and locator) and one clamp.
     """
 
     kind = "no_pair"
@@ -202,9 +201,7 @@ class NoPair(Note):
 
 @frozen
 class AskedFor(Note):
-    """Note on what the query itself asks for, where there is no fixture; limits of the hardware are not among
-    it.
-    """
+    """Note on which requirements of the query leave no fixture; limits of the hardware are not named."""
 
     kind = "asked_for"
     rules: tuple[str, ...]
@@ -217,7 +214,7 @@ class AskedFor(Note):
 
 @frozen
 class BestOnly(Note):
-    """Note that only the ``best`` fixtures were sought, so that the others were not counted."""
+    """Note that only the ``best`` fixtures were searched for, so the number of all is not known."""
 
     kind = "best_only"
     sentence = "Only the best {best} were sought, so how many fixtures there are in all was not counted."
@@ -249,7 +246,7 @@ class KeptBest(Note):
 
 @frozen
 class ChosenOnly(Note):
-    """Note that somebody chose some of the fixtures found."""
+    """Note that the user has chosen some of the fixtures found."""
 
     kind = "chosen"
     sentence = "Of {found:,} fixtures found, {chosen:,} were chosen to be listed."
@@ -280,9 +277,7 @@ class ToolkitsLeft(Note):
 
 @frozen
 class Many(Note):
-    """Note that of about ``count`` fixtures, which are too many to list without being asked to, only the best
-    are listed.
-    """
+    """Note that only the best of about ``count`` fixtures are listed, as nobody asked for so many."""
 
     kind = "many"
     count: int
@@ -318,7 +313,7 @@ class UndecidedSystem(Note):
 
     Parameters
     ----------
-    faces : that they touch.
+    faces : faces that the pegs touch.
     columns, rows : columns count from the first peg of the same jaw, rows from the first peg of all.
     """
 
@@ -359,7 +354,7 @@ class FittedOutline(Note):
 
 @frozen
 class Seated(Note):
-    """Note that of the first ``looked_at`` fixtures only the ``kept`` that are seated as asked are listed."""
+    """Note that of the first ``looked_at`` fixtures only ``kept`` are listed: those seated as asked."""
 
     kind = "seated"
     sentence = (
@@ -373,7 +368,7 @@ class Seated(Note):
 
 @frozen
 class PushedByHand(Note):
-    """Note that fixtures with two clamps are not ordered by the seating that was asked for."""
+    """Note that fixtures with two clamps are not ordered by seating, although seating was asked for."""
 
     kind = "pushed_by_hand"
     sentence = (

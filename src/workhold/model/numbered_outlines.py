@@ -1,6 +1,5 @@
-"""The loops of a workpiece, outer ones before holes, and the segments of several outlines of one part.
-
-Segments and faces of outlines have numbers that run on.
+"""Loops of a workpiece (outer ones before holes), and one numbering for the segments of all outlines of a
+part.
 """
 
 from __future__ import annotations
@@ -47,13 +46,14 @@ class NumberedOutlines:
 
     Parameters
     ----------
-    segments : their places in this tuple are their numbers.
+    segments : all segments; a segment's index is its number.
     faces : ordered by their numbers.
-    bands : for every segment its band; None where it may not be touched, nothing at all without a solid.
-    runs : for every segment the run that holds its band, as ``SolidOutline`` has it; nothing without a solid.
-    over : for every segment the numbers of the solid's faces over it; nothing where these are not known.
-    marks : for every face the number of its outline: 0 for the workpiece itself.
-    inside : the numbers of the faces of holes.
+    bands : for each segment the band of heights that may be touched, or None where none may; () without a
+        solid.
+    runs : for each segment the run of heights that holds its band, see ``SolidOutline``; () without a solid.
+    over : for each segment the numbers of the solid's faces over it; () where these are not known.
+    marks : for each face the index of its outline; 0 is the workpiece itself.
+    inside : numbers of the faces of holes.
     """
 
     segments: tuple[Segment, ...]
@@ -66,9 +66,9 @@ class NumberedOutlines:
 
     @classmethod
     def from_outlines(cls, outlines: Sequence[OutlineOfPart]) -> NumberedOutlines:
-        """Return the segments and faces of several outlines, of which the first is the part's own.
+        """Return the segments and faces of several outlines, the part's own first, in one numbering.
 
-        The numbers of each outline go on after those of the outline before.
+        The numbers of each outline follow those of the outline before it.
         """
         segments, faces, bands = list[Segment](), list[Face](), list[Band | None]()
         over, inside, runs = list[tuple[int, ...]](), set[int](), list[RunRows]()
@@ -90,15 +90,16 @@ class NumberedOutlines:
         return cls(tuple(segments), tuple(faces), tuple(bands), tuple(runs), solids, marks, frozenset(inside))
 
     def find_pressed_band(self, number: int, point: Point) -> Band | None:
-        """Return the (low, high) heights in mm at which a peg can press on a face at a point;
-        None where it may not touch.
+        """Return the heights (low, high) in mm at which a peg can press on a face at a point; None where it
+        may not touch.
 
-        They are the solid's run there, widened to hold the segment's band; without runs, the band itself.
+        The band is the solid's run at that point, widened so that it holds the segment's band. Without runs
+        it is the segment's band.
 
         Parameters
         ----------
         number : number of any segment of the face.
-        point : (x, y) in mm where it touches, or the peg's centre.
+        point : (x, y) in mm of the contact, or of the peg's centre.
         """
         face = next(one for one in self.faces if number in one.segments)
         if not self.runs or not any(self.runs[k] for k in face.segments):
@@ -142,10 +143,9 @@ def drop_equal_values(values: Iterable[Value]) -> Iterator[Value]:
 
 
 def count_outer_loops(name: str, shapes: Sequence[LoopShape]) -> int:
-    """Return the number of outer loops:
-    those inside an even number of other loops. Loops are known not to meet.
+    """Return the number of outer loops, which lie inside an even number of other loops.
 
-    Raises InputError where an outer loop comes after a hole.
+    The loops must not meet each other. Raises InputError where an outer loop comes after a hole.
     """
     boxes = np.array([shape.box for shape in shapes])
     around = [
@@ -166,9 +166,10 @@ def count_outer_loops(name: str, shapes: Sequence[LoopShape]) -> int:
 
 
 def refuse_misplaced_holes(name: str, shapes: Sequence[LoopShape], comparisons: ComparisonBudget) -> None:
-    """Raise InputError for a loop outside the first one, or inside another hole; loops are known not to meet.
+    """Raise InputError for a hole outside the first loop or inside another hole.
 
-    Each pair tested is spent from ``comparisons``, which raises an error once its budget is used up.
+    The loops must not meet each other. Each pair tested takes one from ``comparisons``, which raises an error
+    once its budget is used up.
     """
     boxes = np.array([shape.box for shape in shapes])
     for index, hole in enumerate(shapes[1:], start=1):

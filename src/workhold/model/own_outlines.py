@@ -76,8 +76,8 @@ def number_solid(workpiece: Workpiece) -> SolidOutline | None:
 
 
 def adapt_outlines_to_toolkit(workpiece: Workpiece, toolkit: Toolkit) -> Workpiece:
-    """Return the workpiece with exactly the own outlines that a
-    toolkit's carriers meet, in the order of ``toolkit.heights``.
+    """Return the workpiece with only those own outlines that the toolkit's carriers meet, in the order of
+    ``toolkit.heights``.
 
     Raises InputError where the solid was read without the heights of a carrier.
     """
@@ -101,12 +101,12 @@ def adapt_outlines_to_toolkit(workpiece: Workpiece, toolkit: Toolkit) -> Workpie
 def add_own_outlines(
     workpiece: Workpiece, entries: Mapping[str, Mapping[str, Any]], heights: Mapping[str, Heights]
 ) -> Workpiece:
-    """Return the workpiece with the own outlines that the entry ``outlines`` of a result file has.
+    """Return the workpiece with the own outlines in the entry ``outlines`` of a result file.
 
     Parameters
     ----------
-    entries : by role the loops, the bands, and where they are known the solid's faces.
-    heights : by role, of the file's toolkit, in its order.
+    entries : by role, the outline's loops and bands and, where known, the solid's faces.
+    heights : by role, the heights in the file's toolkit, in its order.
 
     Raises
     ------
@@ -131,11 +131,11 @@ def add_own_outlines(
 
 
 def measure_outline_diameter(workpiece: Workpiece) -> float:
-    """Return the largest distance in mm between two points of
-    the outer loops of the part and its carriers' outlines.
+    """Return the largest distance in mm between two points of the outer loops of the part and its carriers'
+    outlines.
 
-    The two points are joints, a joint and the far side of an arc, or the far sides of two arcs. Far sides lie
-    on the line through the arcs' centres.
+    The two points are two joints, a joint and the far side of an arc, or the far sides of two arcs: points of
+    an arc's circle on the line through both centres, or through centre and joint.
     """
     outer = [face.segment for one in workpiece.every_outline for face in one.outer_faces]
     middle = np.array([segment.compute_point(0.0) for segment in outer])
@@ -176,8 +176,9 @@ def measure_segments_diameter(a: Segment, b: Segment) -> float:
 
 
 def find_far_point(arc: Arc, point: tuple[float, float]) -> tuple[float, float] | None:
-    """Return the point of an arc's circle farthest from a point;
-    None where it is not on the arc or not unique.
+    """Return the point farthest from ``point`` on an arc's circle.
+
+    Return None where that point is not on the arc, or is not unique.
     """
     dx, dy = arc.center[0] - point[0], arc.center[1] - point[1]
     distance = hypot(dx, dy)

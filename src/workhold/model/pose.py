@@ -1,4 +1,4 @@
-"""Where a workpiece lies in the toolkit's frame: its pose, and flush against a wall.
+"""The pose of a workpiece in the toolkit's frame, and its contacts where it lies flush against a wall.
 
 The wall runs along x at y = 0 and the part lies above it, so the orientation determines the hull edge
 that lies on the wall. The part touches the wall at the ends of that edge.
@@ -30,16 +30,16 @@ ENDS = ("left", "right")
 
 @frozen(field_transformer=name_number_fields)
 class Pose:
-    """Position of a part in the toolkit: the map of its point q to R(theta) q + (x, y).
+    """Position of a part in the toolkit: a point q of the part is at R(theta) q + (x, y).
 
-    Points q are in the part's frame, that of its drawing, in mm. They go to the toolkit's frame: the origin
-    is its first hole, column A and row 1 (of a vise that of the left jaw), x runs along its columns from A to
-    B and y along its rows from 1 to 2. Beside a wall y is 0 at the wall.
+    Points q are in the part's frame, that of its drawing, in mm. In the toolkit's frame the origin is its
+    first hole, column A and row 1 (of a vise, that of the left jaw); x runs along the columns from A to B, y
+    along the rows from 1 to 2. Beside a wall y is 0 at the wall.
 
     Parameters
     ----------
-    theta_deg : by how much the part is turned, in degrees, counter-clockwise; 0 as it is drawn.
-    x, y : where the part's origin lies in the toolkit's frame, in mm.
+    theta_deg : angle in degrees by which the part is turned counter-clockwise from its drawing.
+    x, y : place of the part's origin in the toolkit's frame, in mm.
 
     Raises
     ------
@@ -63,7 +63,7 @@ class Pose:
 
     @property
     def written_deg(self) -> float:
-        """Angle in degrees as people write it, in (-45, 315]: a turn of less than 45° clockwise is negative.
+        """Angle in degrees as shown to users, in (-45, 315]: a clockwise turn of less than 45° is negative.
 
         >>> Pose(359.75, 0.0, 0.0).written_deg, Pose(315.0, 0.0, 0.0).written_deg
         (-0.25, 315.0)
@@ -134,17 +134,18 @@ def wrap_to_whole_turn(angle: Array) -> Array:
 
 @frozen(eq=False)
 class FlushContacts:
-    """A workpiece's hull edges, and how it lies on each.
+    """The E convex hull edges of a workpiece, and the contacts of the part when it lies on a wall with each.
 
     Parameters
     ----------
-    theta : (E,) orientation of the workpiece in radians, in [0, 2 pi), in which each lies on the wall.
-    ends : (E, 2, 2) their starts and ends in the workpiece's coordinates, in mm.
-    face : (E, 2) numbers of the faces that a table of fixtures names for them: of a corner the lower one.
-    touching : numbers of the faces that touch the wall at the start and at the end of each. A corner has
-        those of two faces, the lower one first.
-    shared : (E, 2) numbers that are equal where one face's error moves several contacts alike: the face's
-        number; for a corner a number below zero of its own.
+    theta : (E,) orientation of the workpiece in radians, in [0, 2 pi), in which the edge lies on the wall.
+    ends : (E, 2, 2) start and end (x, y) of each edge in mm, in the workpiece's coordinates.
+    face : (E, 2) number of the face at each end, as tables of fixtures have it; at a corner the lower of two
+        numbers.
+    touching : for each edge, the numbers of the faces that touch the wall at the start and at the end: one
+        face, or the two faces of a corner in ascending order.
+    shared : (E, 2) labels, equal where the error of one face moves several contacts alike: the number of the
+        face, or for a corner a negative number that no other contact has.
     """
 
     theta: Array
@@ -155,8 +156,8 @@ class FlushContacts:
 
     @classmethod
     def from_hull_edges(cls, edges: Sequence[HullEdge], numbers: Sequence[int]) -> FlushContacts:
-        """Return the contacts of E hull edges;
-        ``numbers[i]`` is the number of the face that an edge's end names as i.
+        """Return the contacts of E hull edges; ``numbers[i]`` is the face number that stands for index i in
+        an edge's ends.
         """
         tangent = np.array([edge.tangent for edge in edges]).reshape(-1, 2)
 
@@ -197,11 +198,11 @@ class FlushContacts:
         return order[np.searchsorted((around[:-1] + around[1:]) / 2.0, wrap_to_whole_turn(theta))]
 
     def compute_end_x(self, theta: Array, position: Array) -> Array:
-        """Return x in mm (N, 2) of the start and the end of
-        the contact with the wall, in the toolkit's frame.
+        """Return x in mm (N, 2), in the toolkit's frame, of the start and the end of the contact with the
+        wall, for N poses.
 
-        Poses are given by ``theta`` (N,) in radians and ``position`` (N, 2) in mm; the hull edge is the
-        nearest one. The result is NaN where there are no hull edges.
+        Poses are given by ``theta`` (N,) in radians and ``position`` (N, 2) in mm; each part lies on the hull
+        edge with the nearest orientation. The result is NaN where there are no hull edges.
         """
         if len(self.theta) == 0:
             return np.full((len(theta), 2), np.nan)

@@ -67,11 +67,11 @@ class SweptArrays(NamedTuple):
 
     Parameters
     ----------
-    line, tool, cutting : (N,) of the moves.
-    start, end : (N, 2) of the axis; of a box its corners.
-    bulge, tip_first, tip_last : (N,).
-    cylinder : (N, 3) low, high and radius.
-    box : (N,) whether everything inside the box of the ends counts.
+    line, tool, cutting : (N,) line, tool number, and whether it cuts, of each piece's move.
+    start, end : (N, 2) ends of the axis's path in mm; of a box two opposite corners.
+    bulge, tip_first, tip_last : (N,) bulge of the path, and height of the tip at its start and end in mm.
+    cylinder : (N, 3) low and high above the tip, and radius, in mm.
+    box : (N,) True where the whole box of the ends counts as swept.
     """
 
     line: NDArray[np.int64]
@@ -94,18 +94,18 @@ class Program:
     ----------
     name : of its file.
     sha256 : of the file's bytes, in hexadecimal.
-    unit : in which it begins, ``mm`` or ``inch``.
-    zero : where its X0 Y0 is on the part.
-    z_zero : height of its Z0.
+    unit : unit in which the program begins, ``mm`` or ``inch``.
+    zero : (x, y) in mm on the part where the program has X0 Y0.
+    z_zero : height in mm at which the program has Z0.
     clearance : kept between every cylinder of a tool and everything that holds the part, in mm.
     rapid : ``straight``, or ``box`` where a control may go another way from end to end.
-    tools : by their numbers; at least those that the program uses.
+    tools : tools by number; at least those that the program uses.
     moves : in its order.
     skipped : lines with a move that was left out, such as one to a place of the machine's own.
-    notes : sentences on what was read in one way where another is thinkable.
-    forces : of the tools on the part, on every move; None where nobody asks for them.
-    stock : what the part is cut from, on which alone forces act; None where a file does not say.
-    is_placed : whether forces are those on a part already.
+    notes : sentences on what was read in one way and could be read in another.
+    forces : forces of the tools on the part for each move; None where nobody asks for them.
+    stock : raw stock, within which alone forces act; None where a file does not say.
+    is_placed : whether ``forces`` are already limited to the stock around a part.
 
     Raises
     ------
@@ -170,22 +170,22 @@ class Program:
         Parameters
         ----------
         path : of the program.
-        tools : file of a tool table, or a diameter or a :class:`Tool` for each number; what the program
-            itself says of its tools if None.
-        zero : where the program's X0 Y0 is on the part, in mm.
-        z_zero : height of its Z0 in mm, or which side of the part that is.
-        thickness : of the part in mm, where Z0 is its top.
+        tools : file of a tool table, or a diameter or a :class:`Tool` for each number; if None, what the
+            program itself says of its tools.
+        zero : (x, y) in mm on the part where the program has X0 Y0.
+        z_zero : height of Z0 in mm, or the side of the part, "top" or "bottom", on which Z0 is.
+        thickness : thickness of the part in mm, needed where Z0 is its top.
         clearance : distance that tools keep from all that holds the part, in mm.
         rapid : ``straight``, or ``box`` where a rapid move may run anywhere in the box of its ends.
         unit : ``mm`` or ``inch`` where the program does not say.
-        cutting : how tools cut where the table does not say so, for the forces on the part:
+        cutting : data on how tools cut, for the forces on the part, where the tool table does not have them:
             :class:`workhold.model.cutting_tool.CuttingData`, or its fields by name.
-        start : where the tip is at the start, X, Y and Z in mm from the program's own zero; None where the
-            program says it.
-        whole_numbers : what a length without a decimal point counts: ``units``, or ``thousandths``, which are
-            0.001 mm or 0.0001 inch.
-        stock : what the part is cut from, as a :class:`workhold.model.stock.Stock`, or its ``side``, ``top``
-            and ``shape`` by name; 5 mm around the outline and on top if None.
+        start : (X, Y, Z) in mm of the tip at the start, from the program's own zero; None where the program
+            says it.
+        whole_numbers : what a length without a decimal point counts: ``units``, or ``thousandths`` (0.001 mm
+            or 0.0001 inch).
+        stock : raw stock of the part, as a :class:`workhold.model.stock.Stock`, or its ``side``, ``top`` and
+            ``shape`` by name; 5 mm around the outline and on top if None.
 
         Raises
         ------
@@ -216,11 +216,11 @@ class Program:
         return self.list_swept_pieces(-inf, inf)
 
     def list_swept_pieces(self, low: float, high: float) -> tuple[SweptPiece, ...]:
-        """Return the pieces swept at heights in [low, high],
-        each cut to the share of its move at which its cylinder is there.
+        """Return the pieces swept at heights in [low, high], each cut to the share of its move at which its
+        cylinder is there.
 
-        Pieces that are never there are left out. A piece is cut where tip + l is ``high`` and where tip + u
-        is ``low``; boxes are not cut.
+        Pieces never at such a height are left out. With the cylinder from l to u above the tip, a piece is
+        cut where tip + l is ``high`` and where tip + u is ``low``; boxes are not cut.
 
         Parameters
         ----------
@@ -287,9 +287,10 @@ class Program:
         )
 
     def pair_moves_with_cylinders(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Return a row for each move and each cylinder of its tool, in the order of the moves.
+        """Return (N,) move indices and (N, 3) cylinders: a row for each move and each cylinder of its tool,
+        in the order of moves.
 
-        The arrays are the indices (N,) of the moves, and low, high, radius (N, 3) of the cylinders in mm.
+        Cylinders are low, high and radius in mm.
         """
         rows, cylinders = [np.zeros(0, np.int64)], [np.zeros((0, 3))]
         for number, tool in self.tools.items():

@@ -1,4 +1,4 @@
-"""What a program comes to: lengths, times and heights by tool, and the box in which its tips move."""
+"""Figures of a program: lengths, times and heights by tool, and the box in which the tool's tip moves."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class ToolFigures:
 
     Parameters
     ----------
-    tool : its number.
-    first_line : where it moves first.
+    tool : number of the tool.
+    first_line : line of its first move.
     cutting, rapid : lengths of its cutting and of its rapid moves.
-    seconds : that its cutting moves take at their feeds, without accelerating and without dwells.
+    seconds : time of its cutting moves at their feeds, without acceleration and dwells.
     untimed : length of cutting moves without a feed.
-    lowest, highest : heights of its tip.
-    lowest_cut : of its tip at a cutting move; None where it does not cut.
+    lowest, highest : heights of its tip over all its moves.
+    lowest_cut : least height of its tip on cutting moves; None where it has none.
     """
 
     tool: int
@@ -67,8 +67,8 @@ def measure_tools(program: Program) -> tuple[ToolFigures, ...]:
 
 
 def bound_tip(moves: Moves) -> tuple[Floats, Floats]:
-    """Return the smallest and the greatest x,
-    y and z (3,) in mm of the tip over all moves; there is at least one.
+    """Return (lowest, highest) coordinates of the tip over all moves, each (x, y, z) in mm; there is at least
+    one move.
     """
     points = [moves.start, moves.end, *find_arc_extremes(moves)]
     every = np.concatenate(points)
@@ -76,8 +76,9 @@ def bound_tip(moves: Moves) -> tuple[Floats, Floats]:
 
 
 def find_arc_extremes(moves: Moves) -> Sequence[Floats]:
-    """Return four arrays (K, 3) of points inside arcs at which
-    the path runs along +x, +y, -x, -y: extremes of x or y.
+    """Return the points inside arcs at which x or y is extreme, as four arrays (K, 3) with a K of their own.
+
+    At the points of the four arrays the path runs along +x, +y, -x and -y.
     """
     arc = np.flatnonzero(moves.bulge)
     start, end, bulge = moves.start[arc], moves.end[arc], moves.bulge[arc]

@@ -1,6 +1,6 @@
 """The figures of quality: names, units, which way is better (docs/quality.md), and orders of them.
 
-Which fixture comes first is said by an order of figures, by name or by what a user prefers. How figures are
+Fixtures are ranked by an order of figures, which a user gives by names or by a preference. How figures are
 computed is in ``statics.quality``.
 """
 
@@ -100,11 +100,11 @@ class Figure:
 
     Parameters
     ----------
-    key : its name in files.
+    key : name in files.
     unit : "" (a plain number), "mm", "N", "MPa" or "deg".
-    more_is_better : which way is better.
+    more_is_better : whether a larger value is better.
     meaning : what it means, in one sentence.
-    decimals : with which it is shown; lengths have those of their unit.
+    decimals : number of decimals shown; lengths have those of their unit.
     """
 
     key: str
@@ -123,7 +123,7 @@ class Figure:
         return self.key.replace("_", " ")
 
     def name_for(self, mover: str) -> tuple[str, str]:
-        """Return name and meaning with the word "jaw" replaced by ``mover``.
+        """Return (name, meaning) with the word "jaw" replaced by ``mover``.
 
         >>> FIGURES[1].name_for("clamp")
         ('clamp amplification', 'The largest peg force per unit of clamp force.')
@@ -264,10 +264,10 @@ def round_number_coarsely(value: float) -> float:
 
 
 def list_figures_in_columns(columns: int) -> tuple[Figure, ...]:
-    """Return the figures in the columns of a table that has so many:
-    :data:`FIGURES`, then program clearance if one is left.
+    """Return the figures in the columns of a table with this number of columns: :data:`FIGURES`, then the
+    program clearance if one column is left.
 
-    The figures of how far pegs bend are left out where the table is narrower than all of :data:`FIGURES`.
+    A table with fewer columns than :data:`FIGURES` has no figures of bending pegs.
 
     >>> list_figures_in_columns(len(FIGURES) + 1)[PROGRAM_CLEARANCE].words, list_figures_in_columns(BEFORE_PINS)[-1].words
     ('program clearance', 'jaw contact')
@@ -277,10 +277,10 @@ def list_figures_in_columns(columns: int) -> tuple[Figure, ...]:
 
 
 def fill_figure_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return figures (N, F) with a column for each of :data:`FIGURES`:
-    missing figures of bending pegs are NaN.
+    """Return figures (N, F) with a column for each of :data:`FIGURES`; missing figures of bending pegs become
+    NaN.
 
-    A column of program clearance stays last.
+    A column of program clearance, if any, stays the last.
     """
     figures = list_figures_in_columns(quality.shape[1])
     if len(figures) >= len(FIGURES):
@@ -296,7 +296,7 @@ def select_figure_column(quality: NDArray[np.float64], figure: Figure) -> NDArra
 
 
 def list_known_figures(values: Sequence[float]) -> dict[str, float]:
-    """Return the figures of one row of a table by key, without those that are NaN.
+    """Return the figures of one row of a table by key; those that are NaN are left out.
 
     >>> list_known_figures([0.25, *[float("nan")] * 16, 4.5])
     {'closure_margin': 0.25, 'program_clearance': 4.5}
@@ -318,8 +318,9 @@ def find_figure_number(name: str) -> int | None:
 
 
 def find_ranked_number(name: str) -> int | None:
-    """Return the index in :data:`RANKED` of a figure's name,
-    hyphens, underscores and spaces alike; None if not there.
+    """Return the index in :data:`RANKED` of a figure's name; None where it is not among them.
+
+    Hyphens, underscores and spaces in the name mean the same.
 
     >>> RANKED[find_ranked_number("capture opening")].option
     'capture-opening'
@@ -334,8 +335,9 @@ def to_words(value: Iterable[str] | None) -> tuple[str, ...] | None:
 
 
 def to_tuple(name: str, values: Iterable[T]) -> tuple[T, ...]:
-    """Return the values of an iterable as a tuple;
-    raise InputError, which calls them ``name``, for anything else.
+    """Return the values of an iterable as a tuple; raise InputError for what is not iterable.
+
+    ``name`` is what the message calls the values.
     """
     try:
         return tuple(values)
@@ -350,13 +352,13 @@ def resolve_ranking(
     seated: bool = False,
     ended: bool = False,
 ) -> tuple[str, ...]:
-    """Return the keys of the figures to rank by,
-    from names as a user writes them; the default ranking for None.
+    """Return the keys of the figures to rank by, from names as a user writes them; the default ranking for
+    None.
 
-    ``loaded`` are the loads or whether there are any; ``pairs`` says that two clamps clamp, ``seated`` that
+    ``loaded`` is the loads, or whether there are any; ``pairs`` says that two clamps press, ``seated`` that
     seating is asked for, ``ended`` that a flat jaw has ends. Names may begin with :data:`HOUSE_ORDER`, as in
-    files. Raises InputError for an empty list, an unknown or repeated name, and a figure that these arguments
-    say is not known.
+    files. Raises InputError for an empty list, an unknown or repeated name, and a figure that is not known
+    under these arguments.
     """
     if names is None:
         return adapt_ranking_to_loads(PAIR_RANKING if pairs else DEFAULT_RANKING, loaded)

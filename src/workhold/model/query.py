@@ -42,16 +42,17 @@ SEATING_KEYS = {figure.key for figure in SEATING_FIGURES}
 
 
 def to_restrictions(value: Restrictions | None) -> Restrictions:
-    """Return the restrictions; no restriction at all for None."""
+    """Return the restrictions; for None, an object that restricts nothing."""
     return Restrictions() if value is None else value
 
 
 def make_tolerance(value: Tolerance | None) -> Tolerance:
-    """Return the value unchanged, None too: the query replaces None once it knows the toolkit."""
+    """Return the value unchanged, also None: the query replaces None once it knows the toolkit."""
     return cast(Tolerance, value)
 
 
 def to_loads(loads: Load | Iterable[Load]) -> tuple[Load, ...]:
+    """Return loads as a tuple, from one load or from several."""
     return (loads,) if isinstance(loads, Load) else to_tuple("loads", loads)
 
 
@@ -84,43 +85,43 @@ class Query(SearchQuestion):
 
     Parameters
     ----------
-    workpiece, toolkit : what to hold and what to hold it in.
-    types : names of the toolkit's arrangements to seek, such as "I" or ("I", "II"); None is all.
+    workpiece, toolkit : the part, and the toolkit to hold it in.
+    types : names of the toolkit's arrangements to search, such as "I" or ("I", "II"); None for all.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
     restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
         restriction.
-    rank_by : figures of quality, the first counting most, named as in ``model.quality``. None is the usual
-        order, see :mod:`workhold.model.choose_first_toolkit`.
+    rank_by : names of the figures of quality to rank by, the most important first, see ``model.quality``.
+        None is the usual order, see :mod:`workhold.model.first_choice`.
     tolerance : how far pegs and faces may be off, for the location error; None is the toolkit's own where it
         has one, as presets have, or else the usual one. The workpiece's departure is added to that of the
         faces.
-    loads : what the fixture must resist, for the load reaction.
-    best : seek and list only this many, the best ones; None lists all.
-    jaw_force : in N, with which the vise is closed, to warn of pegs that let go; None where it is open.
+    loads : loads that the fixture must resist.
+    best : number of fixtures to search for and list, the best ones; None for all.
+    jaw_force : force in N with which the vise is closed, for warnings of pegs that let go; None where it is
+        not decided.
     listing : with two clamps, "best" lists one fixture for each seat and pair of directions with the number
         of pairs of clamps there, "all" lists every one. None stands for "best"; other toolkits take only
         None.
-    seating : for how many of the first fixtures to find out where else their pegs can hold the part, and
-        order them anew (see ``workhold.seating``); None for none.
+    seating : number of the first fixtures for which to work out where else their pegs can hold the part;
+        these are ordered anew (see ``workhold.seating``). None for no seating.
     opening : with seating, list only fixtures that catch the part with the jaws open, or the clamp drawn
         back, by this length in mm from where they hold it. Wrong seats farther open do not count.
     foolproof : with seating, list only fixtures without a wrong seat that a caliper could take for the right
         one.
     program : of the machine: list only fixtures that its tools do not come near, and judge them under its
         forces; None where it is not known.
-    peg_height : of pegs, clamps and walls over the plane on which the part lies, in mm; None where nobody
-        says.
-        With a program it is needed; where the part is read from a solid it is the solid's.
+    peg_height : height in mm of pegs, clamps and walls over the plane on which the part lies; None where
+        nobody says. A program needs it; for a part read from a solid it is the solid's.
     max_location_error : list only fixtures whose location error is at most this, in mm; None for any.
-    thickness : of the part in mm, for how far pegs bend, and for what flat jaws grip; None where it is not
-        known, and
-        of a solid, which says it itself.
+    thickness : thickness of the part in mm, for the bending of pegs and the grip of flat jaws; None where
+        unknown, and for a solid, which has its own.
     friction : coefficients of friction by name where flat jaws or straps hold the part, such as {"jaw":
         0.15}; None
         for the usual ones (``model.friction``).
-    safety : factor on the loads there; None for the usual 2.
-    weight : of the part in N, without that factor, where straps hold it; None counts as nothing.
-    strapped : for so many of the best seats of a plate with straps these are sought; None for 20.
+    safety : factor on the loads where friction holds the part; None for the usual 2.
+    weight : weight of the part in N, without the safety factor, where straps hold it; None counts as 0.
+    strapped : number of the best seats on a plate with straps for which places of straps are searched; None
+        for 20.
 
     Raises
     ------
@@ -192,8 +193,7 @@ class Query(SearchQuestion):
             )
 
     def refuse_loads_across(self) -> None:
-        """Raise InputError for loads and options that count only with friction,
-        or only with pegs, and cannot count here.
+        """Raise InputError for loads and options that do not fit the way in which the toolkit holds the part.
 
         Pegs hold without friction: no load along z, no friction, no safety factor. Flat jaws have no pegs: no
         contact margin, seating, keep-out zone or largest location error; loads along z, and forces of a
@@ -287,8 +287,8 @@ class Query(SearchQuestion):
         return None if self.jaw_force is None else self.jaw_force * self.safety_factor
 
     def refuse_untouchable(self) -> None:
-        """Raise InputError for faces to touch that do not exist,
-        that are more than a fixture's contacts, or with two clamps.
+        """Raise InputError for faces to touch that do not exist or are more than a fixture's contacts, and
+        for any with two clamps.
         """
         faces, toolkit = self.restrictions.touch, self.toolkit
         if not faces:
@@ -311,7 +311,9 @@ class Query(SearchQuestion):
 
     @property
     def is_sifted(self) -> bool:
-        """Whether fixtures that hold the part are left out by faces to touch or a largest location error."""
+        """Whether some fixtures that hold the part are left out, because of faces to touch or a largest
+        location error.
+        """
         return bool(self.restrictions.touch) or self.max_location_error is not None
 
     @property
@@ -321,8 +323,9 @@ class Query(SearchQuestion):
 
     @property
     def pressed_up_to(self) -> float | None:
-        """Height in mm up to which pegs touch a prism:
-        the lesser of thickness and peg height; None where unknown, and for solids.
+        """Height in mm up to which pegs touch a prism: the lesser of thickness and peg height.
+
+        It is None for a solid, and where neither is known.
         """
         known = [one for one in (self.thickness, self.peg_height) if one is not None]
         return min(known) if known and self.workpiece.solid is None else None
@@ -348,14 +351,12 @@ class Query(SearchQuestion):
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """Names of all that was asked for and rules fixtures out,
-        by the query and by limits of the toolkit.
-        """
+        """Names of all requirements that rule fixtures out: those of the query and limits of the toolkit."""
         return (*self.restricted_by, *(limit.rule for limit in self.toolkit.limits))
 
     @property
     def restricted_by(self) -> tuple[str, ...]:
-        """Those of :attr:`asked` that the query asks for, whatever the toolkit."""
+        """Names in :attr:`asked` that come from the query, not from the toolkit."""
         rules = {
             "faces to avoid": bool(self.restrictions.avoid),
             "keep-out zones": bool(self.restrictions.zones),
@@ -370,14 +371,14 @@ class Query(SearchQuestion):
 
     @property
     def asked_of_places(self) -> tuple[str, ...]:
-        """Those of :attr:`asked` that leave fewer places for pegs along the part, or fewer holes for them."""
+        """Names in :attr:`asked` that leave fewer places for pegs along the part, or fewer holes."""
         places = ("faces to avoid", "keep-out zones", "tools of the program")
         holes = (limit.rule for limit in self.toolkit.limits if limit.bounds != "travel")
         return (*(name for name in self.restricted_by if name in places), *holes)
 
     @property
     def without_program(self) -> Query:
-        """Copy of the query without its program, and without the figures in its order that need one."""
+        """Copy of the query without its program and without the ranking figures that need one."""
         of_program = {PROGRAM_FIGURE.key} if self.loads else {PROGRAM_FIGURE.key, *LOAD_KEYS}
         ranking = [key for key in self.rank_by if key not in of_program]
         known = list_ranking_figures(ranking)
@@ -409,9 +410,7 @@ class Query(SearchQuestion):
 
     @property
     def has_house_order(self) -> bool:
-        """Whether fixtures stand in the usual order,
-        in which a fixture's place depends on the best of all.
-        """
+        """Whether the ranking is the usual order, where a fixture's rank depends on the best of all."""
         return has_house_order(self.rank_by)
 
     @property
@@ -444,8 +443,9 @@ def choose_peg_height(given: float | None, workpiece: Workpiece) -> float:
 
 
 def check_arrangements(names: Sequence[str] | None, known: Sequence[str]) -> tuple[str, ...]:
-    """Return the named arrangements in the toolkit's order, all for None;
-    raise InputError for others, and for none.
+    """Return the named arrangements in the toolkit's order (``known``), or all of them for None.
+
+    Raises InputError for a name that is not known, and for an empty list of names.
     """
     for name in names or ():
         if name not in known:

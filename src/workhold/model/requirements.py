@@ -1,4 +1,4 @@
-"""What is required of a fixture besides holding the part: loads, what a user rules out, and tolerances.
+"""Requirements of a fixture besides holding the part: loads, restrictions and tolerances.
 
 A load is what a cutter, a drill or a hand does to the workpiece while it is held. Ruled out are faces not to
 touch, places where no peg may stand, and angles the part may not lie at. A tolerance says how far pegs and
@@ -107,20 +107,20 @@ def to_direction_range(directions: Any) -> tuple[float, float]:
 class Load:
     """A force and a moment that act ON the workpiece; pegs must push back.
 
-    The force acts at one of the points, whichever is worst, in one of the directions, whichever is worst; the
-    moment acts together with it. A cutter that runs along a polyline is a load with several points: between
-    two of them nothing is worse than at the worse of the two.
+    The force acts at the worst of the points and in the worst of the directions; the moment acts together
+    with it. A cutter that runs along a polyline is a load with several points: no place between two points is
+    worse than the worse of the two.
 
     Parameters
     ----------
     points : where the force may act, (x, y) in mm in the part's coordinates, an array (N, 2), or one such
         point; may be empty when there is no force.
     force : its size in N, 0 or more.
-    directions : in which the force points: one in degrees, or (low, high), in the part's frame,
-        counter-clockwise from the part's x axis and from low to high; (0, 360) is any direction.
+    directions : directions in which the force may point, in degrees counter-clockwise from the part's x axis:
+        one number, or a range (low, high); (0, 360) is any direction.
     moment : in N mm, positive counter-clockwise.
-    name : what the user calls it.
-    upward : a force along z in N, up positive, that acts together with the others; pegs do not feel it.
+    name : the user's name of it.
+    upward : force along z in N, up positive, that acts together with force and moment; pegs do not feel it.
     height : how high above the part's lower side the forces act, in mm; None is the top of the part.
 
     Raises
@@ -333,10 +333,10 @@ def to_face_numbers(numbers: Any) -> tuple[int, ...]:
 
 
 def lie_in_angle_ranges(degrees: Any, ranges: Sequence[Sequence[float]]) -> Any:
-    """Return whether angles in degrees, an array (N,) or one,
-    lie in any of the ranges (from, to), ends included.
+    """Return whether angles in degrees, an array (N,) or one number, lie in any of the ranges (from, to),
+    ends included.
 
-    Ranges count modulo 360. Without ranges all angles do.
+    Ranges count modulo 360. Without ranges the answer is True for all angles.
     """
     if not ranges:
         return np.ones(np.shape(degrees), np.bool_)
@@ -398,8 +398,8 @@ class Tolerance:
     Parameters
     ----------
     peg : how far the surface of a peg may be from where it should be, in mm.
-    face : how far a face of the part may be from where it should be, in mm; the departure is a part of it.
-    fit : of the dowels that are the pegs, which the first follows from; None where it is not known.
+    face : how far a face of the part may be from where it should be, in mm, departure included.
+    fit : fit of the dowels that serve as pegs, from which ``peg`` follows; None where unknown.
     departure : how far the outline as read may be from the drawn one, in mm; a query sets it to its
         workpiece's.
 

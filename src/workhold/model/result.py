@@ -53,27 +53,27 @@ class Result:
 
     Parameters
     ----------
-    query : what was asked.
-    table : the fixtures listed, ranked.
-    found : how many fixtures of each arrangement were found, by its name. Fewer are listed when only the best
+    query : the query that the result answers.
+    table : the fixtures listed, best first.
+    found : number of fixtures found of each arrangement, by its name. Fewer are listed when only the best
         were kept, or when the search was stopped while they were sorted or written.
-    distinct : how many there are when fixtures that a symmetry of the part carries into each other count
-        once.
+    distinct : number of fixtures found, those counted once that a symmetry of the part carries into each
+        other.
     complete : False when the search was interrupted; the fixtures listed are valid all the same.
-    notes : what a user should read, see ``model.notes``: each prints as a sentence, and has its data. A text
-        that is given becomes a note. Of an outline that departs from the drawn one there is one more.
+    notes : notes for the user, see ``model.notes``: each prints as a sentence, and has data. A string given
+        becomes a note. Where the outline departs from the drawn one, a note on that is added.
     statistics : how much work the search was. It counts contact features, chord curves, sliding pairs, pairs
         of curves compared and those whose crossings were sought. It also counts simultaneous contacts
         examined (all four inside their features).
     proof : the account of the search, see :class:`workhold.model.search_report.ProofReport`; None for a result that
         came without.
-    pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
-        directions. None for other toolkits, and where only the best were sought.
-    seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
-    holds : of flat jaws and straps, how each fixture holds the part; none of other toolkits.
-    least_effective_error : in mm, the least effective location error of all fixtures that are fit and without
-        warning, or as near to that as any is; steps count from it (``model.choose_first_toolkit``). None where the
-        order has no steps, and of results from before there were any.
+    pairs, seats : with two clamps, number of pairs of clamps that hold the part, and number of seats with
+        their pairs of directions. None for other toolkits, and where only the best were sought.
+    seating : where else the pegs can hold the part, for the first fixtures, as many as there are entries.
+    holds : for each fixture between flat jaws or under straps, how it holds the part; () for other toolkits.
+    least_effective_error : least effective location error in mm among the fixtures that are fit and without
+        warning, or among those that come nearest to that; steps of error count from it
+        (``model.first_choice``). None where the order has no steps, and in results older than these.
     """
 
     query: Query
@@ -150,8 +150,8 @@ class Result:
         return self.attach_seating(made, index)
 
     def attach_seating(self, made: Fixture, index: int) -> Fixture:
-        """Return the fixture with the seating,
-        or the hold by jaws or straps, that this result has for an index.
+        """Return the fixture with the seating, or with the hold by jaws or straps, that this result has at an
+        index.
         """
         if index < len(self.holds):
             hold = self.holds[index]
@@ -159,16 +159,14 @@ class Result:
         return evolve(made, seating=self.seating[index]) if index < len(self.seating) else made
 
     def choose(self, rows: ArrayLike) -> Result:
-        """Return the result with some of the fixtures only,
-        in the same order, each once; it can be saved as any other.
+        """Return the result with some of the fixtures only, in the same order, each once.
 
-        ``found`` stays as it is, and a note says that only some are listed. All rows chosen give the result
-        itself.
+        It can be saved as any other result. ``found`` stays as it is, and a note says that only some are
+        listed. If all rows are chosen, the result itself is returned.
 
         Parameters
         ----------
-        rows : a mask (N,) of booleans, one for each fixture, or numbers from 0, where those below 0 count
-            from the end.
+        rows : a mask (N,) of booleans, one for each fixture, or indices from 0, negative ones from the end.
 
         Raises
         ------
@@ -253,7 +251,7 @@ class Result:
 
     @property
     def words(self) -> str:
-        """Phrase on what is listed, of which part and in what toolkit."""
+        """Phrase that says how many fixtures are listed, of which part and in what toolkit."""
         kinds = ", ".join(f"{count:,} of type {kind}" for kind, count in self.counts.items())
         whole = "" if self.complete else ", interrupted"
         only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
@@ -308,10 +306,11 @@ class Result:
 
         Parameters
         ----------
-        rank : of the fixture shown first.
-        usual : force in N that is drawn as an arrow of usual length.
-        jaw_force : of the jaw or the clamps, in N; as much as is needed if None.
-        jaw : "screw", "constant", or how many times as stiff as one contact it is.
+        rank : rank of the fixture shown first.
+        usual : force in N whose arrow is drawn at the usual length.
+        jaw_force : force of the jaw or the clamps, in N; as much as is needed if None.
+        jaw : what keeps the jaw in place: "screw", "constant", or the jaw's stiffness over that of one
+            contact.
         supports : keywords of :meth:`Fixture.supports`, such as ``{"thickness": 12}``, to show the best three
             supports of each fixture with the clamp on top; None for none.
 

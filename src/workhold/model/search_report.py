@@ -41,14 +41,15 @@ class UndecidedCandidate:
 
     Parameters
     ----------
-    type : of the arrangement, with the direction in which a clamp moves, such as "II" or "clamp -x".
-    faces : the four faces (a pair of chords names the tail and the head of each).
-    columns, rows : the four pegs on their jaws' lattices; columns are counted from each jaw's first peg, rows
-        from the first left peg. A clamp has the number of its line from the first locator's, and 0.
-    theta_deg : orientation of the workpiece in degrees, about which it would be.
+    type : name of the arrangement, with the clamping direction if any, such as "II" or "clamp -x".
+    faces : the faces touched; for a pair of chords, those of the tail and the head of each chord.
+    columns, rows : holes of the pegs, columns counted from the first peg on the same jaw, rows from the first
+        peg on the left jaw. A clamp has two entries: the number of its line from the first locator's line,
+        and 0.
+    theta_deg : orientation of the workpiece in degrees near which the candidate would be.
     reason : why it is not decided, in one sentence without a full stop.
-    reach_deg : how far in degrees the orientation may be from there; None where that is not bounded, and of a
-        pair of chords, which exist there.
+    reach_deg : largest distance in degrees of the orientation from ``theta_deg``; None where it is unbounded,
+        and for a pair of chords, which exists at ``theta_deg``.
     """
 
     type: str
@@ -66,14 +67,14 @@ class ProofReport:
 
     Parameters
     ----------
-    cells : ranges of orientation examined, for each type apart.
-    candidates : sets of four contacts that the bounds of the chord curves allow.
-    discarded_by_bound : candidates that break a rule everywhere within their error.
-    verified : candidates proven to be fixtures, before rows and the largest opening are asked; one found from
-        two sides, as at a joint, counts twice.
-    escalated : candidates that their certificates left open: they went on to interval arithmetic, or were
-        given up.
-    undecided : what that could not decide either.
+    cells : number of ranges of orientation examined, summed over the types.
+    candidates : number of sets of four contacts that the bounds of the chord curves allow.
+    discarded_by_bound : number of candidates that break a rule everywhere within their error.
+    verified : number of candidates proven to be fixtures, before rows and the largest opening are checked; a
+        candidate found from two sides, as at a joint, counts twice.
+    escalated : number of candidates that their certificates left open: these were decided by interval
+        arithmetic, or given up.
+    undecided : number of candidates that interval arithmetic could not decide either.
     """
 
     cells: int
@@ -110,8 +111,8 @@ class NearestMiss:
 
     Parameters
     ----------
-    fixture : where the pegs and the part would be; a peg with a negative force would have to pull.
-    words : what is wrong with it, in one sentence.
+    fixture : the pegs and the part as they would be; a peg with a negative force would have to pull.
+    words : reason why it is no fixture, in one sentence.
     """
 
     fixture: Fixture
@@ -126,9 +127,9 @@ class HelpfulChange:
     ----------
     change : in a few words, such as "without avoiding faces 1, 4".
     fixtures : how many there are then.
-    complete : False when there are more, because the search for them was ended.
-    fields : those of the toolkit that it changes; None when it changes something else.
-    rules : what was asked for that it leaves out, see ``Query.asked``; all of these have to be.
+    complete : False when there are more fixtures, because their search was cut short.
+    fields : fields of the toolkit that the change sets; None when it changes something else.
+    rules : requirements that the change leaves out, all at once, named as in ``Query.asked``.
     """
 
     change: str
@@ -144,11 +145,13 @@ class Explanation:
 
     Parameters
     ----------
-    contacts : sets of four pegs of the two jaws that touch the part at the same time, before any rule.
-    removals : what each rule took away, in the order they were asked; the last one left nothing.
+    contacts : number of sets of four pegs of the two jaws that touch the part simultaneously, before any
+        rule.
+    removals : numbers that each rule removes, in the order of application; after the last one nothing is
+        left.
     nearest : the nearest miss, if four pegs can touch the part at all.
-    helps : changes that were tried and with which there are fixtures, the most first.
-    no_contacts : why there are no such sets; None where there are.
+    helps : changes that were tried and that give fixtures, most fixtures first.
+    no_contacts : why no four pegs can touch the part simultaneously; None where some can.
     """
 
     contacts: int
@@ -164,16 +167,17 @@ class Explanation:
 
     @property
     def taken_by(self) -> tuple[str, ...]:
-        """Rules asked for without which there are fixtures, each once, in the order of ``helps``.
+        """Names of the requirements without which there are fixtures, each once, in the order of ``helps``.
 
-        So the part is not to blame, whichever rule was the last one applied.
+        They, and not the part, are to blame, whichever rule was applied last.
         """
         return tuple(dict.fromkeys(rule for help in self.helps for rule in help.rules))
 
     @property
     def asked_words(self) -> str:
-        """Sentence that names the rules of :attr:`taken_by`;
-        "" where there are none, or only the last rule.
+        """Sentence that names the requirements in :attr:`taken_by`.
+
+        It is "" where there are none, or only the rule applied last.
         """
         if self.taken_by in ((), (self.last_rule,)):
             return ""

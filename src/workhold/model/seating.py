@@ -53,9 +53,9 @@ class SeatContact:
 
     Parameters
     ----------
-    peg : its place in the fixture's pegs.
+    peg : index of the peg in the fixture's pegs.
     face : number of the face, or of the face that begins at the corner.
-    corner : whether it is the corner.
+    corner : whether the peg touches the corner at which ``face`` begins.
     """
 
     peg: int
@@ -88,15 +88,15 @@ class Seat:
     ----------
     kind : fixture, corner, pocket, curved, loose, or unsettled.
     pose : of the part, turned over (x to -x in its own frame) where it is ``mirrored``.
-    jaw_separation : S in mm, of a clamp its travel.
-    difference : S less that of the fixture.
+    jaw_separation : jaw separation S in mm; for a clamp, its travel.
+    difference : ``jaw_separation`` minus that of the fixture, in mm.
     mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the
         same.
-    contacts, forces : what touches, and each force per unit of jaw force; there are none where it is loose or
-        not settled.
-    depth : how far in mm the jaws open before the part can get elsewhere; None where it never can, or that is
-        not known.
-    is_own : whether it is the fixture's own.
+    contacts, forces : contacts, and for each its force per unit of jaw force; empty for kinds loose and
+        unsettled.
+    depth : how far in mm the jaws must open before the part can leave this seat for another; None where it
+        never can, or where that is unknown.
+    is_own : whether the seat is the fixture's own pose.
     """
 
     kind: str
@@ -164,7 +164,7 @@ class CagePass:
 
     Parameters
     ----------
-    pose, jaw_separation, contacts : there.
+    pose, jaw_separation, contacts : pose of the part, separation in mm, and contacts at this equilibrium.
     """
 
     pose: Pose
@@ -179,8 +179,8 @@ class Cage:
 
     Parameters
     ----------
-    theta_deg, x, y : least and largest turn in degrees, and shift of the centre of its box in mm; never too
-        large, too small by no more than ``CAGE_SHORT``.
+    theta_deg, x, y : (least, largest) turn in degrees, and shift of the centre of its box in mm. The ranges
+        are never too large, and too small by at most ``CAGE_SHORT``.
     """
 
     theta_deg: tuple[float, float]
@@ -190,25 +190,27 @@ class Cage:
 
 @frozen(repr=False)
 class Seating:
-    """The seats of a fixture's pegs and part, and from where closing leads into the fixture's own.
+    """Seats that pegs and part of a fixture have, and the region from which closing leads into the fixture's
+    own seat.
 
     Parameters
     ----------
-    capture_opening : in mm, how far the jaws may be open when the part is let go in the cage; None where it
-        never gets out.
-    room_factor : sum of the forces: opening by s gives s over this of room at every peg at once.
-    lowest_pass : at which the cage ends; None where it does not.
-    way_out : in mm, how far the jaws open before the part can leave all pegs; None where it never can.
-    cage, placing : how far the part may be off; None where the cage has no end.
-    sticking_friction : the coefficient below which it cannot stick near its seat.
+    capture_opening : largest opening of the jaws in mm at which a part let go in the cage still settles in
+        its place; None where it never gets out.
+    room_factor : sum of the contact forces per unit of jaw force: jaws opened by s mm leave a gap of s /
+        room_factor at all pegs at once.
+    lowest_pass : pass through which the part first gets out of the cage; None where it never does.
+    way_out : how far in mm the jaws open before the part can leave all pegs; None where it never can.
+    cage, placing : ranges by which the part may be off its place; None where the cage is unbounded.
+    sticking_friction : coefficient of friction below which the part cannot stick near its seat.
     stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing
         stops it.
-    seats : all, by their separations, the fixture's own among them.
-    unsettled : what could not be settled and why, one sentence each.
-    opening, most : seats count that are reached with the jaws opened by less than the one, and up to the
-        other, the largest separation; in mm, without end if None.
-    clamping : 1 where S gets less as it clamps, -1 where it gets more.
-    opened : what is done so that the part can be put in, such as "the jaws are opened".
+    seats : all seats in order of separation, the fixture's own included.
+    unsettled : cases that could not be settled and why, one sentence each.
+    opening, most : limits on the seats that count: reached with the jaws opened by less than ``opening`` and
+        at a separation up to ``most``, both in mm; None for no limit.
+    clamping : 1 where the separation decreases as the toolkit clamps, -1 where it increases.
+    opened : clause on how to make room for the part, such as "the jaws are opened".
     """
 
     capture_opening: float | None
@@ -245,8 +247,8 @@ class Seating:
         return render_seating_html(self)
 
     def with_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
-        """Return a copy with ``most``, ``clamping`` and ``opened`` of a toolkit,
-        and with this ``opening`` in mm.
+        """Return a copy with ``most``, ``clamping`` and ``opened`` of the toolkit, and with ``opening`` in mm
+        as given.
         """
         travel, sign = toolkit.moving.travel, toolkit.clamping
         most, opened = (
@@ -257,13 +259,13 @@ class Seating:
 
     @property
     def is_untold(self) -> bool:
-        """Whether the cage could not be worked out, so that no capture opening can be claimed."""
+        """Whether the cage could not be worked out, so that the capture opening is unknown."""
         return self.lowest_pass is None and self.capture_opening is not None
 
     @property
     def drop_room(self) -> float | None:
-        """Room in mm at every peg, to first order,
-        with the jaws open by the capture opening; None where that is None.
+        """Gap in mm at every peg, to first order, with the jaws open by the capture opening; None where that
+        is None.
         """
         return None if self.capture_opening is None else self.capture_opening / self.room_factor
 
@@ -281,20 +283,21 @@ class Seating:
         return [seat for seat in wrong if self.most is None or seat.jaw_separation <= self.most]
 
     def find_least_reading(self, opening: float | None = None) -> float | None:
-        """Return the least difference in mm between the fixture's opening and a wrong seat's;
-        None without a wrong seat.
+        """Return the least difference in mm between the fixture's opening and that of a wrong seat.
+
+        Return None where there is no wrong seat.
         """
         return min((abs(seat.difference) for seat in self.list_wrong_seats(opening)), default=None)
 
     def is_caught_from(self, opening: float) -> bool:
-        """Return whether the part, let go anywhere in its cage
-        with the jaws open by so many mm, settles in its place.
+        """Return whether the part, let go anywhere in its cage with the jaws open by ``opening`` mm, settles
+        in its place.
         """
         return self.capture_opening is None or opening < self.capture_opening
 
     @property
     def is_foolproof(self) -> bool:
-        """Whether a caliper can tell each wrong seat within reach from the fixture by its opening."""
+        """Whether a caliper reading of the opening tells each wrong seat within reach from the fixture."""
         reading = self.find_least_reading()
         return reading is None or round(reading, DECIMALS) >= CLOSE_READING
 
@@ -320,7 +323,7 @@ class Seating:
 
     @property
     def warning_count(self) -> int:
-        """Number of warnings that the seating adds to those of quality.
+        """Number of warnings by the seating, to be added to the warnings by the figures of quality.
 
         A small capture opening counts for two, because a part let go in its cage needs no reading.
         """

@@ -1,4 +1,4 @@
-"""What a machinist sets and programs from: part zero, X0 Y0, and the setting of each thing that moves.
+"""Part zero (X0 Y0 of the program), and the length to set for each thing that moves.
 
 Where nothing is asked for, part zero is the origin of the drawing, because the CAM system took the same
 drawing. If the origin lies outside the part's outside dimensions, part zero is the lower left corner of the
@@ -47,7 +47,7 @@ class PartZero:
     Parameters
     ----------
     point : in mm in the part's coordinates, which are those of its drawing.
-    words : what it is, such as "centre of hole 2".
+    words : phrase that names the point, such as "centre of hole 2".
     """
 
     point: Point
@@ -100,9 +100,10 @@ def choose_part_zero(
 
 
 def check_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
-    """Return the point in mm that two numbers, written in the unit, give; ``words`` names it in messages.
+    """Return the point in mm given by two numbers in the unit.
 
-    Raises InputError unless there are exactly two finite numbers, not too large.
+    Raises InputError unless there are exactly two finite numbers, not too large; ``words`` names the point in
+    messages.
     """
     try:
         x, y = (unit.to_mm(float(number)) for number in numbers)
@@ -142,11 +143,11 @@ class Mounting:
 
     Parameters
     ----------
-    label : above the place.
-    there : where the clamp is.
-    put : what is done with it.
-    how : what is measured, a sentence without the end, which takes the setting's title for ``{title}``.
-    then : what is measured once the tip touches, which takes the setting's title and name.
+    label : text above the place.
+    there : phrase on where the clamp is.
+    put : instruction for putting it on the plate.
+    how : what to measure, a sentence without its end; ``{title}`` is the setting's title.
+    then : what to measure once the tip touches, with places for the setting's title and name.
     """
 
     label: str
@@ -179,13 +180,13 @@ class LengthSetting:
 
     Parameters
     ----------
-    name : what it is called, such as "opening S".
-    title : what it is called above the length itself.
-    sign : what stands before it on a drawing, such as "S".
+    name : name in sentences, such as "opening S".
+    title : name above the length itself.
+    sign : symbol before the length on a drawing, such as "S".
     length : in mm.
-    start, end : the points that it is measured between along the travel, in mm.
-    carrier : what moves.
-    tip : the peg of a clamp that touches the part; None of what has a lattice of its own.
+    start, end : points between which the length is measured along the travel, in mm.
+    carrier : the carrier that moves.
+    tip : the peg of a clamp that touches the part; None of a carrier with a lattice of pegs.
     """
 
     name: str
@@ -287,8 +288,10 @@ def measure_clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: 
 
 
 def name_contacts(fixture: Fixture, toolkit: Toolkit) -> list[str]:
-    """Return the names of a fixture's contacts in the order of its pegs:
-    those of holes or lines; a sole clamp has its noun.
+    """Return the name of each contact of a fixture, in the order of its pegs.
+
+    It is the name of the peg's hole, or of the clamp's hole or line; the only clamp of a fixture is called by
+    its noun.
     """
     clamps = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).contact is CLAMP_TIP]
     return [toolkit.find_carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]

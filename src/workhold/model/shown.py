@@ -1,5 +1,5 @@
-"""What shows of a toolkit that holds a part: plates, holes, pegs, clamps and walls, and what slides.
-Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this one description.
+"""What is visible of a toolkit that holds a part: plates, holes, pegs, clamps and walls, and the lengths to
+set. Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this one description.
 
 Glossary
 --------
@@ -66,13 +66,13 @@ ROUNDING = 1e-6
 def bound_held_part(
     part: Box, fixture: Fixture, clamps: Sequence[ShownClamp], bolts: Sequence[Point] = ()
 ) -> Box:
-    """Return the bounding box in mm of the part's box, the centres of pegs and the backs of clamps."""
+    """Return the bounding box in mm of the part's box, the pegs' centres, the backs of clamps and ``bolts``."""
     places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps), *bolts]
     return reduce(Box.unite, (Box(x, y, x, y) for x, y in places), part)
 
 
 def list_strap_bolts(fixture: Fixture, toolkit: Toolkit) -> list[Point]:
-    """The places of the bolts of straps, in mm."""
+    """Return the centres (x, y) in mm of the bolts of straps; [] without straps."""
     straps, hold = toolkit.strap_set, fixture.hold
     if straps is None or not isinstance(hold, StrappedHold):
         return []
@@ -81,7 +81,10 @@ def list_strap_bolts(fixture: Fixture, toolkit: Toolkit) -> list[Point]:
 
 
 def list_strap_holes(fixture: Fixture, toolkit: Toolkit) -> frozenset[tuple[int, int]]:
-    """The holes of the plate, column and row, in which bolts of straps and supports below the part stand."""
+    """Return (column, row) of the plate's holes that bolts of straps and the supports under the part occupy.
+
+    Bolts count only where they stand in dowel holes. The set is empty without straps.
+    """
     straps, hold = toolkit.strap_set, fixture.hold
     if straps is None or not isinstance(hold, StrappedHold):
         return frozenset()
@@ -90,7 +93,9 @@ def list_strap_holes(fixture: Fixture, toolkit: Toolkit) -> frozenset[tuple[int,
 
 
 def bound_reach(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
-    """The reach about the extent of part, pegs, clamps and bolts, in mm; see the glossary."""
+    """Return the reach, a box in mm, from the extent of part, pegs, clamps and bolts (``held``); see the
+    glossary.
+    """
     reach = held
     more = max(reach.width, reach.height) / 14
     more_x, more_y = (max(more, *(carrier.pitch[axis] for carrier in carriers)) for axis in (0, 1))
@@ -108,11 +113,12 @@ def bound_reach(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box
 
 
 def find_cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Point) -> tuple[range, range]:
-    """Return the columns and the rows of a carrier whose holes lie in reach, at least one of each.
+    """Return the columns and the rows of a carrier whose holes lie in the box ``reach``, at least one of
+    each.
 
-    A lattice without an end also has those before the first ones that lie under the held part, whose lower
-    left corner is ``held`` in mm; give inf there for rows that begin at a wall. Raises InputError for more
-    than MOST_STEPS holes.
+    A lattice without an end also has negative numbers, for holes that lie under the held part; ``held`` is
+    that part's lower left corner in mm, with inf as y for rows that begin at a wall. Raises InputError for
+    more than MOST_STEPS holes.
     """
     x, y = carrier.compute_hole_center(0, 0, travelled)
     columns = find_numbers_in_reach(
@@ -130,8 +136,8 @@ def find_cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Po
 def find_numbers_in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
     """Return the numbers of columns or rows at distances in [low, high] mm from the first one; at least one.
 
-    ``count`` is the number of them, None without an end: then they begin within half a pitch of ``held``
-    where that is negative.
+    ``count`` is how many columns or rows there are; None for a lattice without an end. Such a lattice has
+    negative numbers where ``held`` (mm) is negative: the range then begins at held / pitch, rounded.
     """
     last, first = max(floor(high / pitch + ROUNDING), 0), max(ceil(low / pitch - ROUNDING), 0)
     if count is not None:
@@ -148,8 +154,8 @@ def bound_hole_centers(carrier: Carrier, travelled: float, columns: range, rows:
 
 
 def measure_facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
-    """Return for each box a dict of its sides that face another box,
-    each with the smallest gap there in mm.
+    """Return for each box a dict from each of its sides that faces another box to the smallest gap there in
+    mm.
     """
     gaps: list[dict[Side, float]] = [{} for _ in spans]
 
@@ -203,14 +209,14 @@ class ShownCarrier:
 
     Parameters
     ----------
-    carrier : the whole of it.
-    travelled : how far it has slid.
-    columns, rows : of the holes in reach.
-    plate : as far as it shows.
+    carrier : the carrier in the toolkit.
+    travelled : distance in mm that it has slid.
+    columns, rows : numbers of the columns and rows whose holes show.
+    plate : rectangle of the plate that shows.
     broken, facing : sides of the plate, see the glossary.
-    pegs : of the fixture, those that stand on it.
-    bolted : those of clamps that are bolted to it.
-    clamping : unit vector along which it slides and pushes when it clamps; None when it stands still.
+    pegs : pegs of the fixture that stand on it.
+    bolted : pegs of clamps that are bolted to it.
+    clamping : unit vector along which it slides and pushes when it clamps; None when it does not move.
     """
 
     carrier: Carrier
@@ -304,8 +310,9 @@ class ShownLength:
     Parameters
     ----------
     setting : the length.
-    axes : each from left to right or upward. For a plate that slides, one lies across the plates that stand
-        still, the other across its own. For a clamp they lead from it to the plate's upper or right side.
+    axes : the two axes, each from left to right or upward. For a plate that slides, one lies across the
+        plates that stand still, the other across the sliding plate. For a clamp they lead from the clamp to
+        the plate's upper or right side.
     is_upright : whether it is measured along y.
     """
 
@@ -320,10 +327,10 @@ class ShownWall:
 
     Parameters
     ----------
-    carrier : the whole of it.
-    bar : as far as it shows, the part above it.
-    ends : x of the ends of the part's contact with it.
-    standouts : how far the part stands out to the left and to the right of it; None where it is endless.
+    carrier : the wall's carrier in the toolkit.
+    bar : rectangle of the wall that shows; the part lies above it.
+    ends : x of both ends of the part's contact with the wall.
+    standouts : how far the part reaches beyond the wall's left and right end; None where the wall is endless.
     """
 
     carrier: Carrier
@@ -365,7 +372,7 @@ class ShownSetUp:
     clamps : those that are bolted to a plate.
     measured : the lengths to set, one for each thing that moves.
     part : extent of the part in mm.
-    walls : what the part lies flush against.
+    walls : walls that the part lies flush against.
     jaws : two flat jaws that hold it by friction; None of other toolkits.
     """
 
@@ -394,8 +401,8 @@ class ShownSetUp:
 
 
 def find_shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> ShownSetUp:
-    """Return what shows of a toolkit that holds a workpiece;
-    raises InputError as :func:`find_shown_beside`.
+    """Return what is visible of a toolkit that holds a workpiece; raises InputError as
+    :func:`find_shown_beside`.
     """
     if isinstance(fixture.hold, JawHold):
         return find_shown_between_jaws(workpiece, fixture, toolkit)
@@ -482,7 +489,7 @@ def bound_placed_parts(
 
 
 def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> ShownSetUp:
-    """Return what shows of a toolkit with pegs that holds a part of this bounding box.
+    """Return what is visible of a toolkit with pegs that holds a part whose bounding box is ``part``.
 
     Raises InputError where part and pegs are so far apart that too many holes would show.
     """

@@ -1,4 +1,5 @@
-"""What an outline by height keeps of its solid: how it stands, and where its segments are touched."""
+"""The data of a solid that an outline by height keeps: which side is up, and where its segments can be
+touched."""
 
 from __future__ import annotations
 
@@ -85,8 +86,8 @@ def to_numbers(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
 
 
 def to_runs(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
-    """Return runs as tuples of rows (share, low, high) of floats;
-    raise InputError where one is not a run, see RunRows.
+    """Return runs as tuples of rows (share, low, high) of floats; raise InputError where rows are no run, see
+    RunRows.
     """
     found = []
     for value in values:
@@ -113,7 +114,7 @@ def is_run(rows: Sequence[Sequence[float]]) -> bool:
 
 
 def interpolate_run(rows: RunRows, share: float) -> Band:
-    """Return the lower and upper height in mm of a run at a share of its segment; the run is not empty.
+    """Return the lower and upper height in mm of a run at a share of its segment; the run must not be empty.
 
     >>> interpolate_run(((0.0, 0.0, 6.0), (1 / 3, 0.0, 7.0), (2 / 3, 0.0, 8.0), (1.0, 0.0, 9.0)), 0.5)
     (0.0, 7.5)
@@ -141,24 +142,25 @@ class SolidOutline:
     axis : direction of the file that points up, one of x, y, z, -x, -y, -z.
     height : of the part, in mm.
     peg_height : up to which pegs reach, in mm above the plane on which the part lies.
-    head_room : kept free above the pegs, in mm.
-    least_band : shortest band that may be touched, in mm.
-    bands : for every segment of the workpiece the heights (z0, z1) in mm of upright faces over all of it;
-        None where nothing may touch.
-    faces : for every segment the numbers of these faces, as the file lists them; empty where a file does not
-        say.
-    bottom, top : loops of the level faces on which the part lies, and of what of its upper ones has nothing
-        above it. Outer ones run counter-clockwise, openings clockwise. No loops are no such face; None where
-        a file does not say.
+    head_room : height in mm kept free above the pegs.
+    least_band : height in mm of the lowest band that may be touched.
+    bands : for each segment of the workpiece the heights (z0, z1) in mm at which upright faces cover all of
+        the segment; None where nothing may touch it.
+    faces : for each segment the numbers of these upright faces, as the file lists them; empty where the
+        result file does not say.
+    bottom, top : loops (outer ones counter-clockwise, openings clockwise) of the level faces on which the
+        part lies, and of those upper level faces that are free above. Empty where there is no such face; None
+        where the result file does not say.
     top_heights : for every loop of ``top`` the height of its face in mm; none where a file does not say.
-    low : from which pegs reach, in mm; 0 is from below.
-    runs : for every segment the run of heights that holds its band, along it; empty where that is the band
-        all along. None stand where every run is the band.
-    rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
-    hanging, hanging_heights : loops of what hangs of ``top``: under it the material does not reach down to
-        where the part lies; and for each the height of its face.
-    unclear_heights : of level upper faces beside which it is not known what rises, so that nothing of them is
-        in ``top``.
+    low : height in mm from which pegs reach upward; 0 is the plane on which the part lies.
+    runs : for each segment, the run of heights along it that holds its band; an empty run where that is the
+        band all along. None where every run is its band.
+    rising, rising_heights : loops around what rises above faces of ``top``, and for each loop the height of
+        the face.
+    hanging, hanging_heights : loops of the parts of ``top`` under which there is air, so that the material
+        does not reach down to where the part lies; and for each loop the height of its face.
+    unclear_heights : heights of the upper level faces that are left out of ``top`` because it is not known
+        what rises beside them.
 
     Raises
     ------
@@ -244,7 +246,7 @@ class SolidOutline:
 
     @property
     def has_no_top(self) -> bool:
-        """Whether the level faces are known, and none of the upper ones is known to be free above."""
+        """Whether the level faces are known, and no upper one is known to be free above."""
         return self.top is not None and not self.top
 
     def check_segment_count(self, count: int) -> SolidOutline:
@@ -311,7 +313,7 @@ class HeightRow:
     area : of the outline, in mm².
     border, touchable : length of its border, and of what may be touched of it, in mm.
     band : shortest band of what may be touched, in mm; 0 where there is none.
-    slides : whether all that may be touched are flat faces parallel to one another, along which it slides.
+    slides : whether all touchable faces are flat and parallel, so that the part slides along them.
     """
 
     low: float
@@ -324,9 +326,10 @@ class HeightRow:
 
 
 def slides_at_every_height(rows: Iterable[HeightRow]) -> bool:
-    """Return whether, at every peg height at which pegs can touch, the part slides along all that they touch.
+    """Return whether the part slides along all that pegs touch, at every peg height at which they can touch
+    it.
 
-    Return False where pegs can touch nothing.
+    Return False where pegs can touch nothing at any height.
     """
     touching = [row for row in rows if row.touchable > 0]
     return bool(touching) and all(row.slides for row in touching)

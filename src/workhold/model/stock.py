@@ -14,7 +14,7 @@ or wholly outside. Height is linear in the share. So the ends of stretches are e
 Glossary
 --------
 edge : a piece of the border, with both ends and a bulge like a move.
-share : how far along a move a moment is, see ``model.moves``.
+share : position along a move from 0 to 1, see ``model.moves``.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Stock(StockQuestion):
     ----------
     side : how far it reaches beyond the part's outline, in mm; 0 where the part comes finished there.
     top : how far it reaches above the part's top, in mm.
-    shape : ``outline`` of the part, or the ``block`` around it.
+    shape : ``outline`` for the part's outline, ``block`` for the box around it.
     height : of the part, in mm; None where nobody knows it, and the stock has no top then.
 
     Raises
@@ -83,10 +83,10 @@ class Stock(StockQuestion):
 
     @classmethod
     def from_value(cls, value: Stock | Mapping[str, Any] | str | None, height: float | None) -> Stock:
-        """Return a stock on a part of this height in mm (None where unknown).
+        """Return a stock for a part of this height in mm (None where unknown).
 
-        ``value`` is a stock, whose own height is kept, its fields by name, or its shape; None is the usual
-        stock.
+        ``value`` may be: (a) a stock, whose own height is kept; (b) a mapping of field names to values; (c) a
+        shape, such as "block"; (d) None, for the usual stock.
 
         Raises
         ------
@@ -135,8 +135,8 @@ class BorderCurves:
     ----------
     start, end : (N, 2) in mm.
     bulge : (N,).
-    center, radius, turn, sweep : (N, 2) and (N,) of arcs: centre, radius, angle of the start about it, and
-        how far it turns.
+    center, radius, turn, sweep : of arcs, the centre (N, 2) and radius in mm, the angle of the start about
+        the centre and the sweep in radians, (N,) each.
     is_arc : (N,).
     """
 
@@ -185,8 +185,10 @@ class BorderCurves:
         return compute_path_points(start, end, bulge, share.ravel()).reshape(*share.shape, 2)
 
     def measure_distances(self, points: Floats) -> Floats:
-        """Return the distances (N, C) in mm of points (N, C, 2) from their curves;
-        (1, C, 2) are the same points for all.
+        """Return the distances (N, C) in mm of points (N, C, 2) from N curves: row i of the points belongs to
+        curve i.
+
+        Points (1, C, 2) are used for all curves.
         """
         chord = self.end - self.start
         long = (chord * chord).sum(axis=1)
@@ -216,8 +218,10 @@ class StockBorder:
 
     @classmethod
     def from_loops(cls, loops: Sequence[Floats]) -> StockBorder:
-        """Return the border made of loops of (N, 3) vertices x, y in mm and bulge;
-        each closes from its last to its first vertex.
+        """Return the border made of loops (N, 3): vertices x, y in mm and bulge of the side to the next
+        vertex.
+
+        Each loop closes from its last to its first vertex.
         """
         start = np.concatenate([loop[:, :2] for loop in loops])
         end = np.concatenate([np.roll(loop[:, :2], -1, axis=0) for loop in loops])
@@ -279,12 +283,13 @@ def split(count: int, width: int) -> list[slice]:
 def find_stretches_in_stock(
     moves: Moves, tools: Mapping[int, Tool], stock: Stock, border: StockBorder | None, asked: Mask
 ) -> MoveStretches:
-    """Return the stretches of the moves asked for on which the flutes of their tools meet the stock.
+    """Return the stretches of the moves in the mask ``asked`` on which the flute of the move's tool meets the
+    stock.
 
     Parameters
     ----------
-    border : of the shape that is grown to the stock; None where only heights are known.
-    asked : (M,) mask of the moves that count.
+    border : border of the shape that is grown sideways to the stock; None where only heights are known.
+    asked : (M,) True for each move that counts.
     """
     rows = np.flatnonzero(asked)
     reach, flute = np.zeros(len(moves)), np.zeros(len(moves))
@@ -313,7 +318,8 @@ def find_near_parts(
 ) -> tuple[Integers, Floats, Floats]:
     """Return the parts of P paths that lie within a border or nearer to it than ``reach`` (P,) in mm.
 
-    They are given as path indices (K,), rising, and shares (K,) at which each part begins and ends.
+    The result is (path indices (K,), ascending; shares (K,) at which each part begins; shares (K,) at which
+    it ends).
     """
     half = paths.length / 2
     middle = paths.compute_points(np.full((len(paths), 1), 0.5))[:, 0]
@@ -338,10 +344,10 @@ def find_near_parts(
 def find_mixed_parts(
     paths: BorderCurves, reach: Floats, border: StockBorder, mixed: Integers
 ) -> tuple[Integers, Floats, Floats]:
-    """Return the parts within reach, as :func:`near` does, of only the paths with the ascending indices
+    """Return the parts within reach, as :func:`find_near_parts` does, of only the paths whose indices are in
     ``mixed``.
 
-    Such a path may be within reach in some parts and not in others.
+    These indices ascend; such a path may be within reach in some parts and out of reach in others.
     """
     which, low, high = [np.zeros(0, np.int64)], [np.zeros(0)], [np.zeros(0)]
     half = paths.length / 2
@@ -370,10 +376,11 @@ def find_mixed_parts(
 def find_covered_parts(
     paths: BorderCurves, edges: BorderCurves, reach: Floats
 ) -> tuple[Floats, Floats, Integers]:
-    """Return the parts of P paths that are nearer than ``reach`` (P,) to the edge in the same row.
+    """Return the parts of P paths that are nearer than ``reach`` (P,) mm to an edge; path i is compared with
+    edge i only.
 
-    They are given as first shares (K,), last shares (K,) and row indices (K,), rising; parts of a row may
-    adjoin.
+    They are given as first shares (K,), last shares (K,) and path indices (K,), ascending; parts of a path
+    may adjoin.
     """
     chord = edges.end - edges.start
     size = np.hypot(*chord.T)
@@ -440,8 +447,9 @@ def intersect_with_lines(paths: BorderCurves, normal: Floats, level: Floats) -> 
 
 
 def compute_shares(paths: BorderCurves, angle: Floats) -> Floats:
-    """Return the shares (P, C) at which arcs reach angles (P, C),
-    in radians about their centres; more than 1 where never.
+    """Return the shares (P, C) at which P arcs reach angles (P, C), in radians about their centres.
+
+    A share above 1 stands for an angle that the arc does not reach.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         ahead = np.mod((angle - paths.turn[:, None]) * np.sign(paths.sweep)[:, None], 2 * pi)
@@ -449,8 +457,10 @@ def compute_shares(paths: BorderCurves, angle: Floats) -> Floats:
 
 
 def merge_parts(own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
-    """Return parts sorted by path index and along each path,
-    with parts of a path that overlap or meet joined into one.
+    """Return parts of paths, sorted by path and share, with overlapping or adjoining parts of a path joined
+    into one.
+
+    A part is a path index in ``own`` with its first and last share in ``low`` and ``high``.
     """
     order = np.lexsort((low, own))
     own, low, high = own[order], low[order], high[order]
@@ -464,8 +474,8 @@ def merge_parts(own: Integers, low: Floats, high: Floats) -> tuple[Integers, Flo
 
 
 def find_gaps(count: int, own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
-    """Return the gaps between merged parts of ``count`` paths:
-    path indices, and first and last share of each gap.
+    """Return the gaps that merged parts (:func:`merge_parts`) leave on ``count`` paths: path indices, first
+    and last shares.
     """
     every = np.arange(count)
     ends = np.concatenate([every, own]), np.concatenate([np.zeros(count), high])

@@ -54,9 +54,9 @@ SEAT_FIGURES = ("end_distance", "smallest_face")
 
 
 def choose_strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the figures that rank seats under straps, from a user's names; the usual order for None.
+    """Return the keys of the figures that rank seats under straps, from names as a user writes them.
 
-    An order that fixtures with clamps have stands for the usual one.
+    Return the usual order for None, and for the usual order of fixtures with clamps.
 
     >>> choose_strap_ranking(["location-error"])
     ('location_error',)
@@ -76,14 +76,14 @@ def choose_strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
 
 @frozen
 class StrapHardware:
-    """The straps that there are; lengths in mm.
+    """The straps available; lengths in mm.
 
     Parameters
     ----------
-    count : how many press on the part, 1 to 4.
-    tip_radius : of a strap's round tip.
+    count : number of straps that press on the part, 1 to 4.
+    tip_radius : radius of a strap's round tip.
     reach : the least and the greatest distance of the tip from the middle of the bolt's hole.
-    max_force : that a strap is rated for, in N; None where nobody says.
+    max_force : rated force of a strap in N; None where nobody says.
 
     Raises
     ------
@@ -125,11 +125,11 @@ class Strap:
 
     Parameters
     ----------
-    hole : column and row of its bolt, as the fixture's pegs count them, or in a lattice of bolts' own.
-    at : of its tip, in mm in the plate's frame.
-    height : of the face on which it presses above the plate, in mm, as high as its heel stands; above the
-        supports where nobody says how high these are.
-    over : column and row of the support below it; None where the part lies on the plate.
+    hole : (column, row) of its bolt, numbered as the fixture's pegs are, or in the bolts' own lattice.
+    at : (x, y) of its tip in mm, in the plate's frame.
+    height : height in mm above the plate of the face on which the tip presses, which is also the height of
+        the heel's block; above the supports where their height is not known.
+    over : (column, row) of the support below its tip; None where the part lies on the plate.
     """
 
     hole: tuple[int, int]
@@ -139,7 +139,7 @@ class Strap:
 
     @property
     def written_over(self) -> list[int] | str:
-        """What is below it, as files name it."""
+        """[column, row] of the support below the tip, or "plate", as files have it."""
         return "plate" if self.over is None else list(self.over)
 
 
@@ -151,7 +151,7 @@ class HandPush:
     ----------
     at : a place on the outline, in mm in the plate's frame.
     direction_deg : in degrees counter-clockwise from the plate's x axis.
-    shares : how hard each locator is pressed, as parts of the push.
+    shares : force on each locator, as a fraction of the push.
     """
 
     at: tuple[float, float]
@@ -165,15 +165,15 @@ class StrappedHold:
 
     Parameters
     ----------
-    straps : in order of their holes; none where they find no places.
-    push : by hand; None where none presses the part against all locators.
-    places : how many places for a strap there are, or holes that may hold a support where these are under it;
-        None where none was sought.
-    clamp_needed_each : the force in N of each strap that each load asks for; None where none is enough.
-    max_force : that a strap is rated for, in N; None where nobody says.
-    is_looked_at : whether a push was sought, and straps where there are loads; only for the best seats they are.
-    supports : columns and rows of the three supports that the part lies on; none where it lies on the plate.
-    program_need : what the tools of the program ask of each strap; None without their forces.
+    straps : straps in the order of their holes; empty where no places for them are found.
+    push : the push by hand; None where no push presses the part against all locators.
+    places : number of places for a strap, or of holes that may hold a support where straps press over
+        supports; None where straps were not sought.
+    clamp_needed_each : force in N of each strap that each load needs; None where no force is enough.
+    max_force : rated force of a strap in N; None where nobody says.
+    is_looked_at : whether a push, and with loads the straps, were sought; only the best seats are looked at.
+    supports : (column, row) of the three supports under the part; empty where it lies on the plate.
+    program_need : force of each strap that the program's tools need; None without their forces.
     """
 
     straps: tuple[Strap, ...]
@@ -187,48 +187,56 @@ class StrappedHold:
 
     @property
     def needs(self) -> tuple[float | None, ...]:
-        """The force in N of each strap that each load, and the program, ask for; None where none is enough."""
+        """Forces in N of each strap that each load needs, then the one the program needs; None where no force
+        is enough.
+        """
         of_program = () if self.program_need is None else (self.program_need.force,)
         return (*self.clamp_needed_each, *of_program)
 
     @property
     def clamp_needed(self) -> float | None:
-        """The force in N of each strap that the worst load asks for; None without loads, and where none is enough."""
+        """Force in N of each strap that the worst load needs; None without loads, and where no force is
+        enough.
+        """
         each = [one for one in self.needs if one is not None]
         return max(each) if each and len(each) == len(self.needs) else None
 
     @property
     def is_unfit(self) -> bool:
-        """Whether no hand's push seats the part."""
+        """Whether no push by hand presses the part against all locators."""
         return self.is_looked_at and self.push is None
 
     @property
     def slip_reserve(self) -> float | None:
-        """What a strap is rated for over what is needed; None where one of both is not known."""
+        """Rated force of a strap over the force needed; inf where none is needed, None where either is
+        unknown.
+        """
         if self.max_force is None or self.clamp_needed is None:
             return None
         return self.max_force / self.clamp_needed if self.clamp_needed > 0 else inf
 
     @property
     def holds_nothing(self) -> bool:
-        """Whether straps were sought, and found no places, or hold not all loads with any force."""
+        """Whether straps were sought, and either no places were found or some load is not held with any
+        force.
+        """
         if not self.is_looked_at or self.places is None:
             return False
         return not self.straps or None in self.needs
 
     @property
     def is_beyond_rating(self) -> bool:
-        """Whether the loads ask for more than a strap is rated for."""
+        """Whether the loads need more than the rated force of a strap."""
         return self.slip_reserve is not None and self.slip_reserve < 1
 
     @property
     def figures(self) -> dict[str, float]:
-        """The figures that are known, by their keys."""
+        """Figures by key, without those that are None or inf."""
         named = {figure.key: getattr(self, figure.key) for figure in STRAP_FIGURES}
         return {key: float(value) for key, value in named.items() if value is not None and value != inf}
 
     def to_data(self) -> dict[str, Any]:
-        """Return what files and other programs are given."""
+        """Return the hold as plain data, as result files and other programs get it."""
         push = self.push
         return {
             "straps": [

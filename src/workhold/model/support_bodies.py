@@ -67,7 +67,7 @@ def size_supported_bodies(
     ----------
     peg_length, peg_height : of the pegs, and how far they stand out of the plates.
     support_height : of the supports above the plates; if None that of the toolkit's own.
-    thickness : of the part; if None that for which the supports were asked.
+    thickness : thickness of the part; if None the one for which the supports were computed.
 
     Raises
     ------
@@ -117,7 +117,8 @@ def list_bodies_on_supports(
 
     Parameters
     ----------
-    fixture, pads : with holes renumbered so that all have names, see ``model.support_triples``.
+    fixture, pads : fixture and pads, renumbered so that all their holes have names, see
+        ``model.support_triples``.
     sizes : heights, those of the supports included.
 
     Raises

@@ -113,10 +113,11 @@ class SpatialLoad:
     points : where it acts, (x, y) in mm in the part's coordinates; empty for moments alone.
     force : in the plane, in N, 0 or more.
     directions : of that force, in degrees in the part's frame, as of a planar load.
-    heights : least and greatest height of the point in mm; None is the top of the part.
-    axial : least and greatest force along -z in N: a drill presses (positive), a helix may pull (negative).
+    heights : (least, greatest) height in mm at which it acts; None is the top of the part.
+    axial : (least, greatest) force along -z in N: positive presses down as a drill does, negative pulls up as
+        a helix may.
     moment : about z, in N mm.
-    tilt : the moments about x and y, in N mm.
+    tilt : moments about x and about y, in N mm.
     name : what the user calls it.
 
     Raises
@@ -161,7 +162,9 @@ class SpatialLoad:
 
     @classmethod
     def from_planar_load(cls, load: Load) -> SpatialLoad:
-        """Return a planar load as one in space, at its own height, else at the top of the part."""
+        """Return a planar load as a load in space, at the planar load's height, or at the top of the part
+        where that has none.
+        """
         heights = None if load.height is None else (load.height, load.height)
         axial = (0.0 - load.upward, 0.0 - load.upward)
         return cls(
@@ -176,7 +179,9 @@ class SpatialLoad:
         return Load(self.points if self.force else (), self.force, self.directions, self.moment, self.name)
 
     def with_height(self, thickness: float) -> SpatialLoad:
-        """Return the load with the top of a part of this thickness in mm as its height, where it has none."""
+        """Return the load unchanged if it has heights; else acting at the top of a part of this thickness in
+        mm.
+        """
         return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
 
 
@@ -189,23 +194,25 @@ class SupportRequest:
     thickness : of the part, T.
     pad_radius : of the supports' round pads.
     tip_radius : of the clamp's round tip.
-    band : heights at which pegs may press; None is of each the band of its face on the part's solid, and from
-        0 to T where there is none.
-    bands : the same for each peg of the fixture, in its order, None for those that have no band of their own.
+    band : heights (low, high) at which pegs may press; None for each peg's own: the band of its face on the
+        part's solid, or 0 to T where there is no solid.
+    bands : for each peg of the fixture, in order, its band in place of ``band``; None for a peg without one.
     pad_margin : smallest distance from a pad to the border of the face it supports.
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first.
         No loops are no face, and None is the outline with its holes.
-    top_heights : height in mm of the face of every loop of ``top``; None where all lie at the thickness.
+    top_heights : for each loop of ``top`` the height of its face in mm; None where all are at the thickness.
     bottom_zones, top_zones : keep-outs from below and from above.
     inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
         given.
     reach : rings in which the clamp can stand, None for anywhere.
-    point : where the clamp stands; None where it is free.
+    point : place (x, y) of the clamp; None where it is free.
     tip_margin : smallest distance from the tip to the border of the face on which it stands.
-    head_radius : within which what rises above that face is not; one and a half times the tip's radius if not
-        given.
-    rising, rising_heights : loops around what rises above heights of ``top``, and for each the height.
-    hanging, hanging_heights : loops of what of ``top`` has air below it, and for each the height of its face.
+    head_radius : radius around the clamp within which nothing may rise above the clamped face; 1.5 times the
+        tip's radius if not given.
+    rising, rising_heights : loops around what rises above faces of ``top``, and for each loop the height of
+        the face.
+    hanging, hanging_heights : loops of the parts of ``top`` with air below, and for each loop the height of
+        its face.
 
     Raises
     ------
@@ -301,8 +308,8 @@ class SupportRequest:
         ----------
         thickness : in mm; that of the solid if None.
         pad_radius, tip_radius : in mm; the usual ones if None.
-        toolkit : in which the part is held; its own supports and clamp on top are the usual ones. Where it
-            has none, the usual pad is made as small as its holes ask for.
+        toolkit : toolkit that holds the part; its own supports and clamp on top are used. Where it has none,
+            the usual pad is made as small as the toolkit's holes need.
 
         Raises
         ------
@@ -411,7 +418,11 @@ class SupportRequest:
 
 
 def find_usual_pad_radius(toolkit: Toolkit | None) -> float:
-    """The radius in mm of a toolkit's supports, or the usual one, as small as its holes ask for."""
+    """Return the radius in mm of the pads of a toolkit's own supports, else the usual one.
+
+    The usual radius is reduced to half the least distance between holes, unless that is less than the
+    smallest pad. For None it is the usual one.
+    """
     if toolkit is None:
         return PAD_RADIUS
     if toolkit.supports is not None and toolkit.supports.pad_radius is not None:
@@ -421,8 +432,8 @@ def find_usual_pad_radius(toolkit: Toolkit | None) -> float:
 
 
 def find_least_hole_distance(toolkit: Toolkit) -> float:
-    """Return the least distance in mm between two holes of a toolkit:
-    a pitch or, with several plates, their gap.
+    """Return the least distance in mm between two holes of a toolkit: a pitch, or the gap between two plates'
+    holes.
     """
     apart = [pitch for plate in toolkit.plates for pitch in plate.pitch]
     if toolkit.gap is not None and len(toolkit.plates) > 1:

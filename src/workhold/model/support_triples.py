@@ -1,4 +1,4 @@
-"""What is known of the supports of a planar fixture: triples with their figures, and one that is chosen.
+"""Supports of a planar fixture: sets of three with their figures, and the set that is chosen.
 
 Supports may stand in holes before column A or row 1 of a fixture as it was listed, or nearer the opening than
 its pegs. Then all of the set-up stands elsewhere in the same plates: so many columns and rows further on. The
@@ -44,12 +44,12 @@ class ClampFigures:
 
     Parameters
     ----------
-    at : where it presses, in mm in the part's coordinates.
+    at : (x, y) where it presses, in mm in the part's coordinates.
     clamp_needed : force in N above which no support loses contact under any load.
     support_force : the largest force on a support at that force, in N; None without loads.
-    arm : distance in mm from the nearest side: tipping moment resisted per N.
-    share : the smallest share of the clamp force that a support takes.
-    lift : clamp force that each N of jaw force asks for when nothing else acts.
+    arm : distance in mm from the nearest side of the supports' triangle: the tipping moment resisted per N.
+    share : smallest share of the clamp force that a support takes.
+    lift : clamp force needed for each N of jaw force when nothing else acts.
     hangs : whether the material under the point does not reach down to where the part lies, as of a web under
         a lip.
     """
@@ -70,7 +70,8 @@ class SupportPad:
     Parameters
     ----------
     carrier : name of what it stands on.
-    column, row : as the planar fixture counts them; its plates may end before.
+    column, row : hole, numbered as in the planar fixture; it may lie beyond the end of the plate, or be
+        negative.
     x, y : in mm in the part's coordinates.
     """
 
@@ -82,7 +83,7 @@ class SupportPad:
 
     @property
     def hole(self) -> str:
-        """Name of the hole; before column A or row 1 its numbers, where A1 is (1,1).
+        """Name of the hole; where its column or row is negative, its numbers in brackets, A1 being (1,1).
 
         >>> SupportPad("left", 2, 3, 0.0, 0.0).hole, SupportPad("plate", -1, 3, 0.0, 0.0).hole
         ('L-C4', '(0,4)')
@@ -100,10 +101,12 @@ class Triple:
     Parameters
     ----------
     supports : in order of carrier, column and row.
-    travel : what the moving jaw is opened to with these supports, in mm; None where no lattice moves.
-    marginal : whether a rule is kept by so little that another list may leave it out.
-    standing : how far in mm the centre of area is inside the triangle; positive: it stands unclamped.
-    overhang : farthest in mm that a load's point lies beyond a side; None without such a point.
+    travel : opening of the moving jaw in mm with these supports; None where no lattice moves.
+    marginal : whether a rule is met so narrowly that another computation may leave the set out.
+    standing : distance in mm of the centre of area inside the triangle; positive where the part stands
+        unclamped.
+    overhang : largest distance in mm of a load's point beyond a side of the triangle; None without such a
+        point.
     arm, arm_at : the largest tipping arm in mm, and the clamp's point for it.
     best : the clamp where it needs the least force.
     given : the clamp at the point asked for; None where none was asked for or it may not stand there.
@@ -128,9 +131,9 @@ class Triple:
 
     @property
     def clamp(self) -> ClampFigures:
-        """The clamp at the point asked for, where it may stand there, else where it needs the least force.
+        """The clamp at the point asked for, if it may stand there; else the clamp that needs the least force.
 
-        Where no force is needed, that is the place with the largest tipping arm.
+        Where no clamp needs any force, the latter is at the place with the largest tipping arm.
         """
         return self.given or self.best
 
@@ -142,14 +145,14 @@ class Supports:
     Parameters
     ----------
     query : part and toolkit, with what else the planar fixture was asked for.
-    fixture : the planar fixture.
-    request : what was asked.
-    loads : with their heights written out.
-    jaw_force : on what moves, in N, that all figures hold for.
-    positions : how many holes may hold a support.
-    count : how many triples are valid; None where not all were looked at.
+    fixture : the planar fixture that the supports belong to.
+    request : the request that the supports answer.
+    loads : the loads, with their heights written out.
+    jaw_force : force in N on what moves, for which all figures hold.
+    positions : number of holes that may hold a support.
+    count : number of valid triples; None where not all were examined.
     triples : those listed, the best first.
-    stopped : whether the search was stopped: then they are the best of those it had looked at.
+    stopped : whether the search was stopped; then ``triples`` are the best of those examined.
     """
 
     query: Query
@@ -191,10 +194,10 @@ class Supports:
         return self.triples[rank - 1]
 
     def bound_clamp_force(self, friction: float, rank: int = 1) -> float:
-        """Return a lower bound in N of the clamp force needed if
-        friction helps as much as it can to balance the loads.
+        """Return a lower bound in N of the clamp force needed if friction helps as much as it can to balance
+        the loads.
 
-        It is optimistic, is not used for ranking, and is at most the force without friction; see
+        The bound is at most the force without friction. It is optimistic and not used for ranking; see
         ``supports.friction``.
 
         Parameters
@@ -222,9 +225,11 @@ class RecountedSupports:
 
     Parameters
     ----------
-    fixture : the set-up, with its places in mm from the same hole as ever.
+    fixture : the set-up with renumbered holes; its coordinates in mm still count from the hole that they
+        counted from before.
     supports : the three, in their order; ``x`` and ``y`` stay those in the part's coordinates.
-    columns, rows : by how many of the first plate part and pegs stand further on than they were listed.
+    columns, rows : how many columns and rows of the first plate the part and pegs stand further on than
+        listed.
     """
 
     fixture: Fixture
@@ -234,7 +239,7 @@ class RecountedSupports:
 
     @property
     def move(self) -> Hole:
-        """(columns, rows)."""
+        """(columns, rows) by which the set-up is moved."""
         return self.columns, self.rows
 
 
@@ -265,9 +270,10 @@ def recount_holes(
 
 
 def iterate_moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
-    """Yield (columns, rows) to move a set-up by, by rising distance |columns| + |rows| from ``start``.
+    """Yield (columns, rows) to move a set-up by, in order of |columns| + |rows| counted from ``start``.
 
-    Neither goes beyond :data:`FARTHEST`; rows stay at ``start`` where a wall fixes them.
+    Neither number differs from ``start`` by more than :data:`FARTHEST`; rows stay at ``start`` where a wall
+    fixes them.
     """
     # A wall stays where it is.
     most_rows = 0 if toolkit.datum.fixes_rows or toolkit.ends_on_walls else FARTHEST
@@ -279,10 +285,10 @@ def iterate_moves(toolkit: Toolkit, start: Hole) -> Iterator[Hole]:
 
 
 def compute_shift(plate: Carrier, first: Carrier, move: Hole, opened: float) -> Hole:
-    """Return the columns and rows to add to a plate's hole numbers when part and pegs move.
+    """Return (columns, rows) to add to a plate's hole numbers when part and pegs move.
 
-    All moves by ``move`` columns and rows of the plate ``first``; a plate that slides has travelled by
-    ``opened`` mm more than before, which takes its holes along.
+    They move by ``move`` columns and rows of the plate ``first``. A plate that slides has travelled
+    ``opened`` mm more than before, and its holes with it.
     """
     shift = [
         round((steps * own - (0.0 if plate.travel is None else opened * along)) / pitch)
@@ -300,8 +306,8 @@ def compute_shift(plate: Carrier, first: Carrier, move: Hole, opened: float) -> 
 def list_taken_holes(
     plate: Carrier, fixture: Fixture, toolkit: Toolkit, triple: Triple
 ) -> Iterator[tuple[int | None, int | None]]:
-    """Yield (column, row) on a plate of each peg, clamp and support;
-    None for a coordinate that no hole gives.
+    """Yield (column, row) on a plate of each peg, clamp and support; None for a number that is measured, not
+    counted.
     """
     for peg in fixture.pegs:
         carrier = toolkit.find_carrier(peg.carrier)
@@ -314,8 +320,8 @@ def list_taken_holes(
 
 
 def fits(plate: Carrier, shift: Hole, fixture: Fixture, toolkit: Toolkit, triple: Triple) -> bool:
-    """Return whether the holes of pegs, clamps and supports on a plate,
-    shifted, exist and are not blocked.
+    """Return whether all holes of pegs, clamps and supports on a plate, moved by ``shift``, exist and are not
+    blocked.
     """
     for column, row in list_taken_holes(plate, fixture, toolkit, triple):
         new = [None if old is None else old + by for old, by in zip((column, row), shift, strict=True)]
@@ -335,8 +341,9 @@ def move_setup(
     shifts: dict[str, Hole],
     travel: float,
 ) -> RecountedSupports:
-    """Return the set-up moved by ``move`` columns and rows of the first plate,
-    hole numbers shifted by plate name.
+    """Return the set-up moved by ``move`` columns and rows of the first plate.
+
+    Hole numbers on each plate are changed by ``shifts[plate name]``.
     """
     first = next(plate for plate in toolkit.carriers if plate.has_lattice)
     dx, dy = move[0] * first.pitch[0], move[1] * first.pitch[1]
@@ -396,8 +403,8 @@ class ChosenSupports:
         return chosen
 
     def move_to_hole(self, name: str) -> ChosenSupports:
-        """Return the set moved so that pegs and clamps have their
-        lowest column and row at a named hole, such as "D4".
+        """Return the set-up moved so that the lowest column and row of its pegs and clamps are those of a
+        hole, such as "D4".
 
         Raises
         ------

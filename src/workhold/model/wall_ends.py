@@ -1,8 +1,9 @@
-"""The ends of the contact with a wall: of an endless one those of a hull edge, else of the common stretch.
+"""The two ends of the part's contact with a wall: the ends of a hull edge, or of its common stretch with the
+wall.
 
 Where a wall has ends, such as a flat jaw of a vise, it reaches over some x of its own frame. The part touches
-the wall's line at the points K of a hull edge, which may bridge gaps. Of them the wall reaches those on it,
-whose convex hull is the common stretch. Its ends take up the wall's force, so they are the contacts.
+the wall's line at the points K of a hull edge, which may bridge gaps. The common stretch is the convex hull
+of the points of K that lie on the wall. Its ends take up the wall's force, so they are the contacts.
 """
 
 from __future__ import annotations
@@ -34,8 +35,9 @@ IntArray = NDArray[np.int64]
 
 
 def list_hull_touches(workpiece: Workpiece, edge: int) -> tuple[HullTouch, ...]:
-    """Return what of a workpiece touches the line of the hull
-    edge with this index, as :func:`find_touches_along`.
+    """Return the parts of a workpiece's outline that touch the line of the hull edge with this index.
+
+    See :func:`find_touches_along` for their form and order.
     """
     own, _ = workpiece.find_outline(WALL)
     segments = [face.segment for face in own.outer_faces]
@@ -48,8 +50,8 @@ class CommonStretch:
 
     Parameters
     ----------
-    start, end : (N,) of the stretch; infinite where there is none, the end below the start.
-    first, last : (N,) numbers of what touches at the start and at the end.
+    start, end : (N,) ends of the stretch; where there is none, inf and -inf.
+    first, last : (N,) indices of the touches at the start and at the end.
     """
 
     start: Array
@@ -64,10 +66,9 @@ class CommonStretch:
 
 
 def find_common_stretch(touches: Sequence[HullTouch], low: Array, high: Array) -> CommonStretch:
-    """Return what the touches along a hull edge have in
-    common with N walls that reach from ``low`` to ``high``.
+    """Return the stretches that the touches along a hull edge share with N walls.
 
-    ``low`` and ``high`` are (N,), in mm from the edge's start.
+    Each wall reaches from ``low`` to ``high``, (N,) in mm from the edge's start.
     """
     ends = np.array([(one.low, one.high) for one in touches])
     start, end = np.maximum(ends[:, 0], low[:, None]), np.minimum(ends[:, 1], high[:, None])
@@ -86,10 +87,10 @@ class WallEnds:
 
     Parameters
     ----------
-    x : (N, 2) in mm.
-    length : (N,) of what lies on the wall, in mm.
-    named : the numbers of the faces of everything that may touch there.
-    which : (N, 2) what of it does.
+    x : (N, 2) x of the first and the second end in mm.
+    length : (N,) length of the contact in mm.
+    named : for each thing that may touch the wall, the numbers of its faces: one, or two at a corner.
+    which : (N, 2) index into ``named`` of what touches at each end.
     """
 
     x: Array
@@ -99,24 +100,23 @@ class WallEnds:
 
     @property
     def face(self) -> IntArray:
-        """Number (N, 2) of the face that touches at each end;
-        of a corner the lower number of its two faces.
-        """
+        """Numbers (N, 2) of the faces that touch at the ends; at a corner the lower number of its two faces."""
         lower = np.array([faces[0] for faces in self.named], np.int64)
         return np.asarray(lower[self.which])
 
     @property
     def shared(self) -> IntArray:
-        """Labels (N, 2), equal for both ends where the error of one face moves both alike.
+        """Labels (N, 2), equal where the error of one face moves both ends alike.
 
-        A label is the number of the face; a corner at the first end has -1, at the second -2.
+        A label is the number of the face; at a corner it is -1 for the first end and -2 for the second.
         """
         is_corner = np.array([len(faces) > 1 for faces in self.named])
         return np.where(is_corner[self.which], np.array([-1, -2]), self.face)
 
     def list_touching_faces(self, row: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Return the numbers of the faces that touch at the first and the second end in a row:
-        one each, two at a corner.
+        """Return the numbers of the faces that touch at the first and at the second end in a row.
+
+        Each is a tuple of one number, or of two at a corner.
         """
         one, other = self.which[row].tolist()
         return self.named[one], self.named[other]
@@ -125,7 +125,7 @@ class WallEnds:
 def find_wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Array) -> WallEnds:
     """Return the two ends of the contact with a toolkit's wall for N poses.
 
-    Where a wall with ends does not reach the part, they are those of an endless wall.
+    Where a wall with ends does not reach the part, the ends are those of the contact with an endless wall.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ __all__ = ["Workpiece"]
 
 
 def encode_loops(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
-    """Return the bytes of each loop's numbers, -0.0 made 0.0, as a key for comparing loops."""
+    """Return each loop's numbers as bytes, -0.0 replaced by 0.0, so that loops can be compared and hashed."""
     return tuple((loop + 0.0).tobytes() for loop in loops)
 
 
@@ -100,15 +100,15 @@ class Workpiece:
 
     Parameters
     ----------
-    name : what the user calls it.
+    name : the user's name of the part.
     loops : (N, 3) read-only arrays of x, y (mm) and bulge; the outer loop first and counter-clockwise, then
         the holes, clockwise. A solid that pegs meet in several pieces has an outer loop for each, before all
         holes.
-    remarks : what was changed of the loops given, one sentence each.
+    remarks : changes made to the loops given, one sentence each.
     departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines
         and arcs.
     solid : how the solid stands and the bands of the segments, for an outline by height; None for a prism.
-    outlines : what carriers with heights of their own meet, by their role, see ``model.own_outlines``.
+    outlines : by role, the outlines that carriers with heights of their own meet, see ``model.own_outlines``.
 
     Examples
     --------
@@ -151,12 +151,12 @@ class Workpiece:
 
         Parameters
         ----------
-        name : what the user calls the part.
+        name : the user's name of the part.
         loops : the outer loop first, then any holes; each (N, 3), run in either direction. With a solid,
             there may be several outer loops before the holes.
-        labels : for every loop, what to call each of its segments in messages (such as ``LINE 2F``).
+        labels : for every loop, a name for each of its segments in messages (such as ``LINE 2F``).
         departure : how far these loops may be from what was drawn, in mm; below ``READING`` it counts as 0.
-        solid : with a band for every segment, in the order of these loops; None for a prism.
+        solid : the part's solid, with a band for every segment in the order of these loops; None for a prism.
 
         Raises
         ------
@@ -226,11 +226,11 @@ class Workpiece:
 
         Parameters
         ----------
-        name : what the user calls the part.
+        name : the user's name of the part.
         outline : (N, 2) corners in mm, run in either direction; the first may stand at the end again.
-        holes : the same for each hole.
-        fit : how far chords may be from the arc that replaces them, in mm, where 0.001 mm is too fine; the
-            part's ``departure`` then says how far they are.
+        holes : corners (N, 2) of each hole.
+        fit : largest distance in mm of chords from the arc that replaces them, where 0.001 mm is too fine;
+            the part's ``departure`` then has the distance reached.
 
         Raises
         ------
@@ -350,7 +350,7 @@ class Workpiece:
 
     @cached_property
     def every_outline(self) -> tuple[Workpiece, ...]:
-        """The part itself, then the outlines of carriers with heights of their own, equal ones once."""
+        """The part itself, then the outlines of carriers with heights of their own, without repeats."""
         return tuple(drop_equal_values([self, *(own for _, own in self.outlines)]))
 
     @cached_property
@@ -361,8 +361,9 @@ class Workpiece:
         return NumberedOutlines.from_outlines(self.every_outline)
 
     def find_outline(self, role: str) -> tuple[Workpiece, int]:
-        """Return the own outline that carriers of a role meet, else the part,
-        and the number that its first segment has in :attr:`numbered`.
+        """Return (outline, offset): the own outline that carriers of a role meet, or else the part itself.
+
+        ``offset`` is the number that its first segment has in :attr:`numbered`.
         """
         every, own = self.every_outline, dict(self.outlines).get(role, self)
         return own, sum(len(one.segments) for one in every[: every.index(own)])
@@ -436,8 +437,8 @@ class Workpiece:
         return Workpiece(self.name, tuple(loops), departure=self.departure)
 
     def apply_pose(self, pose: Pose) -> Workpiece:
-        """Return the workpiece with its loops, and those of its outlines,
-        moved into the toolkit's frame by a pose.
+        """Return the workpiece moved into the toolkit's frame by a pose: its loops, and the loops of its own
+        outlines.
         """
         loops = (np.column_stack([*pose.apply(loop[:, 0], loop[:, 1]), loop[:, 2]]) for loop in self.loops)
         own = tuple((role, one.apply_pose(pose)) for role, one in self.outlines)
@@ -483,8 +484,8 @@ def check_departure(value: float) -> float:
 
 
 def describe_arc_changes(straightened: int, rounded: int) -> tuple[str, ...]:
-    """Return sentences on the number of arcs taken for lines,
-    and of arcs moved onto one circle with their neighbours.
+    """Return sentences on how many arcs were replaced by lines and how many were moved onto one circle with a
+    neighbour.
     """
     remarks = []
     if straightened:

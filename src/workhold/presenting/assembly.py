@@ -79,11 +79,11 @@ class Assembly:
 
     Parameters
     ----------
-    fixture : the one that they stand as.
-    result : which has its part and toolkit.
-    sizes : heights.
+    fixture : the fixture that the bodies show.
+    result : the result that lists it, with its part and toolkit.
+    sizes : heights of the bodies.
     bodies : the part first.
-    shape : of the part, as its own file has it; None where the prism of its body stands for it.
+    shape : of the part, as its own file has it; None where the part's body is a prism.
     """
 
     fixture: Fixture
@@ -101,13 +101,15 @@ class Assembly:
         chosen: ChosenSupports | None = None,
         shape: PartShape | None = None,
     ) -> Assembly:
-        """Return the bodies of a fixture; with chosen supports, those of the
-        fixture moved to fit the supports' holes.
+        """Return the bodies of a fixture; with chosen supports, those of the fixture moved to fit the
+        supports' holes.
 
         Parameters
         ----------
-        lengths : in mm, named as in :meth:`BodySizes.from_workpiece`, or as in
-            :func:`workhold.model.support_bodies.size_supported_bodies` for a set of supports.
+        lengths : in mm, by the parameter names of :meth:`BodySizes.from_workpiece`, or with supports by those
+            of :func:`workhold.model.support_bodies.size_supported_bodies`.
+        chosen : a set of supports; None for none.
+        shape : of the part, as its own file has it; None shows the part as a prism.
 
         Raises
         ------
@@ -137,11 +139,12 @@ class Assembly:
         )
 
     def make_file_content(self, ending: str, zero: PartZero | None = None) -> bytes:
-        """Return the bytes of a file whose ending is one of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
+        """Return the bytes of a GLB or STEP file of the bodies.
 
         Parameters
         ----------
-        zero : part zero in a STEP file; that of :func:`choose_part_zero` without a wish if None.
+        ending : one of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
+        zero : part zero in a STEP file; None takes the usual one, see :func:`choose_part_zero`.
 
         Raises
         ------
@@ -173,12 +176,13 @@ class Assembly:
 
 
 def read_part_shape(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
-    """Return the shape of a part from the STEP file that the part was read from; None if ``path`` is None.
+    """Return the shape of a part from the STEP file ``path`` that the part was read from; None if ``path`` is
+    None.
 
     Raises
     ------
     InputError
-        Naming the file, where it cannot be read, or is of another part.
+        When the file cannot be read, or holds another part; the message names the file.
     """
     if path is None:
         return None
@@ -298,7 +302,8 @@ def from_cadquery(
 
 
 def find_axis_name(up: Any) -> str:
-    """Return the name of the axis along a direction given as an axis, a plane, a vector or a name.
+    """Return the name of the axis, such as "-z", along which ``up`` points: an axis, a plane, a vector or a
+    name.
 
     >>> find_axis_name((0, 0, -2))
     '-z'
@@ -371,10 +376,11 @@ def make_title(fixture: Fixture) -> str:
 def make_bodies(
     fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
 ) -> list[tuple[str, Any, tuple[float, float, float]]]:
-    """Return (name, shape of Open CASCADE, colour from 0 to 1) of each body of a set-up, the part first.
+    """Return (name, shape of Open CASCADE, colour) of each body of a set-up, the part first.
 
-    With ``around``, the part's own solid, all bodies are in that solid's model frame; otherwise in the
-    toolkit's.
+    Colours are red, green and blue from 0 to 1. With ``around``, the part's own solid, all bodies are in that
+    solid's model frame; with None, in the toolkit's frame. ``best`` is the rank, from 1, of the set of
+    supports.
     """
     result = fixture.listing.result
     chosen = None if supports is None else ChosenSupports.from_fixture(fixture, supports, best)
@@ -403,8 +409,8 @@ def find_own_shape(part: Any) -> Any:
 
 
 def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
-    """Return the location of Open CASCADE that carries the toolkit's frame into
-    the model frame of the part's solid.
+    """Return the location of Open CASCADE that carries the toolkit's frame into the model frame of the part's
+    solid.
 
     Raises
     ------

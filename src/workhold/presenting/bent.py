@@ -39,12 +39,14 @@ __all__ = [
 
 
 def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> PartToBend:
-    """Return the shape of a query's part: that of its STEP file, or without one a prism ``height`` mm high.
+    """Return the shape to bend of a query's part: ``shape`` from its STEP file, or if that is None a prism.
+
+    ``height`` is the prism's in mm.
 
     Raises
     ------
     InputError
-        For a part that was read from a solid, without its shape.
+        For a part that was read from a solid, if ``shape`` is None.
     """
     if shape is not None:
         return KeptShape(shape.kept)
@@ -58,10 +60,10 @@ def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> 
 def find_pads_below(
     supports: Supports, best: int, shape: PartShape | None, clamp_force: float | None
 ) -> PadsBelow:
-    """Return the pads and the clamp on top of the set ``best`` (from 1) of three supports.
+    """Return the pads and the clamp on top of the set with rank ``best``, from 1, of three supports.
 
-    Its clamp force is ``clamp_force`` in N, or if None the force that the set needs. Raises InputError for a
-    set that there is not.
+    ``clamp_force`` is in N; None takes the force that the set needs. Raises InputError where there is no such
+    set.
     """
     if not 1 <= best <= len(supports.triples):
         raise InputError(f"there is no set {best} of supports: choose from 1 to {len(supports.triples)}.")
@@ -147,8 +149,9 @@ def bend_sheet(fixture: Fixture, settings: dict[str, Any], shape: PartShape | No
 
 
 def make_bent_mesh(bending: Bending, pose: Pose) -> Mesh:
-    """Return the mesh of the bent part in the pose of a fixture, coloured by
-    its movement, which is exaggerated.
+    """Return the mesh of the bent part in the pose of a fixture.
+
+    Its movement is exaggerated, and colours show the true size of the movement.
     """
     surface, times = bending.surface, choose_exaggeration(bending)
     places = surface.nodes + times * bending.moved
@@ -172,7 +175,9 @@ def make_bent_mesh(bending: Bending, pose: Pose) -> Mesh:
 
 
 def make_bent_glb(fixture: Fixture, bending: Bending) -> bytes:
-    """Return the bytes of a GLB file of a fixture with its part coloured and bent, exaggerated."""
+    """Return the bytes of a GLB file of a fixture, with its part bent (exaggerated) and coloured by its
+    movement.
+    """
     result = fixture.listing.result
     height = float(bending.surface.nodes[:, 2].max())
     sizes = BodySizes.from_workpiece(result.workpiece, thickness=height)

@@ -1,7 +1,9 @@
-"""A closing of a fixture as it is shown: the part is let go a little off its place, and comes home.
+"""A simulated closing of a fixture: the part starts a little off its place, and the closing jaws bring it
+home.
 
-How far off depends on the cage (``model.seating``). Where the seating cannot be computed, or the part is
-caught from next to nothing, the part waits in its place and only what moves is shown.
+How far off it starts depends on the cage, the poses from which it still settles (``model.seating``). Where
+the seating cannot be computed, or the cage is too small to see, the part stays in its place and only what
+moves is shown.
 """
 
 from __future__ import annotations
@@ -51,9 +53,10 @@ def show_closing(picture: LivePicture) -> dict[str, Any]:
 
 
 def close_fixture(picture: LivePicture, solver: SeatingSolver, seating: Seating) -> dict[str, Any]:
-    """Return the closing of a fixture with a known seating, from the first start pose that leads home.
+    """Return the closing of a fixture with a known seating as plain data.
 
-    Where the capture opening is too small to see, or no start leads home, the part does not move.
+    It starts from the first start pose that leads home. Where the capture opening is too small to see, or no
+    start pose leads home, the part does not move.
     """
     fixture, toolkit = picture.fixture, picture.result.toolkit
     sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.in_mm())
@@ -81,7 +84,9 @@ def close_fixture(picture: LivePicture, solver: SeatingSolver, seating: Seating)
 
 
 def list_starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:
-    """Yield start poses within the cage, ever nearer to the fixture's pose, and last this pose itself."""
+    """Yield start poses within the cage, each nearer to the fixture's pose than the one before; the last is
+    this pose.
+    """
     middle, cage = picture.result.workpiece.center, seating.cage
     turns, shifts = (-ANY_TURN, ANY_TURN), (0.0, 0.0)
     if cage is not None:

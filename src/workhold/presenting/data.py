@@ -73,12 +73,15 @@ __all__ = [
 
 
 def convert_finite(value: float) -> float | None:
-    """Return a number, or None for inf and NaN, which JSON does not have."""
+    """Return a number unchanged, or None for inf and NaN, which JSON does not have."""
     return float(value) if isfinite(value) else None
 
 
 def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """Return a part and its faces as plain data; ``remarks`` are about how it was read."""
+    """Return a part and its faces as plain data.
+
+    ``remarks`` are sentences on how its file was read.
+    """
     first, loop_of = 0, {}
     for index, loop in enumerate(workpiece.loops):
         loop_of.update(dict.fromkeys(range(first, first + len(loop)), index))
@@ -98,7 +101,9 @@ def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str
 
 
 def describe_solid(solid: SolidOutline | None) -> dict[str, Any]:
-    """Return {"solid": ...} with how the solid stands and the heights of each segment; {} without a solid."""
+    """Return {"solid": ...} for a part read from a solid: how it stands and the heights at each segment;
+    otherwise {}.
+    """
     return {} if solid is None else {"solid": asdict(solid, filter=exclude(fields(SolidOutline).low))}
 
 
@@ -114,7 +119,10 @@ def describe_face(face: Face) -> dict[str, Any]:
 
 
 def describe_fixture(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
-    """Return a fixture as plain data; ``rank``, from 1, is left out if None."""
+    """Return a fixture as plain data.
+
+    ``rank`` is from 1; with None the data has no rank.
+    """
     return {
         **({} if rank is None else {"rank": rank}),
         "type": fixture.type,
@@ -157,7 +165,9 @@ def describe_hold(fixture: Fixture) -> dict[str, Any]:
 
 
 def describe_pair(fixture: Fixture) -> dict[str, Any]:
-    """Return the count, the ratio and the order of tightening of a pair of clamps; {} for other fixtures."""
+    """Return the data of a pair of clamps: number of pairs, force ratio, order of tightening; {} for other
+    fixtures.
+    """
     if pair := fixture.pair:
         ratio = [convert_finite(one) for one in pair.ratio]
         return {"pairs": pair.count, "ratio": ratio, "order": describe_tightening_order(fixture)}
@@ -165,13 +175,14 @@ def describe_pair(fixture: Fixture) -> dict[str, Any]:
 
 
 def name_carrier(carrier: Carrier) -> str:
-    """Return the noun of what a contact stands on, such as "jaw" or "plate"; "wall" for every wall."""
+    """Return the noun of a carrier, such as "jaw" or "plate"; "wall" for every wall."""
     return carrier.noun if carrier.contact.is_placed else carrier.contact.name
 
 
 def describe_by_hand(fixture: Fixture, rank: int | None) -> dict[str, Any]:
-    """Return how the part is put into two clamps, {} unless the result was
-    asked for the seating of this rank.
+    """Return as plain data how the part is put between two clamps by hand.
+
+    Returns {} unless the query asked for the seating of the fixture with this rank.
     """
     result = None if fixture.listed is None else fixture.listed.result
     if result is None or result.toolkit.closes_at_once or rank is None or rank > (result.query.seating or 0):
@@ -196,7 +207,7 @@ def describe_load_case(case: LoadCase) -> dict[str, Any]:
 
 
 def describe_worst(worst: WorstLoad) -> dict[str, Any]:
-    """Return where and in which direction a load is worst as plain data; the peg is counted from 0."""
+    """Return as plain data where and in which direction a load is worst; its peg is an index from 0."""
     x, y = worst.point
     return {
         "value": convert_finite(worst.value),
@@ -231,8 +242,9 @@ def describe_result(result: Result, shown: ShownEntries, count: int) -> dict[str
 
 
 def describe_proof(proof: ProofReport) -> dict[str, Any]:
-    """Return the proof of a search as plain data, with the keys of a result file
-    but ``faces`` in place of ``segments``.
+    """Return the proof of a search as plain data.
+
+    Keys are those of a result file, except that ``faces`` takes the place of ``segments``.
     """
     entry = make_proof_entry(proof)
     lost = [
@@ -243,7 +255,7 @@ def describe_proof(proof: ProofReport) -> dict[str, Any]:
 
 
 def describe_explanation(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
-    """Return why there is no fixture, and what would help, as plain data."""
+    """Return as plain data why there is no fixture, and which changes would help."""
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
@@ -260,8 +272,10 @@ def describe_explanation(explanation: Explanation, toolkit: Toolkit) -> dict[str
 
 
 def describe_helps(explanation: Explanation, key: str) -> list[dict[str, Any]]:
-    """Return the changes that would help as plain data; ``key`` names the changed
-    fields of the toolkit, None for none.
+    """Return the changes that would help as plain data.
+
+    ``key`` is the key, in each of them, of the changed fields of the toolkit; its value is None where no
+    field changes.
     """
     return [
         {
@@ -277,7 +291,7 @@ def describe_helps(explanation: Explanation, key: str) -> list[dict[str, Any]]:
 
 
 def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
-    """Return a toolkit that was loaded as plain data."""
+    """Return a loaded toolkit as plain data."""
     return {
         "name": loaded.name,
         "kind": loaded.kind,
@@ -290,7 +304,7 @@ def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
 
 
 def describe_explored(found: Iterable[ToolkitOutcome]) -> list[dict[str, Any]]:
-    """Return how well each toolkit holds a part as plain data."""
+    """Return as plain data how well each of several toolkits holds a part."""
     return [
         {
             "name": item.name,
@@ -369,8 +383,9 @@ def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
 
 
 def split_into_chords(segment: Segment, tolerance: float) -> list[Point]:
-    """Return the starts of the fewest equal chords that are at most
-    ``tolerance`` mm from a segment, in its order.
+    """Return the starting points, in order, of the equal chords that replace a segment.
+
+    They are the fewest chords that are nowhere more than ``tolerance`` mm from the segment.
     """
     if not isinstance(segment, Arc):
         return [segment.start]
@@ -382,7 +397,7 @@ def split_into_chords(segment: Segment, tolerance: float) -> list[Point]:
 
 
 def import_library(name: str) -> Any:
-    """Return an optional library as a module.
+    """Return the module of an optional library.
 
     Raises
     ------
@@ -398,9 +413,9 @@ def import_library(name: str) -> Any:
 
 
 def make_columns(result: Result) -> dict[str, Any]:
-    """Return the columns of a result's table by name, a row for each fixture.
+    """Return the columns of a result's table by name, with one entry for each of N fixtures.
 
-    Numbers are arrays (N,), words lists; lengths are in mm, angles in degrees.
+    Columns of numbers are arrays (N,), columns of words are lists. Lengths are in mm, angles in degrees.
     """
     toolkit = result.toolkit
     names, count = list_column_names(result), 6 * toolkit.peg_count

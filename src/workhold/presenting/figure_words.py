@@ -1,4 +1,4 @@
-"""Figures, holes and counts as tables write them: the command's, and those that a notebook shows."""
+"""Figures, holes and counts as text, for the tables of the command line and of a notebook."""
 
 from __future__ import annotations
 
@@ -42,11 +42,10 @@ EDGE, SAME_SHARE = "edge_distance", 1e-9
 
 
 def list_shown_figures(result: Result) -> tuple[list[Figure], list[Figure]]:
-    """Return the figures that a result's table has columns for, and the
-    figures that its fixtures are ranked by.
+    """Return (figures that a result's table has columns for, figures that its fixtures are ranked by).
 
-    The first list holds those of the second that are known, then the location error and the program's
-    clearance where known. With seating it also has the capture opening and the reading.
+    The first list holds the known ones of the second list; then, where known, the location error and the
+    program's clearance; with seating also the capture opening and the reading.
     """
     from workhold.model.quality import (
         FIGURES,
@@ -78,13 +77,15 @@ def make_fixture_title(fixture: Fixture) -> str:
 
 
 def make_short_heading(figure: Figure, unit: Unit) -> str:
-    """Return a figure's name, shortened where it is too wide for a column, and its unit."""
+    """Return a column heading: a figure's name, shortened where it is too wide, and the unit's sign."""
     return f"{SHORT.get(figure.key, figure.words)} {find_figure_unit(figure, unit)}".rstrip()
 
 
 def group_peg_columns(toolkit: Toolkit) -> dict[str, list[str]]:
-    """Return the names of carriers by the heading of the table column that holds
-    their pegs; all clamps share one column.
+    """Return the columns of a table that hold pegs: by heading, the names of the carriers whose pegs stand in
+    the column.
+
+    All clamps share one column.
 
     >>> from workhold import Plate, Vise
     >>> group_peg_columns(Vise(pitch=10, columns=2, peg_radius=3))
@@ -104,7 +105,7 @@ def group_peg_columns(toolkit: Toolkit) -> dict[str, list[str]]:
 
 
 def name_peg_place(peg: Peg, toolkit: Toolkit) -> str:
-    """Return the name of a peg's hole or line, for a clamp without its noun."""
+    """Return the name of a peg's hole or line; a clamp's name is without its noun."""
     carrier = toolkit.find_carrier(peg.carrier)
     return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
 
@@ -131,33 +132,36 @@ def format_rounded(value: float, decimals: int) -> str:
 
 
 def find_edgeless_distance(workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """Return the length in mm that stands in the edge distance figure for contacts without an edge."""
+    """Return the length in mm that the figure ``edge_distance`` has where no contact has an edge."""
     from workhold.statics.contact_matrix import compute_wrench_length
 
     return compute_wrench_length(workpiece, toolkit)
 
 
 def mark_edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
-    """Return the figures by key, the edge distance replaced by inf where it stands for no edge.
+    """Return the figures by key, with inf as the edge distance where no contact has an edge.
 
     Parameters
     ----------
-    longest : that length in mm, which is on no part, see :func:`find_edgeless_distance`.
+    longest : the length in mm that stands for no edge, see :func:`find_edgeless_distance`; no true distance
+        is as long.
     """
     return {**figures, EDGE: inf} if is_edgeless(figures, longest) else dict(figures)
 
 
 def is_edgeless(figures: Mapping[str, float], longest: float) -> bool:
-    """Return whether the edge distance among figures is the length that stands
-    for no edge, see :func:`mark_edgeless`.
+    """Return whether the edge distance among ``figures`` is ``longest``, the length in mm that stands for no
+    edge.
+
+    See :func:`find_edgeless_distance`.
     """
     return EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
 
 
 def format_figure_number(figure: Figure, value: float, unit: Unit) -> str:
-    """Return a figure's value as a number in a unit, without the unit's sign.
+    """Return a figure's value as text in a unit, without the unit's sign.
 
-    NaN gives "-"; inf gives "none" for a reading or an edge distance, else "any".
+    NaN gives "-". Infinity gives "none" for a reading or an edge distance, otherwise "any".
     """
     if not isfinite(value):
         return "-" if isnan(value) else "none" if figure.key in ("reading", EDGE) else "any"
@@ -171,18 +175,24 @@ def format_figure_number(figure: Figure, value: float, unit: Unit) -> str:
 
 
 def find_unit_size(figure: Figure, unit: Unit) -> float:
-    """Return the size, in mm, mm² or N, of the unit in which a figure is shown; 1 for other figures."""
+    """Return the size, in mm, mm² or N, of the unit in which a figure is shown; 1 for a figure without such a
+    unit.
+    """
     return {"mm": unit.millimetres, "mm²": unit.millimetres**2, "N": unit.newtons}.get(figure.unit, 1.0)
 
 
 def format_figure(figure: Figure, value: float, unit: Unit) -> str:
-    """Return a figure's value with its unit's sign; only a word where it is inf or NaN."""
+    """Return a figure's value as text with the unit's sign, such as "0.031 mm"; for inf and NaN a word
+    without a sign.
+    """
     behind = find_figure_unit(figure, unit) if isfinite(value) else ""
     return f"{format_figure_number(figure, value, unit)} {behind}".rstrip()
 
 
 def format_ranked_figure(figure: Figure, value: float, unit: Unit) -> str:
-    """Return a figure's value in a unit, rounded to the two digits that the ranking compares (in mm or N)."""
+    """Return a figure's value as text in a unit, rounded as the ranking rounds it: two significant digits in
+    mm or N.
+    """
     from math import floor, log10
 
     if not isfinite(value):

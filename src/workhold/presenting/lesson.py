@@ -69,12 +69,13 @@ END = 1e-6
 
 @frozen
 class ChordRange:
-    """A chord of a fixture, and the orientations over which it exists.
+    """A chord of a fixture (the step between two holes, with its pegs on two features), and the orientations
+    where it exists.
 
     Parameters
     ----------
-    tail, head : numbers of the features its pegs touch.
-    swapped : whether the second peg of the pair is the tail.
+    tail, head : numbers of the features that its first and its last peg touch.
+    swapped : whether the chord's tail is the second peg of the pair rather than the first.
     shift, length : direction in radians and length in mm of the step between the holes.
     branch : which of two chords it is, 1 or -1.
     low, high : least and greatest orientation psi in radians, an interval around that of the fixture.
@@ -92,7 +93,9 @@ class ChordRange:
 
 @frozen
 class CurveFixture:
-    """A Type I fixture on two chord curves, its chords as of its first and its second pair of pegs."""
+    """A Type I fixture on two chord curves; its chords are those of its first and of
+    its second pair of pegs.
+    """
 
     fixture: Fixture
     rank: int
@@ -100,13 +103,13 @@ class CurveFixture:
 
     @property
     def psi(self) -> float:
-        """The orientation in radians of the pegs as seen from the part: minus the pose's angle."""
+        """The orientation in radians of the pegs as seen from the part: minus the angle of the pose."""
         return -radians(self.fixture.pose.theta_deg)
 
     @property
     def room(self) -> float:
-        """The angle in radians by which the part can turn either way while
-        both pairs touch; negative for none.
+        """The angle in radians by which the part can turn in either direction with all pegs touching;
+        negative for none.
         """
         return min(
             self.psi - max(one.low for one in self.chords), min(one.high for one in self.chords) - self.psi
@@ -118,7 +121,7 @@ def compute_lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[st
 
     Parameters
     ----------
-    cancel : when set, the search in hand ends.
+    cancel : when set, the running search ends.
 
     Returns
     -------
@@ -198,8 +201,9 @@ def find_fixtures_on_curves(problem: Problem, result: Result) -> list[CurveFixtu
 def find_chord_range(
     problem: Problem, table: CurveTable, fixture: Fixture, pegs: tuple[Peg, ...], swapped: bool = False
 ) -> ChordRange | None:
-    """Return the chord on which two pegs of a fixture stand; None where they stand
-    on a sliding pair, or in reverse order.
+    """Return the chord on which two pegs of a fixture stand.
+
+    Returns None where they stand on a pair of features along which they can slide, or in reverse order.
     """
     tail, head = pegs
     inverse, center = fixture.pose.inverse, problem.workpiece.center
@@ -225,10 +229,10 @@ def find_chord_range(
 
 
 def find_feature(problem: Problem, face: int, place: tuple[float, float]) -> int:
-    """Return the number of the feature of a face on which a peg's centre
-    lies, farthest from the feature's ends.
+    """Return the number of that feature of a face on which a peg's centre lies.
 
-    ``place`` is relative to the centre of the part's bounding box, in mm.
+    If the centre lies on several, it is the feature whose ends are farthest away. ``place`` is the peg's
+    centre in mm, relative to the centre of the part's bounding box.
     """
     (own,) = np.nonzero(problem.faces == face)
     return int(
@@ -239,8 +243,9 @@ def find_feature(problem: Problem, face: int, place: tuple[float, float]) -> int
 def describe_lesson(
     problem: Problem, result: Result, found: list[CurveFixture], avoided: int
 ) -> dict[str, Any]:
-    """Return a lesson as plain data with at most ``MOST_FIXTURES`` fixtures;
-    ``avoided`` is the number of faces left out.
+    """Return a lesson as plain data, with at most ``MOST_FIXTURES`` of the fixtures ``found``.
+
+    ``avoided`` is the number of faces that were left out.
     """
     part = problem.workpiece
     features: NDArray[np.float64] = problem.rows[:, FEATURE] + np.array([0, *part.center, 0, 0, 0, 0, 0])

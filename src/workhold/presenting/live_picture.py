@@ -117,10 +117,10 @@ class LivePicture:
 
     Parameters
     ----------
-    result, fixture : of which it is one.
-    bench, view : what shows of it, and the map from mm to the page.
+    result, fixture : the result, and the fixture of it that is shown.
+    bench, view : the visible parts of the set-up, and the map from mm to the page.
     usual : size in N of the push whose arrow is :data:`USUAL` page units long.
-    under : what stands under the part, to show as well; None for nothing.
+    under : supports under the part, to show as well; None for none.
     """
 
     result: Result
@@ -138,7 +138,8 @@ class LivePicture:
 
         Parameters
         ----------
-        asked : of supports, as keywords of :meth:`workhold.Fixture.supports`; None for none.
+        usual : size in N of the push whose arrow has the usual length.
+        asked : keywords of :meth:`workhold.Fixture.supports`, to show supports; None shows none.
         """
         fixture = result[index]
         under = None if asked is None else find_fixture_supports(fixture, **{"best": 1, **asked})
@@ -195,10 +196,11 @@ class LivePicture:
         return scene.to_svg()
 
     def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
-        """Draw a set of three supports with the names of its holes; each moves
-        with the jaw on which it stands.
+        """Draw a set of three supports with the names of its holes; each support moves with the jaw on which
+        it stands.
 
-        ``ways`` maps a carrier's name to the direction in which it clamps, None for those that stand still.
+        ``ways`` holds by carrier name the direction in which the carrier clamps, None for a carrier that
+        stands still.
         """
         planned, view = PlannedSupports.from_chosen(chosen), self.view
         corners, radius = (
@@ -213,9 +215,9 @@ class LivePicture:
         draw_tip(scene.group("stands"), view(planned.clamp), choose_lettering_size(planned.tip_radius, view))
 
     def write_name(self, scene: Scene, number: int) -> None:
-        """Write the hole of a peg beside it, away from the part and within the page.
+        """Write the name of the hole of peg ``number``, an index from 0, beside the peg.
 
-        The name of a clamp stands beside its body, which is behind the tip.
+        The name stands away from the part and within the page; that of a clamp beside the clamp's body.
         """
         peg, (_, (nx, ny)) = self.fixture.pegs[number], self.bench.contacts[number]
         (x, y), radius = self.view((peg.x, peg.y)), self.bench.get_page_radius(self.view, number)
@@ -233,8 +235,9 @@ class LivePicture:
         return [float(x), float(y), float(x + length * cos(angle)), float(y - length * sin(angle))]
 
     def read_push(self, arrow: Sequence[float]) -> TriedForce:
-        """Return the force of an arrow (x, y, tip x, tip y) on the page, in whole
-        newtons; 0 N for one that is too short.
+        """Return the force that an arrow (x, y, tip x, tip y) on the page stands for, in whole newtons.
+
+        A very short arrow gives 0 N.
 
         Raises
         ------
@@ -250,12 +253,12 @@ class LivePicture:
         return TriedForce(float(at[0]), float(at[1]), size, turn % 360.0)
 
     def answer(self, push: TriedForce, jaw_force: float | None, jaw: str | float) -> dict[str, Any]:
-        """Return what a force does as plain data: contact forces as arrows and shares,
-        whether the fixture holds, and words.
+        """Return as plain data what a force does: contact forces as arrows and shares, whether the fixture
+        holds, and words.
 
         Parameters
         ----------
-        jaw_force : in N, with which what moves presses; None for as much as is needed.
+        jaw_force : force in N with which the moving carrier presses; None for as much as is needed.
         jaw : as in :func:`workhold.statics.loads.load_cases`.
 
         Raises
@@ -310,9 +313,11 @@ class LivePicture:
         }
 
     def compute_force_arrow(self, number: int, length: float) -> list[float]:
-        """Return the arrow of a contact force: x and y of the contact, then of the tip, in page units.
+        """Return the arrow of a contact force: x and y of the contact, then x and y of the tip, in page
+        units.
 
-        It points into the part, or away from it where ``length`` is negative.
+        ``number`` is the contact's index, from 0. The arrow points into the part, or away from it where
+        ``length`` is negative.
         """
         contact, (nx, ny) = self.bench.contacts[number]
         x, y = self.view(contact)
@@ -320,7 +325,7 @@ class LivePicture:
 
     @property
     def opened(self) -> float:
-        """How far in mm the moving carrier is opened before a closing is shown."""
+        """The distance in mm by which the moving carrier is opened at the start of a closing."""
         extent = self.bench.extent
         far = max(OPEN_PITCHES * self.bench.shown.pitch, OPEN_SHARE * extent.width)
         for clamp in self.bench.shown.clamps:
@@ -330,8 +335,9 @@ class LivePicture:
         return max(far, 0.0)
 
     def describe_closing(self, keyframes: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
-        """Return a closing as plain data; without keyframes only the moving carrier
-        moves, and the part stays in its place.
+        """Return a closing as plain data.
+
+        Without ``keyframes`` the part stays in its place, and only the moving carrier moves.
         """
         plain = [[0.0, 0.0, 0.0, self.opened], [0.0, 0.0, 0.0, 0.0]]
         return {"center": list(self.center), "keyframes": list(keyframes) or plain, "words": words}
@@ -348,7 +354,7 @@ class LivePicture:
 
 
 def describe_support_set(found: Supports) -> str:
-    """Return a sentence on the best set of three supports and the clamp on top, or why there is none."""
+    """Return a sentence on the best set of three supports with the clamp on top, or on why there is none."""
     if not found.triples:
         return explain_no_set(found, MILLIMETRE)
     chosen, number = ChosenSupports.from_supports(found), MILLIMETRE.format_number

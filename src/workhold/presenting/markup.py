@@ -50,7 +50,7 @@ class Markup(str):
 
 
 def escape_html(words: str) -> Markup:
-    """Return a text escaped as HTML; a :class:`Markup` is returned unchanged.
+    """Return a text escaped as HTML; a :class:`Markup`, which is HTML already, is returned unchanged.
 
     >>> escape_html("<b> & co"), escape_html(Markup("<b>"))
     ('&lt;b&gt; &amp; co', '<b>')
@@ -66,7 +66,8 @@ def make_paragraph(*pieces: str) -> Markup:
 def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
     """Return an HTML table; a column whose heading begins with ``>`` is aligned right, all others left.
 
-    The alignment is given twice, because some sanitizers remove styles and some pages override attributes.
+    The sign is not shown. The alignment is given twice, because some sanitizers remove styles and some pages
+    override attributes.
     """
     ways = ["right" if heading.startswith(">") else "left" for heading in headings]
 
@@ -84,11 +85,11 @@ def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup
 
 
 def make_image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
-    """Return a picture as an HTML image ``width`` pixels wide; ``words`` are its alternative text.
+    """Return a picture as an HTML image, ``width`` pixels wide; ``words`` are its alternative text.
 
-    A picture of more than :data:`MOST_SVG` bytes (:data:`MOST_PAGE` if at least :data:`LARGE` wide) becomes a
-    PNG. ``shrinks`` says whether it may get narrower than ``width`` on a narrow page; in a table it should
-    not.
+    An SVG of more than :data:`MOST_SVG` bytes is converted to PNG; for images at least :data:`LARGE` wide the
+    limit is :data:`MOST_PAGE`. ``shrinks`` says whether a narrow page may show it narrower than ``width``; in
+    a table it should not.
     """
     drawn, kind = compact_svg(svg).encode("utf-8"), "svg+xml"
     if len(drawn) > (MOST_PAGE if width >= LARGE else MOST_SVG):
@@ -101,8 +102,10 @@ def make_image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup
 
 
 def compact_svg(svg: str) -> str:
-    """Return SVG text with fewer bytes: no space between elements, few decimals,
-    attributes that all children share moved up.
+    """Return SVG text with fewer bytes, with the same look.
+
+    Spaces between elements and most decimals are dropped, and attributes that all children share are moved to
+    their group.
     """
     ET.register_namespace("", SVG_NAMESPACE)
     root = ET.parse(StringIO(svg)).getroot()
@@ -125,7 +128,9 @@ def round_match(match: re.Match[str]) -> str:
 
 
 def hoist_attributes(group: ET.Element) -> None:
-    """Move inheritable attributes that all children of a group have in common to the group, in place."""
+    """Move inheritable attributes that all children of a group share from the children to the group, in
+    place.
+    """
     if len(group) < 2:
         return
     for name in INHERITED:

@@ -29,8 +29,9 @@ __all__ = ["draw_ground", "draw_peg", "measure_draw_back", "add_moving_group", "
 
 
 def add_moving_group(scene: Scene, view: View, clamping: Point | None, **attributes: str) -> Scene:
-    """Add a group of the class ``moves`` for what clamps along ``clamping`` (a
-    plan vector), or ``stands`` if None.
+    """Add a group of the class ``moves`` for a carrier that clamps along ``clamping``, a vector of the plan.
+
+    If ``clamping`` is None, the group has the class ``stands``.
     """
     if clamping is None:
         return scene.group("stands", None, **attributes)
@@ -39,16 +40,18 @@ def add_moving_group(scene: Scene, view: View, clamping: Point | None, **attribu
 
 
 def find_clamping_directions(bench: BenchDrawing) -> dict[str, Point | None]:
-    """Return the direction in which each carrier clamps, by its name; None for those that stand still."""
+    """Return by carrier name the direction in which each carrier clamps, a vector of the plan; None for fixed
+    carriers.
+    """
     ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
     return ways | {one.carrier.name: one.clamping for one in bench.shown.clamps}
 
 
 def measure_draw_back(clamp: ShownClamp) -> float | None:
-    """Return how far in mm a clamp can be drawn back from where it clamps; None
-    where its hole or stroke is unknown.
+    """Return the distance in mm by which a clamp can be drawn back from where it clamps.
 
-    It is negative for a clamp that cannot reach its tip from its hole.
+    It is negative for a clamp that cannot reach its tip from its hole, and None where its hole or stroke is
+    unknown.
     """
     travel = clamp.carrier.travel
     if clamp.hole is None or travel is None or travel.most is None:
@@ -58,7 +61,9 @@ def measure_draw_back(clamp: ShownClamp) -> float | None:
 
 
 def draw_ground(scene: Scene, bench: BenchDrawing, view: View) -> None:
-    """Draw plates, walls, clamps and the part, whose group has the class ``part``."""
+    """Draw everything below the pegs: plates, walls, clamps, and the part in a group of
+    the class ``part``.
+    """
     for carrier in bench.shown.carriers:
         group = add_moving_group(scene, view, carrier.clamping)
         draw_plate(group, carrier, view, 5.0)
@@ -82,7 +87,7 @@ def draw_ground(scene: Scene, bench: BenchDrawing, view: View) -> None:
 
 
 def draw_peg(scene: Scene, bench: BenchDrawing, view: View, number: int) -> None:
-    """Draw the one peg with index ``number``."""
+    """Draw the peg with index ``number``, from 0."""
     draw_pegs(
         scene, evolve(bench, fixture=evolve(bench.fixture, pegs=(bench.fixture.pegs[number],))), view, 1.0
     )

@@ -94,7 +94,7 @@ def render_result_html(result: Result) -> str:
 
 
 def render_no_fixtures_html(result: Result) -> str:
-    """Return a result without fixtures as HTML: its notes, and how to ask why."""
+    """Return a result without fixtures as HTML: its notes, and how to ask why there are none."""
     toolkit, found = result.toolkit, sum(result.found.values())
     inside = toolkit.wording.inside.partition(" ")[0]
     title = Markup(
@@ -297,12 +297,12 @@ def render_seating_html(seating: Seating) -> str:
 
 @frozen(repr=False)
 class NoFixtureNote:
-    """Why there is no fixture that a query asks for.
+    """The reason why no fixture answers a query.
 
     Parameters
     ----------
-    query : what was asked in vain.
-    explanation : what each rule took away, the nearest miss, and what would help.
+    query : the query.
+    explanation : how much each rule removed, the nearest miss, and what would help.
     """
 
     query: Query
@@ -310,7 +310,9 @@ class NoFixtureNote:
 
     @property
     def words(self) -> str:
-        """The sentence that names the rule that removed the last contacts, or says that there were none."""
+        """The sentence that names the rule that removed the last contacts, or says that there were none at
+        all.
+        """
         last = self.explanation.last_rule
         if not self.explanation.contacts or last is None:
             return str(self.explanation.no_contacts or "")
@@ -363,11 +365,11 @@ def explain_no_fixtures(result: Result) -> NoFixtureNote:
 
 @frozen(repr=False)
 class StillPicture:
-    """A fixture of a result that stands in for its widget.
+    """A fixture of a result, shown as HTML where its widget cannot be shown.
 
     Parameters
     ----------
-    result, rank : of the fixture, from 1.
+    result, rank : the result, and the fixture's rank in it, from 1.
     """
 
     result: Result
@@ -377,7 +379,7 @@ class StillPicture:
         return f"<StillPicture: fixture {self.rank} of {len(self.result)} of {self.result.workpiece.name}>"
 
     def _repr_html_(self) -> str:
-        """Return the fixture as HTML with a hint on the library for the widget."""
+        """Return the fixture as HTML, with a hint on which library the widget needs."""
         words = f"This picture moves with another library: pip install '{REQUIREMENTS['anywidget']}'."
         return f"{render_fixture_html(self.result[self.rank - 1])}\n{make_paragraph(words)}"
 
@@ -391,8 +393,9 @@ def make_result_widget(
     jaw: str | float,
     supports: Mapping[str, Any] | None,
 ) -> FixtureWidget | StillPicture:
-    """Return the widget of a result, see :meth:`workhold.Result.widget`; a
-    :class:`StillPicture` without ``anywidget``.
+    """Return the widget of a result, or where ``anywidget`` is not installed a :class:`StillPicture`.
+
+    See :meth:`workhold.Result.widget`.
     """
     if find_spec("anywidget") is None:
         if not 1 <= rank <= len(result):

@@ -60,12 +60,12 @@ class Picture(str):
         return make_image(self, "A picture of workhold", LARGE)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> Picture:
-        """Write the picture and return it.
+        """Write the picture to a file and return the picture.
 
         Parameters
         ----------
         path : of a file whose name ends in .svg or .png.
-        overwrite : whether a file that workhold has not written may be replaced.
+        overwrite : whether to replace an existing file that workhold has not written.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class Picture(str):
 
 
 def save_picture(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
-    """Return SVG text as a picture, written to ``path`` unless that is None."""
+    """Return SVG text as a picture; unless ``path`` is None, also write it there."""
     picture = Picture(svg)
     return picture if path is None else picture.save(path, overwrite=overwrite)
 
@@ -91,8 +91,9 @@ def draw_and_save_workpiece(
     unit: str = "mm",
     overwrite: bool = False,
 ) -> Picture:
-    """Return a picture of the workpiece with numbered faces, see
-    :meth:`workhold.Workpiece.draw`; write it if asked.
+    """Return a picture of the workpiece with numbered faces; unless ``path`` is None, also write it there.
+
+    See :meth:`workhold.Workpiece.draw`.
     """
     return save_picture(
         draw_features(workpiece, peg_radius=peg_radius, unit=find_unit(unit)), path, overwrite
@@ -107,8 +108,9 @@ def draw_and_save_fixture(
     unit: str = "mm",
     overwrite: bool = False,
 ) -> Picture:
-    """Return a picture of the fixture to set up from, see :meth:`workhold.Fixture.draw`; write it if
-    asked.
+    """Return a picture of the fixture to set up from; unless ``path`` is None, also write it there.
+
+    See :meth:`workhold.Fixture.draw`.
     """
     listed = fixture.listing
     words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
@@ -122,8 +124,9 @@ def draw_and_save_fixture(
 def draw_and_save_result(
     result: Result, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False
 ) -> Picture:
-    """Return a picture with thumbnails of the best fixtures, see
-    :meth:`workhold.Result.draw`; write it if asked.
+    """Return a picture with thumbnails of the best fixtures; unless ``path`` is None, also write it there.
+
+    See :meth:`workhold.Result.draw`.
     """
     if not len(result):
         raise InputError(" ".join(("there is no fixture to draw.", *map(str, result.reasons))))
@@ -151,8 +154,9 @@ def save_sheet(
     overwrite: bool = False,
     **asked: Any,
 ) -> None:
-    """Write the setup sheet, or the set-up for a CAM system, of a fixture, see
-    :meth:`workhold.Fixture.save_sheet`.
+    """Write the setup sheet of a fixture, or its set-up for a CAM system, as the ending of ``path`` says.
+
+    See :meth:`workhold.Fixture.save_sheet`.
     """
     from workhold.statics.loads import read_jaw_stiffness
 
@@ -200,8 +204,8 @@ def refuse_other_result(result_file: str | Path, fixture: Fixture) -> None:
 
 
 def is_set_up_alike(one: Fixture, other: Fixture) -> bool:
-    """Return whether two fixtures have the same type, holes and faces, and the
-    same pose and travel to ``AGREEMENT``.
+    """Return whether two fixtures have the same type, holes and faces, and pose and travel equal to
+    ``AGREEMENT``.
     """
     pegs = [[(peg.hole, peg.touched) for peg in fixture.pegs] for fixture in (one, other)]
     numbers = [
@@ -222,14 +226,16 @@ def write_paper(
     Parameters
     ----------
     path : of a file whose name ends in .pdf, .svg or .png.
-    result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no
+    rank : of the fixture in the result, from 1.
+    result_file : the file that the result is in, whose hash is written on the sheet; None for a result of no
         file.
-    settings : as of :func:`workhold.drawing.sheet_facts.collect_sheet_details`, and the ``shape`` of the part.
+    settings : arguments of :func:`workhold.drawing.sheet_facts.collect_sheet_details`, and the ``shape`` of
+        the part.
 
     Raises
     ------
     InputError
-        For another ending, values that cannot be, and when the file cannot be read or written.
+        For another ending, impossible values, and when a file cannot be read or written.
     """
     from workhold.drawing.sheet import draw_setup_sheet
 
@@ -249,8 +255,8 @@ def write_paper(
 
 
 def make_pages_file(pages: Sequence[str], ending: str, day: date) -> bytes:
-    """Return the bytes of a file of SVG pages: a PDF dated ``day``, or one SVG or
-    PNG with the pages below each other.
+    """Return the bytes of a file of SVG pages: a PDF dated ``day``, or one SVG or PNG with the pages one
+    below the other.
 
     Parameters
     ----------
@@ -269,7 +275,7 @@ def make_pages_file(pages: Sequence[str], ending: str, day: date) -> bytes:
 
 
 def compute_file_hash(result_file: str | Path | None) -> str:
-    """Return the SHA-256 of a file in hexadecimal; "" for None."""
+    """Return the SHA-256 of a file in hexadecimal; "" if ``result_file`` is None."""
     if result_file is None:
         return ""
     try:
@@ -285,13 +291,14 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
     Parameters
     ----------
     path : of a file whose name ends in .dxf, .step, .stp or .csv.
-    settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`, and the ``unit``. Of a STEP file also
-        ``supports``, a set that was chosen, and the ``shape`` of the part.
+    rank : of the fixture in the result, from 1.
+    settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`, and the ``unit``. For a STEP file
+        also ``supports``, a chosen set of them, and the ``shape`` of the part.
 
     Raises
     ------
     InputError
-        For a part zero that cannot be, and when the file cannot be written.
+        For an impossible part zero, and when the file cannot be written.
     """
     ending = Path(path).suffix.lower()
     write_bytes(path, make_model_file(result[rank - 1], result, ending, settings))

@@ -1,7 +1,9 @@
-"""The fixtures of a result to step through, push and close in a notebook; needs the extra ``widget``.
+"""A widget for a notebook that shows the fixtures of a result one by one, to push and close; needs the extra
+``widget``.
 
-The browser draws and takes hold; every force is computed here. What is shown last is stored with the
-notebook, and shows without Python. Where widgets are not known, the fixture's HTML stands instead.
+The browser draws and reacts to the mouse; every force is computed here. The last state shown is stored with
+the notebook, and is visible without Python. Where widgets are not supported, the fixture's HTML is shown
+instead.
 """
 
 from __future__ import annotations
@@ -94,8 +96,8 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return min(max(int(proposal["value"]), 1), len(self.result))
 
     def show(self, _: Any = None) -> None:
-        """Set ``picture`` and ``closing`` for the fixture of the current rank, and
-        answer the force that is tried out.
+        """Set ``picture`` and ``closing`` for the fixture of the current rank, and answer the current force
+        again.
         """
         self.live = LivePicture.from_result(self.result, self.rank - 1, self.usual, self.supports)
         with self.hold_sync():
@@ -109,7 +111,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
             self.push()
 
     def take(self, change: Any) -> None:
-        """Set ``force`` from the arrow that was dragged in the browser, and answer it."""
+        """Set ``force`` from an arrow that was dragged in the browser, and answer that force."""
         *arrow, number = change["new"]
         try:
             pushed = self.live.read_push(arrow)
@@ -121,7 +123,10 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         self.push(number=number)
 
     def push(self, _: Any = None, number: int = 0) -> None:
-        """Set ``answer`` to what the current force does; ``number`` is that of the browser's question."""
+        """Set ``answer`` to the effect of the current force.
+
+        ``number`` is that of the browser's question, returned with the answer.
+        """
         try:
             pushed = TriedForce.from_numbers(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
             found = self.live.answer(pushed, self.jaw_force or None, self.jaw)
@@ -131,7 +136,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
 
     @property
     def nothing(self) -> dict[str, Any]:
-        """An answer without arrows."""
+        """An answer that has no arrows."""
         return self.live.answer(TriedForce(0.0, 0.0, 0.0, 0.0), None, self.jaw)
 
     def close_jaws(self, _: Any = None) -> None:

@@ -82,9 +82,9 @@ def draw_zoomed(
 ) -> str:
     """Return a fixture drawn for a frame of ``size`` (width, height) in page units.
 
-    ``placed`` is the shift in mm from where the fixture is listed to where it is drawn. The picture's
-    ``data-model-to-page`` is the map from mm at the listed place, ``data-extent`` is in mm of that frame, and
-    ``data-rim`` in page units.
+    ``placed`` is the shift in mm from where the fixture is listed to where it is drawn. The picture has three
+    attributes: ``data-model-to-page``, the map to the page from mm in the frame in which the fixture is
+    listed; ``data-extent``, a box in mm of that frame; ``data-rim``, in page units.
 
     Returns
     -------
@@ -121,10 +121,9 @@ def draw_zoomed(
 
 
 def hide_unreached_clamps(seen: ShownSetUp) -> ShownSetUp:
-    """Return what shows, with only the line, and no length to set, of clamps that
-    cannot reach their tip from their hole.
+    """Return the visible parts with only the line of each clamp that cannot reach its tip from its hole.
 
-    Four contacts that are no fixture have such clamps.
+    Such a clamp has no length to set. It occurs where four contacts are shown that are no fixture.
     """
     lost = {clamp.tip for clamp in seen.clamps if not is_reached(clamp)}
     clamps = tuple(evolve(clamp, hole=None) if clamp.tip in lost else clamp for clamp in seen.clamps)
@@ -134,8 +133,8 @@ def hide_unreached_clamps(seen: ShownSetUp) -> ShownSetUp:
 
 
 def is_reached(clamp: ShownClamp) -> bool:
-    """Return whether a clamp's tip is within its stroke from its hole; True
-    where its hole or stroke is unknown.
+    """Return whether a clamp can reach its tip from its hole within its stroke; True where hole or stroke is
+    unknown.
     """
     back, travel = measure_draw_back(clamp), clamp.carrier.travel
     if back is None or travel is None or travel.most is None:
@@ -144,7 +143,7 @@ def is_reached(clamp: ShownClamp) -> bool:
 
 
 def draw_forces(scene: Scene, bench: BenchDrawing, view: View) -> None:
-    """Draw the force of each contact as an arrow that keeps its size."""
+    """Draw the force of each contact as an arrow whose size does not change by zooming."""
     forces = scene.group("forces")
     # Under straps nothing is known of the locators' forces.
     for index in range(len(bench.fixture.pegs) if bench.fixture.hold is None else 0):
@@ -155,11 +154,10 @@ def draw_forces(scene: Scene, bench: BenchDrawing, view: View) -> None:
 
 
 def name_holes(scene: Scene, bench: BenchDrawing, view: View) -> list[Box]:
-    """Write the names of columns and rows beside their plates; return the
-    boxes of the names visible without zoom.
+    """Write the names of columns and rows beside their plates; return the boxes of the names visible without
+    zoom.
 
-    For names without pegs ``data-step`` is the interval at which one has room, as long as the picture is not
-    zoomed.
+    Names without pegs have the attribute ``data-step``: without zoom only every so many of them have room.
     """
     boxes = []
     for shown in bench.shown.carriers:
@@ -202,9 +200,9 @@ def name_holes(scene: Scene, bench: BenchDrawing, view: View) -> list[Box]:
 def draw_travel(
     scene: Scene, bench: BenchDrawing, view: View, page: Box, place: int, measured: ShownLength
 ) -> Box:
-    """Draw a length to set as a dimension above the drawing, or at its right; return the box of its words.
+    """Draw a length to set as a dimension above the drawing or at its right; return the box of its words.
 
-    ``place`` is the index of the length among those that are shown.
+    ``place`` is the length's index, from 0, among the lengths shown.
     """
     upright, frame, others = measured.is_upright, view.map_box(bench.extent), bench.shown.measured
     nearer = sum(one.is_upright == upright for one in others[:place])
@@ -251,8 +249,8 @@ def draw_labels(
 ) -> None:
     """Write the hole names of pegs and the numbers of touched faces where they hide least.
 
-    ``taken`` are boxes to keep off; ``ways`` maps a carrier's name to its direction of clamping, None if it
-    stands still.
+    ``taken`` are page boxes to keep off. ``ways`` holds by carrier name the direction in which the carrier
+    clamps, None for a carrier that stands still.
     """
     placer = LabelPlacer(page.grow(-1.0))
     avoid_drawing(placer, bench, view)
@@ -314,8 +312,9 @@ def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
 
 
 def make_polyline_path(segments: Sequence[Segment], view: View) -> str:
-    """Return SVG path data of segments as a polyline; points less than ``CLOSEST``
-    page units from the last are left out.
+    """Return SVG path data of segments as a polyline.
+
+    Points less than ``CLOSEST`` page units from the last point are left out.
     """
     points: list[Point] = []
     for segment in segments:

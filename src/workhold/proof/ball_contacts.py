@@ -1,10 +1,12 @@
-"""Four contacts on a box of unknowns in ball arithmetic: equations, Jacobian, wrenches, and the rules.
+"""Four contacts on a box of unknowns in ball arithmetic: equations, Jacobian, wrenches, and the rules. A
+*ball* is a midpoint with a radius and encloses an exact number; a box is a product of four balls.
 
 A box is made smaller before it is cut: by the gap rule, and by contacts with parallel lines. The gap rule
-bounds the separation alone. Two contacts with parallel lines make an equation of psi and the separation,
-because the part's place is not in their difference. It is needed where both lines are one and two pegs are in
-one row. Every separation meets all equations there, so the box is as long as the jaws open. No turned box of
-the interval Newton method shows that psi is one angle there.
+(the smallest distance between the carriers' pegs) bounds the separation alone. Two contacts with parallel
+lines make an equation of psi and the separation, because the part's place is not in their difference. It is
+needed where both contacts are with one line and two pegs are in one row. Every separation meets all equations
+there, so the box is as long as the jaws open. No turned box of the interval Newton method shows that psi is
+one angle there.
 
 Reference: F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
 """
@@ -76,17 +78,16 @@ class CandidateBox:
 
 
 def measure_from_origin(row: Sequence[float], point: tuple[Any, Any]) -> tuple[Any, Any]:
-    """Return a point minus a feature's origin, which is the middle of a line or the centre of an arc,
-    in mm.
-    """
+    """Return the vector in mm from a feature's origin (the middle of a line, the centre of an arc) to a
+    point."""
     return point[0] - row[X] - row[REST_X], point[1] - row[Y] - row[REST_Y]
 
 
 def compute_contact_value(row: Sequence[float], ray: tuple[Any, Any]) -> Any:
-    """Return the contact equation in mm: distance from a line, or
-    (distance² - R²) / 2R with the distance from an arc's centre.
+    """Return a contact equation's value in mm, 0 at contact: the distance from a line, or (distance² - R²) /
+    2R for an arc, with the distance from its centre.
 
-    ``ray`` is the peg's centre as :func:`from_origin` returns it.
+    ``ray`` is the peg's centre as :func:`measure_from_origin` returns it.
     """
     x, y = ray
     if row[IS_ARC] == 0.0:
@@ -141,7 +142,10 @@ def list_turned_pegs(box: CandidateBox, unknowns: Sequence[Any]) -> Iterator[tup
 
 
 def compute_contact_values(box: CandidateBox, unknowns: Sequence[Any]) -> list[Any]:
-    """Return the four contact equations in mm at balls of the unknowns, or at power series of them."""
+    """Return the four contact equations' values in mm at unknowns (psi, tail x, tail y, separation).
+
+    The unknowns are balls, or power series with balls as coefficients; so are the values.
+    """
     _, x, y, _ = unknowns
     _, *arms = list_turned_pegs(box, unknowns)
     return [
@@ -178,9 +182,10 @@ def place_contacts(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
 def compute_slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
     """Return the numbers that must all be positive for a fixture, as balls.
 
-    They belong to ends, gap, span, closure and clamping, for that sign of the forces for which they are
-    larger. For one of two clamps (``limits.pairing``) they are those of ends and gap, the determinant of the
-    standing pegs' wrenches, and the clamp's push. ``minors`` are those of :func:`wrench_minors`.
+    Two cases: (a) in general they belong to ends, gap, span, closure and clamping, for the sign of the forces
+    that makes them larger; (b) for one of two clamps (``limits.pairing``) they belong to ends and gap, the
+    determinant of the standing pegs' wrenches, and the clamp's push. ``minors`` are those of
+    :func:`compute_wrench_minors`.
     """
     out = [
         slack
@@ -214,10 +219,11 @@ def compute_slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], 
 
 
 def compute_end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> list[arb]:
-    """Return how far in mm a contact is from breaking the rule of ends
-    at the high and the low end of its feature, as balls.
+    """Return how far a contact is inside the high and the low end of its feature, beyond ``margin``, as balls
+    in mm.
 
-    Return an empty list for a whole circle. ``ray`` is the peg's centre as :func:`from_origin` returns it.
+    Negative where it breaks the rule of ends. Return an empty list for a whole circle. ``ray`` is the peg's
+    centre as :func:`measure_from_origin` returns it.
     """
     dx, dy = ray
     along = dx * row[AXIS_X] + dy * row[AXIS_Y]
@@ -260,8 +266,8 @@ def compute_wrench_minors(here: BoxContacts, length: float) -> list[arb]:
 
 
 def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
-    """Return whether a box certainly has no fixture: some contact
-    equation has no zero in it, or some rule is broken.
+    """Return whether a box certainly has no fixture: a contact equation has no zero in the box, or a rule is
+    broken.
 
     ``here`` are the contacts on the box.
     """
@@ -275,8 +281,8 @@ def is_empty(box: CandidateBox, here: BoxContacts, limits: Limits) -> bool:
 
 
 def narrow_box(box: CandidateBox, limits: Limits) -> CandidateBox | None:
-    """Return the part of a box that meets the gap rule and all pairs
-    of contacts with parallel lines; None for no part.
+    """Return the part of a box that may meet the gap rule and all pairs of contacts with parallel lines; None
+    for no part.
 
     The box itself is returned where neither psi nor the separation becomes narrower.
     """
@@ -326,8 +332,8 @@ def find_parallel_lines(box: CandidateBox) -> Iterator[tuple[int, int]]:
 
 
 def find_common_orientation(box: CandidateBox, one: int, other: int, psi: arb, separation: arb) -> arb | None:
-    """Return the part of psi at which contacts ``one`` and ``other``
-    with parallel lines may both touch; None for no part.
+    """Return the part of the ball ``psi`` in which contacts ``one`` and ``other``, with parallel lines, may
+    both touch; None for no part.
 
     Their difference is n R(psi) a - c. The arm a leads from one peg to the other, and c is the distance of
     their lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u - c /

@@ -78,9 +78,8 @@ class DecidingProgress:
 
     @property
     def is_stopped(self) -> bool:
-        """Whether somebody has asked to stop; the first such reading sets
-        the deadline ``GRACE`` seconds ahead.
-        """
+        """Whether somebody has asked to stop; when it is first found to be so, the deadline is set to
+        ``GRACE`` seconds later."""
         stopped = self.deadline < inf or (self.cancel is not None and self.cancel.is_set())
         if stopped:
             self.deadline = min(self.deadline, perf_counter() + GRACE)
@@ -88,7 +87,7 @@ class DecidingProgress:
 
     @property
     def is_late(self) -> bool:
-        """Whether somebody asked to stop and the deadline has passed."""
+        """Whether somebody asked to stop and the deadline ``GRACE`` seconds after that has passed."""
         return self.is_stopped and perf_counter() >= self.deadline
 
     def give_up(self) -> None:
@@ -117,10 +116,10 @@ class SearchReport:
 
     Parameters
     ----------
-    records : number of records, without those left.
-    verified : of proven fixtures.
-    escalated : of records that the first certificate left open, and those given up.
-    given_up : of pairs of chords that the engine did not follow to their crossings.
+    records : number of records decided or undecided, without those left.
+    verified : number of proven fixtures.
+    escalated : number of records that the first certificate left open, including those given up.
+    given_up : number of pairs of chords whose crossings the engine did not find.
     undecided : candidates that stayed undecided.
     left : number of records not decided when the work was stopped.
     """
@@ -144,9 +143,8 @@ class SearchReport:
 
 
 def is_standing(standing: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return which of the four pegs are on the carrier that stands
-    still, (N, 4), from the numbers (N,) of those pegs.
-    """
+    """Return a mask (N, 4) of the pegs on the carrier that stands still: of each four pegs, the first
+    ``standing`` (N,)."""
     return np.arange(4) < standing[:, None]
 
 
@@ -170,10 +168,10 @@ def compute_peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]
 
 
 def bound_box(records: Array, length: float) -> Array:
-    """Return bounds (N, 4) in mm of the distances of the exact (L
-    psi, tail x, tail y, separation) from those of records.
+    """Return bounds (N, 4) in mm of how far the exact unknowns of each record may be from those in the
+    record.
 
-    ``length`` is L in mm, by which moments are divided.
+    The unknowns are (L psi, tail x, tail y, separation); ``length`` is L in mm, by which moments are divided.
     """
     turn, radius = (
         length * records[:, record.REACH] + LEAST_REACH,
@@ -240,10 +238,11 @@ def sift_records(records: Array, problem: Problem, setting: Setting) -> tuple[Ar
 
 
 def list_clearances(problem: Problem, setting: Setting) -> list[tuple[Array, Setting]]:
-    """Return pairs of an outline (S, 10) and a setting whose peg
-    radius is -inf for pegs that do not meet this outline.
+    """Return pairs (outline, setting) to test the pegs' clearance with, one for each outline (S, 10) that
+    carriers meet.
 
-    One pair where both carriers meet the same outline, else two.
+    Two cases: (a) both carriers meet the same outline: one pair with the given setting; (b) else two pairs,
+    in which the peg radius of the carrier that does not meet the outline is -inf.
     """
     one, other = problem.outlines
     if one is other:
@@ -304,8 +303,8 @@ def decide_by_interval_newton(records: Array, problem: Problem, setting: Setting
 
 
 def merge_overlapping_records(records: Array, problem: Problem) -> Array:
-    """Return records with those of the same pegs on the same features
-    whose boxes overlap merged into one box around all.
+    """Return the records after merging those with overlapping boxes, of the same pegs on the same features,
+    into one box around all of them.
 
     Records are sorted where there are two or more.
     """

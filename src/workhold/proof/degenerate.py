@@ -85,9 +85,11 @@ class TouchedFeatures(NamedTuple):
 
 
 def hold_nothing(records: Array, problem: Problem) -> Bools:
-    """Return, for each record (N, 19), whether its contacts hold nothing, whatever solution is in its box.
+    """Return, for each record (N, 19), whether its contacts cannot hold the part, whatever solution is in its
+    box.
 
-    See ``kernels.contact.record`` for the layout of records.
+    The families of such contacts are listed at the head of this file. See ``kernels.contact.record`` for the
+    layout of records.
     """
     rows = problem.rows[records[:, record.FEATURES : record.COLUMNS].astype(np.int64)]
     pegs = list_touched_features(records, rows, problem.frame.lattice)
@@ -138,10 +140,10 @@ def cross(a: Points, b: Points) -> Array:
 
 
 def are_equal_lengths(one: Array, other: Array, bends: Array) -> Bools:
-    """Return, for each pair of lengths, whether they agree to within
-    the tolerance that belongs to the length ``bends``.
+    """Return, for each pair of lengths, whether they agree to within ``DEPENDENT``² / 2 times the length
+    ``bends``.
 
-    All are in mm; the tolerance is ``DEPENDENT``² / 2 times ``bends``.
+    All are arrays (N,) in mm; ``bends`` is the length r over which a normal turns, see the head of this file.
     """
     return np.asarray(np.abs(one - other) <= DEPENDENT**2 / 2.0 * bends)
 
@@ -186,8 +188,8 @@ def yield_both_roots(known: Array) -> Iterator[Array]:
 def are_turning(
     records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
 ) -> Bools:
-    """Return, for each record, whether it is of the family "turning":
-    a and b about one centre, c at one place only.
+    """Return, for each record, whether it is of the family "turning": pegs a and b are on arcs about one
+    centre, and c can touch at one place only.
 
     ``length`` is L in mm, by which moments are divided. Every solution in the record's box must be of the
     family.
@@ -221,8 +223,8 @@ def are_turning(
 
 
 def are_sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures) -> Bools:
-    """Return, for each record, whether it is of the family "sliding": a and
-    b on parallel lines, c passing an arc tangentially.
+    """Return, for each record, whether it is of the family "sliding": pegs a and b are on parallel lines, and
+    c passes an arc tangentially.
 
     Every solution in the record's box must be of the family.
     """
@@ -244,8 +246,8 @@ def are_sliding(records: Array, a: TouchedFeatures, b: TouchedFeatures, c: Touch
 def are_lined_up(
     records: Array, a: TouchedFeatures, b: TouchedFeatures, c: TouchedFeatures, length: float
 ) -> Bools:
-    """Return, for each record, whether it is of the family "lined up":
-    a and b on equal arcs on the line through their centres.
+    """Return, for each record, whether it is of the family "lined up": pegs a and b touch equal arcs on the
+    line through the arcs' centres.
 
     The third peg must touch its feature c there, which then is a double root and the only root in the box.
     ``length`` is L in mm, by which moments are divided.

@@ -1,13 +1,15 @@
 """Rows of contact features and reactions of locators in ball arithmetic, where doubles are not enough.
 
+A *ball* is a number of python-flint given as a midpoint and a radius: it encloses the exact number.
+
 Rows are made from the drawing's vertices and bulges. A row in doubles is off by the last digit of a radius or
-a direction. Where a peg nearly grazes an arc at a share p of its normal, that error over p turns the normal.
-Over p squared it changes forces per unit of the clamp's own.
+a direction. Where a peg nearly grazes an arc, only a share p of its normal pushes: the error, divided by p,
+turns the normal, and divided by p squared it changes forces per unit of the clamp's own force.
 
 Whether two clamps close is often a matter of an exact zero, as where a clamp's line of force passes through
-the point in which those of two locators meet. Rounding a drawing's numbers once more leaves such a zero far
-below what decides. And a clamp that nearly grazes an arc has its place, and so the share of its force that
-pushes, off by rounding over that share.
+the point in which the lines of two locators meet. Rounding a drawing's numbers once more leaves such a zero
+far below what decides. The place of a clamp that nearly grazes an arc, and so the share of its force that
+pushes, is off by rounding over that share.
 """
 
 from __future__ import annotations
@@ -45,10 +47,11 @@ SAME_ROW = 1e-9
 
 
 def make_exact_rows(features: Sequence[int], radii: Sequence[float], problem: Problem) -> list[list[Any]]:
-    """Return rows (P, 12) of features for pegs of these radii in mm,
-    with balls at the precision in force for numbers.
+    """Return rows (P, 12) of features for pegs of these radii in mm, with numbers as balls at the precision
+    in force.
 
-    ``features`` are P indices into ``problem.rows``. See ``kernels.base.feature`` for the layout of rows.
+    ``features`` are P indices into ``problem.rows``, ``radii`` the P radii of the pegs. A ball is a midpoint
+    with a radius. See ``kernels.base.feature`` for the layout of rows.
     """
     workpiece, out = problem.workpiece, []
     for feature, radius in zip(features, radii, strict=True):
@@ -78,9 +81,8 @@ def find_drawn_segment(workpiece: Workpiece, number: int) -> Side:
 
 
 def find_drawn_circle(side: Side) -> tuple[arb, arb, arb]:
-    """Return the centre x, y and the radius in mm of the arc between two vertices, from its bulge, as
-    balls.
-    """
+    """Return (centre x, centre y, radius) in mm, as balls, of the arc between two vertices, from its
+    bulge."""
     start, end = side
     bulge = arb(start[2])
     dx, dy = arb(end[0]) - start[0], arb(end[1]) - start[1]
@@ -92,11 +94,12 @@ def find_drawn_circle(side: Side) -> tuple[arb, arb, arb]:
 def make_exact_row(
     row: list[Any], first: Side, last: Side, radius: float, center: tuple[float, float]
 ) -> list[Any]:
-    """Return the row of a peg's feature on a face of one or several segments, as balls.
+    """Return the row of a peg's feature on a face of one or several segments, with balls for numbers.
 
-    The face is the line from the first segment's start to the last one's end, or the first one's circle;
-    ``first`` and ``last`` are their vertices, ``radius`` is the peg's in mm. Return ``row`` itself where it
-    is off the drawn face by more than ``SAME_ROW``, or of another kind.
+    The face is the line from the first segment's start to the last segment's end, or the first segment's
+    circle; ``first`` and ``last`` are the vertices at the ends of these segments, ``radius`` is the peg's in
+    mm. Return ``row``, the row in doubles, itself where it is off the drawn face by more than ``SAME_ROW``,
+    or of another kind.
     """
     (start, _), (_, end) = first, last
     is_arc = row[IS_ARC] != 0.0
@@ -131,13 +134,13 @@ LAST_DIGIT = 1.001 * ROUNDING
 
 @frozen
 class SharpReactions:
-    """Forces at a clamped part, known to the last digits of a double.
+    """Forces at a clamped part, with errors of the size of the rounding of a double.
 
     Parameters
     ----------
     taken : forces of three locators per unit of the clamp's force on its face.
     doubt : how far these may be off.
-    push : the clamp's force on its face along its travel, per unit of that force.
+    push : component along the clamp's travel of its force on its face, per unit of that force.
     """
 
     taken: tuple[float, float, float]
@@ -146,10 +149,10 @@ class SharpReactions:
 
 
 def bound_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
-    """Return the reactions at the one solution of a box of three
-    locators and a clamp; None where that is not proven.
+    """Return the reactions at the one solution of a box of three locators and a clamp.
 
-    Precision rises until they are known to the last digit of a double, as nearly all are at the lowest.
+    Return None where it is not proven that the box has exactly one solution. Precision rises until the
+    reactions are known to the last digit of a double; the lowest precision is mostly enough.
     """
     sharp = None
     for bits in PRECISIONS:
@@ -161,8 +164,10 @@ def bound_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
 
 
 def find_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
-    """Return the reactions at the one solution of a box at the
-    precision in force; None where that is not proven.
+    """Return the reactions at the one solution of a box at the precision in force; see
+    :func:`bound_reactions`.
+
+    Return None where it is not proven that the box has exactly one solution.
     """
     frame = SingularFrame.from_box(box, limits)
     place: list[arb] | None = frame.make_start_box()
@@ -179,8 +184,9 @@ def find_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
 
 
 def compute_reactions(here: BoxContacts) -> list[arb]:
-    """Return the forces a of w_1 a_1 + w_2 a_2 + w_3 a_3 = -w, by
-    Cramer's rule; w is the clamp's wrench about peg 1.
+    """Return the three forces a, as balls, with w_1 a_1 + w_2 a_2 + w_3 a_3 = -w, by Cramer's rule.
+
+    w_1 to w_3 are the wrenches of the locators and w that of the clamp, all about peg 1.
     """
     wrenches = [(n[0], n[1], q[0] * n[1] - q[1] * n[0]) for q, n in zip(here.arms, here.normals, strict=True)]
     whole = arb_mat(wrenches[:LOCATORS]).det()
@@ -193,8 +199,10 @@ def compute_reactions(here: BoxContacts) -> list[arb]:
 
 
 def round_reactions(values: Sequence[arb], push: arb) -> SharpReactions:
-    """Return balls of three reactions and of the push as doubles,
-    with the error bound of the reactions; inf for NaN.
+    """Return the midpoints of balls of three reactions and of the push as doubles, with an error bound of the
+    reactions.
+
+    The error bound is inf where a ball is not finite.
     """
     a, b, c = (float(value.mid()) for value in values)
     doubt = max(float(value.rad()) + ROUNDING * abs(float(value.mid())) for value in values)

@@ -1,15 +1,15 @@
-"""Whether two pegs press a part that lies flush on a wall, in balls.
+"""Whether two pegs press a part that lies flush on a wall, decided in ball arithmetic (midpoint and radius).
 
-They are a locator and a clamp, or two pegs of one lattice. Everything is derived once more from the hull
+The pegs are a locator and a clamp, or two pegs of one lattice. Everything is derived once more from the hull
 edge's corners and arcs, the outline's vertices and bulges and the lattice. Their doubles are taken as exact
-numbers, and balls have as many digits as it takes. An arc's centre rounded once would not do: where a row
-grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
+numbers, and balls get as many digits as the decision takes. An arc's centre rounded once would not do: where
+a row grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
 
 Glossary
 --------
-contacts : the hull edge's length in mm, and the contact of both pegs. That is the centre, the outward normal
-    there, and how far in mm it is inside the rule of both ends of its feature. Places are along the hull edge
-    from its start, and above it.
+contacts : the hull edge's length in mm, and the contact of both pegs: the peg's centre, the outward normal
+    there, and how far in mm the contact is inside the rule of both ends of its feature. Places are along the
+    hull edge from its start, and above the hull edge.
 branch : -1 or 1, which of two places on an arc, or of two crossings, a contact is at.
 """
 
@@ -109,7 +109,7 @@ class SharpContacts:
 
     @classmethod
     def from_balls(cls, contacts: Contacts, problem: Problem) -> SharpContacts:
-        """Return the middles of the balls of contacts."""
+        """Return the contacts and forces with each ball replaced by its midpoint."""
         return cls(
             [list_middles(point) for point, _, _ in contacts[1:]],
             list_middles(compute_null_forces(contacts, problem)),
@@ -117,7 +117,7 @@ class SharpContacts:
 
 
 def list_middles(values: Sequence[arb]) -> list[float]:
-    """Return the middles of balls as doubles."""
+    """Return the midpoints of balls as doubles."""
     return [float(value.mid()) for value in values]
 
 
@@ -155,8 +155,8 @@ def is_pressing(
 def decide_pair(pair: LatticePair, problem: Problem) -> tuple[bool | None, SharpContacts | None]:
     """Return (verdict, contacts) of a lattice pair.
 
-    The verdict says whether it presses the part, None where that stays undecided; contacts are given where it
-    is True.
+    The verdict tells whether the pair presses the part, or is None where that stays undecided. The contacts
+    are None unless the verdict is True.
     """
     with BALLS:
         for bits in PRECISIONS:
@@ -183,10 +183,10 @@ def list_closing_rules(contacts: Contacts, clamping: arb, problem: Problem) -> l
 
 
 def decide_rules(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> bool | None:
-    """Return whether all rules and those of all ends are certainly
-    kept, or one certainly broken; None where neither.
+    """Return True where all rules certainly hold, False where one is certainly broken, None where neither is
+    certain.
 
-    ``rules`` are balls that must be positive.
+    ``rules`` are balls that must be positive; so must be those of the ends of features in ``contacts``.
     """
     ends = (end - arb(problem.contact_margin) for _, _, slacks in contacts[1:] for end in slacks)
     every = [*rules, *ends]
@@ -197,8 +197,7 @@ def decide_rules(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> 
 
 def compute_null_forces(contacts: Contacts, problem: Problem) -> list[arb]:
     """Return the forces of the wall's start and end and of both pegs, not scaled; see
-    ``search.wall_contacts.closure``.
-    """
+    ``search.wall_contacts.judge_closure``."""
     wall, ((u, v), a, _), ((p, q), b, _) = contacts
     length, across, ahead = arb(problem.wrench_length), abs(a[0]), abs(b[0])
     last = (ahead * (u * a[1] - v * a[0]) + across * (p * b[1] - q * b[0])) / length
@@ -207,7 +206,8 @@ def compute_null_forces(contacts: Contacts, problem: Problem) -> list[arb]:
 
 
 def compute_push_share(contacts: Contacts, push: tuple[float, float]) -> arb:
-    """Return the clamp's force on its face along ``push``, per unit of that force."""
+    """Return the component of the clamp's force on its face along the unit vector ``push``, per unit of that
+    force."""
     _, _, (_, normal, _) = contacts
     return -(normal[0] * push[0] + normal[1] * push[1])
 
@@ -224,8 +224,8 @@ def locate_contacts_exactly(
 def locate_contact_exactly(
     edge: int, row: int, feature: int, branch: float, problem: Problem, plate: Carrier
 ) -> tuple[list[float], list[float], float] | None:
-    """Return the contact of a peg in row ``row`` of a plate with a
-    feature, the part lying on a hull edge, to the last digit.
+    """Return the contact, to the last digit, of a peg in row ``row`` of a plate with a feature of a part that
+    lies on a hull edge.
 
     Return (centre, outward normal, the lesser distance in mm to an end with its slack), in the wall's frame;
     None where row and feature do not meet. The distance is inf on a whole circle.
@@ -245,14 +245,14 @@ def locate_contact_exactly(
 def compute_fence_reactions(
     candidate: WallCandidate, problem: Problem, plate: Carrier, push: tuple[float, float]
 ) -> SharpReactions | None:
-    """Return the forces of the wall's start and end and of the
-    locator per unit of the clamp's, and the clamp's push.
+    """Return (1) the forces of the wall's start, the wall's end and the locator per unit of the clamp's
+    force, and (2) the clamp's push.
 
     They are right to the last digit; None where they cannot be determined.
 
     Parameters
     ----------
-    plate, push : see :func:`pressing`.
+    plate, push : see :func:`is_pressing`.
     """
     with BALLS, ctx.workprec(PRECISIONS[-1]):
         contacts = find_contacts(candidate, problem, plate)
@@ -267,9 +267,8 @@ def compute_fence_reactions(
 
 
 def find_contacts(candidate: WallCandidate, problem: Problem, plate: Carrier) -> Contacts | None:
-    """Return the contacts of locator and clamp at the precision in force; None where one misses its
-    feature.
-    """
+    """Return the contacts of locator and clamp at the precision in force; None where a peg misses its
+    feature."""
     start, tangent, wall = locate_hull_edge(candidate.edge, problem.workpiece)
     radii = problem.frame.standing.peg_radius, problem.frame.moving.peg_radius
     one, other = (
@@ -325,9 +324,8 @@ def locate_hull_edge(number: int, workpiece: Workpiece) -> tuple[Point, Point, a
 
 
 def find_drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
-    """Return centre x, y and radius in mm of an end of a hull edge:
-    its arc as drawn, or a corner with radius 0.
-    """
+    """Return (centre x, centre y, radius) in mm of an end of a hull edge: of its arc as drawn, or of a
+    corner, whose radius is 0."""
     rounded_once = arb(end.center[0]), arb(end.center[1]), arb(end.radius)
     if end.radius == 0.0:
         return rounded_once
@@ -388,10 +386,12 @@ class BallFeature:
         return point, normal, [*ends]
 
     def find_contact_on_line(self, level: arb, upright: bool, branch: float) -> Contact | None:
-        """Return the contact of a peg on a row at height ``level`` in mm,
-        or, if ``upright``, on a column there; None for a miss.
+        """Return the contact of a peg in a line of holes with the feature; None where the line misses the
+        feature.
 
-        ``branch`` (-1 or 1) selects one of two places on an arc.
+        Two cases: (a) not ``upright``: the line is a row at the height ``level`` in mm; (b) ``upright``: it
+        is a column at ``level`` along the hull edge. ``branch`` (-1 or 1) selects one of two places on an
+        arc.
         """
         across = 0 if upright else 1
         up = level - self.middle[across]
@@ -405,10 +405,11 @@ class BallFeature:
 
 
 def find_crossing(one: BallFeature, other: BallFeature, between: Point, branch: int) -> Point | None:
-    """Return the crossing of two peg-centre curves, from the middle
-    of the first; None where it is not proven.
+    """Return the vector from the middle of feature ``one`` to its crossing with ``other``; None where no
+    crossing is proven.
 
-    ``between`` leads from the middle of the first to that of the second, in mm.
+    ``between`` leads from the middle of ``one`` to that of ``other``, in mm; ``branch`` (-1 or 1) selects one
+    of two crossings.
     """
     x, y = between
     if one.radius is not None and other.radius is not None:
@@ -431,10 +432,11 @@ def find_crossing(one: BallFeature, other: BallFeature, between: Point, branch: 
 
 
 def intersect_line_with_circle(between: Point, axis: Point, radius: arb, branch: int) -> Point | None:
-    """Return a crossing of a line with a circle, from the line's middle; None where it certainly misses it.
+    """Return the vector from a line's middle to a crossing with a circle; None where the line certainly
+    misses the circle.
 
-    ``between`` leads from the middle of the line to that of the circle in mm, ``axis`` is the unit vector
-    along the line, ``branch`` (-1 or 1) selects the crossing.
+    ``between`` leads from the middle of the line to the centre of the circle in mm, ``axis`` is the unit
+    vector along the line, ``branch`` (-1 or 1) selects the crossing.
     """
     (ax, ay), (x, y) = axis, between
     away = ax * y - ay * x

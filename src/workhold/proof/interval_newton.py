@@ -1,14 +1,14 @@
 """Decisions in ball arithmetic (python-flint) on candidates that double precision leaves open.
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
-there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrow_box``), and by the
-contacts of three standing pegs alone (``located``). These often fix the pose where the moving peg only grazes
-what it touches. Then the box is turned into the frame of ``proof.singular_frame``. There, boxes in which some
-contact equation has no zero, or in which some rule is broken everywhere, are dropped. The interval Newton
-method (Hansen and Sengupta) makes the others smaller. It shows that there is none or exactly one solution.
-What remains is cut in three. Where ``FEW_BOXES`` do not decide, all solutions are mostly on one curve, on
-which ``proof.solution_curve`` finds them. What is left after ``MOST_BOXES`` boxes stays undecided. Solutions
-are judged at rising precision.
+there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrow_box``), and by
+the contacts of three standing pegs alone (:func:`narrow_to_contacts`). These often fix the pose where the
+moving peg only grazes what it touches. Then the box is turned into the frame of ``proof.singular_frame``.
+There, boxes in which some contact equation has no zero, or in which some rule is broken everywhere, are
+dropped. The interval Newton method (Hansen and Sengupta) makes the others smaller. It shows that there is
+none or exactly one solution. What remains is cut in three. Where ``FEW_BOXES`` do not decide, all solutions
+are mostly on one curve, on which ``proof.solution_curve`` finds them. What is left after ``MOST_BOXES`` boxes
+stays undecided. Solutions are judged at rising precision.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
 BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
@@ -73,9 +73,8 @@ class BoxOutcome:
 def find_solutions(
     box: CandidateBox, limits: Limits, is_stopped: Callable[[], bool] = lambda: False
 ) -> BoxOutcome | None:
-    """Find every fixture in a box, or say why the box stays
-    undecided; return None when the work was stopped before.
-    """
+    """Return every fixture in a box, or the reason why the box stays undecided; None when the work was
+    stopped before."""
     if is_stopped():
         return None
     with ctx.workprec(PRECISIONS[0]):
@@ -96,8 +95,8 @@ def find_solutions(
 
 
 def narrow_to_contacts(box: CandidateBox, limits: Limits) -> CandidateBox | None:
-    """Return the part of a box in which three standing pegs may
-    touch, and the moving peg as well; None for no part.
+    """Return the part of a box in which three standing pegs and then the moving peg may touch; None for no
+    part.
 
     The equations of the standing pegs do not contain the separation. Each is first solved for each unknown,
     which needs no inverse where the box is wide, and then all are combined by the inverse of their Jacobian
@@ -192,7 +191,8 @@ def judge_solutions(frame: SingularFrame, roots: list[list[arb]], limits: Limits
 
 
 def refine_solution(frame: SingularFrame, root: list[arb]) -> list[arb]:
-    """Return a proven solution to the precision in force, by steps that each gain a binary digit or more.
+    """Return a smaller box around a proven solution, to the precision in force, by steps that each gain a
+    binary digit or more.
 
     The part returned holds the solution, and is ``root`` itself where no step helps.
     """

@@ -9,8 +9,8 @@ Jacobian, and
 in the norm of the largest absolute row sum. When 2 \|A\| K eta < 1 there is exactly one solution within 1 /
 (\|A\| K) of z, and it lies within 2 eta (Newton-Kantorovich). The search states how far the exact contacts
 may be from those of a record: where that is no more than 1 / (\|A\| K), the solution is the one that the
-record stands for. A record for which this is not known, or that meets a rule within the bound of its error,
-is listed as undecided.
+record stands for. A record for which this is not known, or for which the error bounds leave a rule open, is
+listed as undecided.
 
 A seat alone fixes the pose, as a simple root: the determinant of its wrenches (n, q x n / L) is above
 ``LEAST_SEAT``.
@@ -99,10 +99,10 @@ class SeatContacts:
 
 
 def decide_seats(records: Array, problem: Problem, title: str) -> tuple[SeatContacts, SearchReport]:
-    """Return the seats among records (N, 19), and the report on all
-    records; ``title`` is that of their arrangement.
+    """Return the seats (three locators that fix the pose) among records (N, 19), and the report on all
+    records.
 
-    See ``kernels.contact.record`` for the layout of records.
+    ``title`` is that of the records' arrangement. See ``kernels.contact.record`` for the layout of records.
     """
     parts, accounts = [find_seats(records[:0], problem, title)[0]], list[SearchReport]()
     for start in range(0, len(records), TOGETHER):
@@ -146,7 +146,7 @@ class Solutions:
     psi, point : as in :class:`SeatContacts`.
     slack : (N, 7) how far in mm each of six ends is from breaking the rule of ends, and the determinant above
         its least value; all positive for a seat.
-    off : (N, 7) error bounds of these.
+    off : (N, 7) error bounds of ``slack``.
     is_certain : (N,) whether there is exactly one solution, that of the record.
     is_double : (N,) whether every solution of the record is a double root, or nearly, and so no seat.
     """
@@ -205,7 +205,7 @@ def solve_contacts(records: Array, rows: Array, steps: Array, problem: Problem) 
 def polish_unknowns(start: Array, rows: Array, steps: Array, length: float, count: int) -> Array:
     """Return the unknowns (N, 3) after ``count`` steps of Newton's method from ``start``.
 
-    Steps of more than 1 mm, or that are not finite, are not taken. Beside a double root each step halves the
+    Steps that are not finite or longer than 1 mm are not taken. Beside a double root each step halves the
     error.
     """
     unknown = start.copy()
@@ -223,8 +223,8 @@ def are_double(
 ) -> BoolArray:
     """Return, for each record, whether its contacts are a double root, up to the rounding of a drawing.
 
-    The two roots beside a double one are no farther from it than the square root of the equations' error
-    times the largest radius, and so is their determinant from that of a double one, 0.
+    An error of the equations splits a double root into two. These are no farther from it than the square root
+    of (the error times the largest radius), so their determinant is near that of a double root, 0.
 
     Parameters
     ----------
@@ -301,8 +301,10 @@ def compute_wrench_matrices(rows: Array, point: Array, length: float) -> Array:
 
 
 def name_undecided(row: Array, problem: Problem, title: str, reason: str) -> UndecidedCandidate:
-    """Return a record that stays undecided as a candidate with a
-    reason; a record given up names tail and head of two chords.
+    """Return an undecided record (19,) as a named candidate with the reason why it is undecided.
+
+    For a pair of chords that was given up, the tail and the head of both chords are named. ``title`` is that
+    of the arrangement.
     """
     many = slice(None) if row[record.STANDING] < 0.0 else slice(LOCATORS)
     feature, column, line = (numbers[0, many] for numbers in read_peg_integers(row[None]))

@@ -1,4 +1,4 @@
-"""The frame of a candidate's box in which directions that are determined badly stand apart from the others.
+"""A frame for a candidate's box that separates the badly determined direction from the well determined ones.
 
 At a nearly double solution three directions of the box are well determined and one is not. So the box is
 turned into the directions of the Jacobian's singular vectors, where the interval Newton method makes it
@@ -41,7 +41,8 @@ class SingularFrame:
     box : the candidate.
     right : (4, 4) directions of the unknowns (psi scaled by L), one in each column, the worst determined
         last.
-    combining : combinations of the contact equations, one in each row, as exact balls.
+    combining : combinations of the contact equations, one in each row, as exact balls (balls: midpoint and
+        radius).
     turning : ``right`` as exact balls.
     length : L in mm.
     """
@@ -63,13 +64,15 @@ class SingularFrame:
         return cls(box, v.T, left, right, limits.wrench_length)
 
     def make_start_box(self) -> list[arb]:
-        """Return the whole box in the frame's coordinates in mm, enlarged by ``RIM``."""
+        """Return the whole box in the frame's coordinates, four balls in mm, enlarged by the share
+        ``RIM``."""
         reach = [self.box.reach[0] * self.length, *self.box.reach[1:]]
         spans = np.abs(self.right.T) @ np.array(reach)
         return [arb(0, float(span) * (1.0 + RIM)) for span in spans]
 
     def compute_unknowns(self, place: Sequence[arb]) -> list[arb]:
-        """Return (psi, tail x, tail y, separation) at a place in the frame's coordinates."""
+        """Return balls of (psi, tail x, tail y, separation) at a place, four balls of the frame's
+        coordinates."""
         turn, *rest = (self.turning * arb_mat(4, 1, place)).entries()
         steps = turn / self.length, *rest
         return [m + s for m, s in zip(self.box.middle, steps, strict=True)]
@@ -94,8 +97,8 @@ class SingularFrame:
     def narrow(
         self, place: list[arb], here: BoxContacts, regular: bool = False
     ) -> tuple[list[arb] | None, bool]:
-        """Return the part of a place that may hold solutions, None for no
-        part, and whether it holds exactly one.
+        """Return (part of a place that may hold solutions or None for no part, whether it certainly holds
+        exactly one).
 
         This is a step of the interval Newton method; ``here`` are the contacts at the place. A ``regular``
         step combines the equations by the inverse of their own Jacobian at the place's middle, if it has one.
@@ -115,8 +118,10 @@ class SingularFrame:
 def decouple_equations(
     values: Sequence[arb], slopes: Sequence[Sequence[arb]]
 ) -> tuple[list[arb], list[list[arb]]] | None:
-    """Return N equations and their Jacobian (N, N), multiplied by its
-    inverse at the middle; None where that is singular.
+    """Return N equations and their Jacobian (N, N), both multiplied by the inverse of the Jacobian's
+    midpoint.
+
+    Return None where that matrix is singular.
     """
     jacobian = arb_mat(slopes)
     try:
@@ -129,8 +134,8 @@ def decouple_equations(
 def take_newton_step(
     place: Sequence[arb], values: Sequence[arb], slopes: Sequence[Sequence[arb]]
 ) -> tuple[list[arb] | None, bool]:
-    """Return the part of a place that may hold solutions, None for no
-    part, and whether it is shown to hold exactly one.
+    """Return (part of a place that may hold solutions or None for no part, whether it certainly holds exactly
+    one).
 
     This is the step of Hansen and Sengupta: ``values`` are those of N equations at the place's middle, and
     ``slopes`` (N, N) enclose their Jacobian over the place.
@@ -155,15 +160,15 @@ def take_newton_step(
 
 
 def is_smaller(part: list[arb], place: list[arb], share: float = SMALLER) -> bool:
-    """Return whether some side of ``part`` is less than ``share`` of that of ``place``."""
+    """Return whether some side of ``part`` is shorter than ``share`` times the same side of ``place``."""
     return any(one.rad() < share * whole.rad() for one, whole in zip(part, place, strict=True))
 
 
 def cut_in_thirds(place: list[arb]) -> list[list[arb]]:
-    """Return a place cut in three along its longest side, a narrow part
-    in the middle (listed last), all slightly enlarged.
+    """Return a place cut in three parts across its longest side, all slightly enlarged; the narrow middle
+    part comes last.
 
-    A double solution is in the middle of most boxes. Cut there, it would be on the rim of both halves.
+    In most boxes a double solution is in the middle. Cut in two there, it would be on the rim of both halves.
     """
     widths = [float(p.rad()) for p in place]
     whole, side = max(widths), (1.0 - MIDDLE) / 2.0

@@ -1,4 +1,4 @@
-"""Solutions of a box on the one curve that can have any, found in one unknown by Taylor's theorem.
+"""Solutions of a box that lie on one curve, found in one unknown by Taylor's theorem.
 
 In the frame of a box's singular vectors (``proof.singular_frame``) three combined contact equations determine
 the first three coordinates q. The fourth coordinate t is determined badly. So q is a function of t, and what
@@ -6,10 +6,10 @@ is left of the equations is f(t) = F_4(q(t), t) = 0 (the reduction of Lyapunov a
 
     f(t) = f_0 + f_1 t + ... + f_(n-1) t^(n-1) + r t^n
 
-where f_k is the derivative of order k over k!, at 0, and r is that of order n somewhere between 0 and t. So
-it is for each q. The derivatives are those of the implicit function, as power series, at a point or over the
-box at once in ball arithmetic. Roots that are double or triple but for rounding are so decided in some tens
-of parts of one unknown. Boxes of four unknowns take thousands.
+where f_k is the derivative of order k over k!, at 0, and r is that of order n somewhere between 0 and t. The
+same holds for each entry of q. The derivatives are those of the implicit function, as power series, at a
+point or over the box at once in ball arithmetic. Roots that are double or triple but for rounding are so
+decided in some tens of parts of one unknown. Boxes of four unknowns take thousands.
 
 References: M. Golubitsky, D. G. Schaeffer, *Singularities and Groups in Bifurcation Theory I*, Springer 1985,
 chapter VII (the reduction); K. Makino, M. Berz, "Taylor models and other validated functional inclusion
@@ -108,9 +108,8 @@ class SolutionCurve:
         return self.rest.evaluate_slope(t - self.center)
 
     def has_zero(self, t: arb) -> bool:
-        """Return whether the fourth equation may be 0 in a ball, by its
-        values and by the mean value theorem.
-        """
+        """Return whether the fourth equation may be 0 somewhere in a ball t, by its values and by the mean
+        value theorem."""
         middle = arb(t.mid())
         return bool(
             self.evaluate_equation(t).contains(0)
@@ -118,9 +117,8 @@ class SolutionCurve:
         )
 
     def is_blurred(self, t: arb) -> bool:
-        """Return whether the error of the equation in the middle of a
-        ball exceeds ``BLUR`` times its variation over the ball.
-        """
+        """Return whether the fourth equation's error at the midpoint of a ball t exceeds ``BLUR`` times its
+        variation over t."""
         return bool(self.evaluate_equation(arb(t.mid())).rad() > BLUR * self.evaluate_equation(t).rad())
 
 
@@ -135,8 +133,8 @@ def set_series_terms(count: int) -> Iterator[None]:
 
 
 def find_roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]] | None:
-    """Return a part of a box, in the frame's coordinates, for each
-    solution that may be a fixture; each has one solution.
+    """Return parts of a box in the frame's coordinates, one for each solution that may be a fixture; each
+    part has exactly one solution.
 
     Return None where the three well determined coordinates are not shown to be a function of the fourth, or
     where the fourth equation vanishes so nearly along it that ``MOST_PARTS`` parts do not decide.
@@ -171,9 +169,8 @@ def is_same(curve: SolutionCurve, one: arb, other: arb) -> bool:
 
 
 def isolate_root(curve: SolutionCurve, t: arb) -> list[arb] | None:
-    """Return a list with a smaller ball that holds the one root in a
-    ball, an empty list for no root; None if undecided.
-    """
+    """Return [a smaller ball around the one root in the ball t], an empty list where t has no root, None if
+    undecided."""
     if curve.evaluate_slope(t).contains(0):
         return None
     is_root = False
@@ -191,7 +188,8 @@ def isolate_root(curve: SolutionCurve, t: arb) -> list[arb] | None:
 
 
 def sharpen_root(frame: SingularFrame, place: list[arb]) -> list[arb]:
-    """Return a smaller place of one root, on the curve expanded there again."""
+    """Return a smaller box around the one root in a place (four balls), found on the curve expanded anew
+    about the place."""
     for _ in range(SHARPENINGS):
         curve = find_curve_about(frame, place[:3], place[3])
         found = isolate_root(curve, place[3]) if curve is not None and place[3].rad() > SHARP else None
@@ -202,9 +200,9 @@ def sharpen_root(frame: SingularFrame, place: list[arb]) -> list[arb]:
 
 
 def find_curve_about(frame: SingularFrame, well: list[arb], t: arb) -> SolutionCurve | None:
-    """Return the curve for the fourth coordinate in a ball; None where it cannot be expanded.
+    """Return the solution curve for the fourth coordinate in the ball t; None where no power series is found.
 
-    ``well`` are balls of the other three, which must hold the curve over t.
+    ``well`` are balls of the other three coordinates, which must hold the curve over t.
     """
     middle = arb(t.mid())
     whole, begun = bound_along_curve(frame, well, t)[0], bound_along_curve(frame, well, middle)[0]
@@ -217,11 +215,12 @@ def find_curve_about(frame: SingularFrame, well: list[arb], t: arb) -> SolutionC
 
 
 def bound_along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[list[arb], bool]:
-    """Return the part of three coordinates that solutions have for
-    the fourth in a ball, and whether it holds a curve.
+    """Return (1) the part of the three other coordinates that solutions may have while the fourth is in the
+    ball t, and (2) whether a curve of such points certainly exists there.
 
-    It does where a step of Hansen and Sengupta in three unknowns maps the part into its own inside, for every
-    t alike: exactly one point for each. By the implicit function theorem these make a smooth curve.
+    It exists where a step of Hansen and Sengupta in three unknowns maps the part into its own inside, for
+    every t alike: there is exactly one point for each t. By the implicit function theorem these points make a
+    smooth curve.
     """
     is_curve, middle_t = False, arb(t.mid())
     for _ in range(MOST_STEPS):
@@ -245,10 +244,10 @@ def bound_along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[li
 
 
 def invert_jacobian(slopes: Sequence[Sequence[arb]], middle: bool = False) -> Any:
-    """Return the inverse of the Jacobian of the first three equations
-    over three coordinates; None where it is singular.
+    """Return the inverse of the Jacobian of the first three equations over three coordinates; None where it
+    is singular.
 
-    With ``middle``, return an exact matrix near that inverse.
+    With ``middle``, return instead an exact matrix near the inverse of the Jacobian's midpoint.
     """
     matrix = arb_mat([row[:3] for row in slopes[:3]])
     try:
@@ -258,8 +257,8 @@ def invert_jacobian(slopes: Sequence[Sequence[arb]], middle: bool = False) -> An
 
 
 def expand_power_series(frame: SingularFrame, well: list[arb], t: arb) -> list[list[arb]] | None:
-    """Return the power series of the three well determined coordinates and
-    of the fourth equation, over the fourth coordinate.
+    """Return four power series in the fourth coordinate: of the three well determined coordinates, and of the
+    fourth equation.
 
     They are about a point of the curve, or about all points in a part of it (``well`` and t); ORDER + 1
     coefficients each. Return None where the Jacobian is singular. The residual of order k of the three

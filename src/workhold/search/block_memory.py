@@ -23,8 +23,9 @@ FIRST_RECORDS, FIRST_PIECES, FIRST_MEMBERS = 256, 1024, 1024
 
 
 class BlockMemory(local):
-    """Buffers that the kernels of one search write to, one set
-    for each thread; they grow when a kernel runs out of room.
+    """Buffers that the kernels of one search write to, one set for each thread.
+
+    The buffers grow when a kernel runs out of room.
     """
 
     def __init__(self) -> None:
@@ -38,15 +39,17 @@ class BlockMemory(local):
     def run_kernel(
         self, kernel: Callable[..., int], members: NDArray[np.int64], stats: NDArray[np.int64], *given: Any
     ) -> NDArray[np.float64]:
-        """Run a kernel, again with larger buffers while these
-        are too small, and return a copy of its (N, 19) records.
+        """Run a kernel and return a copy of the records (N, 19) that it wrote.
+
+        Where the buffers are too small, the kernel runs again with larger ones. Columns of a record: see
+        ``kernels.contact.record``.
 
         Parameters
         ----------
         kernel : called as ``kernel(members, *given, stats, space)``; returns the number of records, or a
             negative code where the buffers are too small.
         members : (M,) indices of curves.
-        stats : (5,) counts that the kernel adds to; counts of runs without enough room are taken back, except
+        stats : (5,) counts that the kernel adds to. What a run without enough room has added is taken back, except
             the stop flag.
         given : the kernel's other arguments.
         """

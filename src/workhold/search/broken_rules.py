@@ -1,9 +1,9 @@
-"""Why no contacts on a lattice make a fixture: what each rule takes away of them until none is left.
+"""Why no contacts on a lattice make a fixture: how many contacts each rule removes until none is left.
 
 For every simultaneous contact the first rule that it breaks is found. The rules are tested in the order in
-which a person would: first the user's restrictions, then whether four pegs can touch at all, contact margin,
-smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts in floating-point
-arithmetic; the proof that there is no fixture is the search's.
+which a person would test them: first the user's restrictions, then whether four pegs can touch at all,
+contact margin, smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts in
+floating-point arithmetic; the proof that there is no fixture is the search's.
 """
 
 from __future__ import annotations
@@ -58,21 +58,21 @@ SECOND_CLAMP = "a second clamp that holds the part together with the first, and 
 
 
 def drop_removals_of_nothing(removals: Iterable[RuleRemoval]) -> tuple[RuleRemoval, ...]:
-    """Return the removals of those rules that were asked of at least one contact, in the same order."""
+    """Return, in the same order, the removals of those rules that were tested on at least one contact."""
     return tuple(removal for removal in removals if removal.before > 0)
 
 
 @frozen
 class RuleRemovals:
-    """How many contacts each rule takes away, one rule after the other.
+    """Number of contacts that each rule takes away, one rule after the other.
 
     Parameters
     ----------
     first : how many contacts there are before any rule.
-    removals : one for each rule that was asked of at least one contact, in the order in which the rules are
-        asked.
-    nearest : the contact that comes nearest to being a fixture, and why it is none; None where none is near
-        or known.
+    removals : how many contacts were left before and after each rule, in the order of the rules; only rules
+        that were tested on at least one contact.
+    nearest : the contact that comes nearest to being a fixture, and why it is no fixture; None where no such
+        contact is known.
     """
 
     first: int
@@ -81,9 +81,10 @@ class RuleRemovals:
 
     @classmethod
     def merge(cls, found: Sequence[RuleRemovals]) -> RuleRemovals:
-        """Return the sums of the removals of several directions of the clamp, rule by rule.
+        """Return the removals of several directions of the clamp, summed rule by rule.
 
-        The nearest miss is that of the direction with the most rules asked before no contact was left.
+        The nearest miss is taken from the direction in which the most rules were tested before no contact was
+        left.
         """
         # A rule may be asked twice in one direction, early where that saves work and again at its place.
         counts: dict[tuple[str, int], tuple[int, int]] = {}
@@ -118,10 +119,10 @@ class ContactSets:
     Parameters
     ----------
     candidates : the contacts as candidates for fixtures.
-    null : (N, 4) null vector of the wrenches, sizes summing to 1, with the sign that makes its smallest entry
-        largest.
+    null : (N, 4) null vector of the four contacts' wrenches. Its entries have absolute values that sum to 1.
+        Of its two signs, the one with the larger smallest entry is taken.
     margin : (N,) smallest entry of ``null``; -1.0 where the wrenches do not span the space.
-    clamping : (N,) clamping force that goes with ``null``.
+    clamping : (N,) force with which the carriers press the part between them, for the peg forces ``null``.
     end_distance : (N,) smallest distance in mm to the end of a feature, as the contact margin counts it.
     """
 
@@ -138,15 +139,15 @@ class ContactSets:
 
 
 def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> RuleRemovals:
-    """Return how many simultaneous contacts there are
-    without restrictions, and how many each rule takes away.
+    """Return how many simultaneous contacts there are without restrictions, and how many each rule takes
+    away.
 
-    With them comes the contact that is nearest to being a fixture, if a rule leaves none.
+    Where a rule leaves no contact, the result also has the contact that is nearest to being a fixture.
 
     Parameters
     ----------
     threads : None for one on each processor.
-    unit : of the lengths in the words of the nearest miss.
+    unit : unit of lengths in the sentence about the nearest miss.
     alone : whether one clamp holds the part. If False, two are needed: the contacts are those of three
         locators and one clamp, the rule :data:`SECOND_CLAMP` takes all of them away, and there is no nearest
         miss.
@@ -168,11 +169,11 @@ def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: boo
 
 
 def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
-    """Return every set of four simultaneous contacts of a
-    problem, each once, whether or not it keeps the rules.
+    """Return every set of four simultaneous contacts of a problem, each once, whether or not it keeps the
+    rules.
 
     The search uses a contact margin of 0, and lists at most :data:`MOST_LISTED` sets per block of work.
-    ``threads`` None is one on each processor.
+    ``threads`` None means one thread on each processor.
     """
     workers = choose_thread_count(threads)
     search = ToolkitSearch.from_problem(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
@@ -201,11 +202,11 @@ def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
 
 
 def select_facing_right(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
-    """Return the contacts without those that repeat another with the two carriers' pegs exchanged.
+    """Return the contact sets without those that repeat another set with the two carriers' pegs exchanged.
 
-    Where as many pegs stand as ``swapped``, so that the carriers may exchange them, each set of four contacts
-    is found both ways. The one is kept whose moving pegs are farther in +x on average; with equal x, the one
-    whose moving pegs are lower in y.
+    ``swapped`` is the number of standing pegs with which the two carriers may be exchanged. Each set with
+    that many standing pegs is found twice. Kept is the one whose moving pegs are farther in +x on average;
+    with equal x, the one whose moving pegs are lower in y.
     """
     across, upward = rotate_vectors(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
@@ -215,15 +216,15 @@ def select_facing_right(c: CandidateFixtures, swapped: int) -> CandidateFixtures
 def count_restriction_removals(
     problem: Problem, threads: int | None, left: int
 ) -> tuple[int, list[RuleRemoval]]:
-    """Return how many simultaneous contacts there are without
-    restrictions, and what each restriction takes away.
+    """Return (1) the number of simultaneous contacts without restrictions, and (2) what each restriction
+    removes.
 
-    The restrictions, in order: faces to avoid, keep-out zones, program, blocked holes and peg bodies, angles;
-    only those that are asked for.
+    The restrictions, in order: faces to avoid, keep-out zones, program, blocked holes and peg bodies, angles.
+    Restrictions that the query does not have are left out.
 
     Parameters
     ----------
-    left : how many contacts keep all restrictions.
+    left : number of contacts that keep all restrictions.
     """
     toolkit, asked = problem.toolkit, problem.restrictions
     holes = [limit for limit in toolkit.limits if limit.bounds == "holes"]
@@ -247,7 +248,9 @@ def count_restriction_removals(
         steps.append(("angles of the part", asked, toolkit, whole))
 
     def count(restrictions: Restrictions, held_in: Toolkit, query: Query) -> int:
-        """Return how many simultaneous contacts there are under these restrictions."""
+        """Return the number of simultaneous contacts under some restrictions, in a toolkit, with a query's
+        program.
+        """
         asked = evolve(query, toolkit=held_in, restrictions=restrictions, contact_margin=0.0)
         return count_problem_contacts(Problem.from_query(asked), threads)
 
@@ -264,11 +267,11 @@ Rule = tuple[str, Callable[[ContactSets], BoolArray], Callable[[ContactSets], tu
 
 
 def list_rules(problem: Problem, unit: Unit) -> list[Rule]:
-    """Return the rules from contact margin to exact test, in the order in which they are asked.
+    """Return the rules from contact margin to exact test, in the order in which they are tested.
 
-    Each rule is a triple: its words; a function that returns which contacts (N,) keep it; and a function that
-    returns, of contacts that all break it, the index of the nearest one and a sentence why it breaks the
-    rule.
+    Each rule is a triple: (1) its name for the user; (2) a function that returns a mask (N,), True for
+    contacts that keep the rule; (3) a function that takes contacts that all break the rule, and returns the
+    index of the nearest one and a sentence why it breaks the rule.
     """
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
@@ -295,10 +298,10 @@ def list_rules(problem: Problem, unit: Unit) -> list[Rule]:
 
 
 def list_placing_rules(problem: Problem) -> list[Rule]:
-    """Return the rules about the place on the carriers: clear
-    of the clamp, the toolkit's limits, angles of the part.
+    """Return the rules about the place on the carriers, as :func:`list_rules` has them.
 
-    Each rule's test includes the rules before it. Angles are asked after the limits on the pegs' bodies.
+    They are: locators clear of the clamp, each limit of the toolkit, angles of the part. Each rule's test
+    includes the rules before it. The angles come after the limits on the pegs' bodies.
     """
     toolkit, asked = problem.toolkit, problem.restrictions
     limits = toolkit.limits
@@ -306,7 +309,7 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
     out: list[Rule] = []
 
     def rule(words: str, kept: int, restrictions: Restrictions, asked_of: Query = problem.query) -> None:
-        """Append a rule that tests the first ``kept`` limits of the toolkit and some restrictions."""
+        """Append a rule that tests the toolkit's first ``kept`` limits and some restrictions."""
         query = evolve(asked_of, toolkit=toolkit.without_limits(limits[kept:]), restrictions=restrictions)
         part = evolve(problem, query=query)
         keeps = partial(explain_no_place, toolkit.noun, words)
@@ -330,21 +333,29 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
 
 
 def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
-    """Return the rules asked of each fixture by itself:
-    faces to touch and largest location error, if given.
+    """Return the rules tested on each fixture by itself, as :func:`list_rules` has them.
+
+    They are the faces to touch and the largest location error; each only where the query gives it.
     """
     query, out = problem.query, list[Rule]()
 
     def table(c: ContactSets) -> FixtureTable:
+        """Return the contacts as fixtures placed in the toolkit."""
         return place_candidates(c.candidates, problem)
 
     def untouched(c: ContactSets) -> tuple[int, str]:
+        """Return the index of the contact with the largest closure margin, and why it breaks the rule on
+        faces to touch.
+        """
         names = join_words([str(face) for face in query.restrictions.touch])
         return int(
             c.margin.argmax()
         ), f"it would hold, but it does not touch all the faces that must be touched: {names}."
 
     def imprecise(c: ContactSets) -> tuple[int, str]:
+        """Return the index of the contact with the least location error, and a sentence that compares it with
+        the limit.
+        """
         errors = measure_table(table(c), problem).quality[:, LOCATION_ERROR]
         index, most = int(np.nanargmin(errors)), query.max_location_error or 0.0
         return index, (
@@ -366,14 +377,14 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
 
 
 def keep_no_contact(contacts: ContactSets) -> BoolArray:
-    """Return False for each of the contacts, (N,)."""
+    """Return False for every contact, as a mask (N,)."""
     return np.zeros(len(contacts.margin), np.bool_)
 
 
 def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str]:
     """Return the index of the contact farthest inside the ends of its features, and why it breaks the margin.
 
-    ``margin`` is in mm, ``unit`` that of the sentence.
+    ``margin`` is the contact margin in mm, ``unit`` the unit of lengths in the sentence.
     """
     index = int(c.end_distance.argmax())
     return index, (
@@ -383,8 +394,8 @@ def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int,
 
 
 def find_miss_of_gap(frame: SearchFrame, unit: Unit, c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact with the largest gap,
-    and a sentence that compares it with the smallest gap.
+    """Return the index of the contact with the largest gap, and a sentence that compares it with the smallest
+    gap.
     """
     index = int(c.candidates.gap.argmax())
     gap = c.candidates.gap[index]
@@ -397,7 +408,9 @@ def find_miss_of_gap(frame: SearchFrame, unit: Unit, c: ContactSets) -> tuple[in
 
 
 def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact that comes nearest to force closure, and a sentence why it has none."""
+    """Return the index of the contact that comes nearest to force closure, and a sentence why it has no
+    closure.
+    """
     index = int(c.margin.argmax())
     if c.margin[index] > -ROUNDING:
         return (
@@ -411,15 +424,15 @@ def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
 
 
 def find_miss_of_clamping(frame: SearchFrame, c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact with the largest
-    clamping force, and a sentence why it does not clamp.
+    """Return the index of the contact with the largest clamping force,
+    and a sentence why it does not clamp.
     """
     return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
 
 
 def explain_no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact with the largest closure
-    margin, and a sentence that no place is allowed for it.
+    """Return the index of the contact with the largest closure margin, and a sentence that a limit forbids
+    its place.
 
     ``noun`` names the toolkit, ``words`` the limit.
     """
@@ -429,16 +442,17 @@ def explain_no_place(noun: str, words: str, c: ContactSets) -> tuple[int, str]:
 
 
 def find_miss_of_exact_test(c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact with the largest closure
-    margin, and a sentence that rounding alone lets it pass.
+    """Return the index of the contact with the largest closure margin, and a sentence.
+
+    The sentence says that the contact meets every rule to within rounding, but not exactly.
     """
     return int(c.margin.argmax()), "it meets every rule to within rounding, but not exactly."
 
 
 def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem) -> NearestMiss:
-    """Return a contact as a fixture placed in the toolkit without its limits, with the words of its miss.
+    """Return one of some contacts as a nearest miss: a fixture, and a sentence why it is not allowed.
 
-    ``miss`` is the contact's index and the sentence.
+    The fixture is placed in the toolkit without its limits. ``miss`` is (index of the contact, sentence).
     """
     index, words = miss
     toolkit = problem.toolkit.without_limits(problem.toolkit.limits)
@@ -448,12 +462,11 @@ def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Pro
 
 
 def find_program_line_in_the_way(query: Query) -> int | None:
-    """Return the line of a query's program whose tool comes
-    too near the longest part of the loci of peg centres.
+    """Return the number of the program line whose tool is most in the way of the pegs.
 
-    The carriers are tried in order; the first with such a line counts. None without a program, for toolkits
-    that hold by friction, where no line is in the way, and where the query has no problem without the
-    program.
+    That is the line whose tool comes too near the longest part of the peg centres' loci. The carriers are
+    tried in order; the first with such a line counts. None where no line is in the way, without a program,
+    for toolkits that hold by friction, and where the query without the program is invalid.
     """
     if query.program is None or query.toolkit.holds_by_friction:
         return None
@@ -471,22 +484,21 @@ def find_program_line_in_the_way(query: Query) -> int | None:
 
 
 def describe_program_rule(query: Query) -> str:
-    """Return the name of the rule about the program's
-    tools, such as "tools of the program, most in line 7".
+    """Return the name of the rule about the program's tools, such as
+    "tools of the program, most in line 7".
     """
     line = find_program_line_in_the_way(query)
     return "tools of the program" + ("" if line is None else f", most in line {line}")
 
 
 def describe_body_rule(query: Query) -> str:
-    """Return the name of the rule that a clamp's body,
-    from tip to hole, keeps clear of the program's tools.
-    """
+    """Return the name of the rule that a clamp's body keeps clear of the program's tools."""
     return f"body of the {query.toolkit.moving.noun} clear of the program's tools"
 
 
 def describe_stroke_rule(query: Query, rule: str) -> str:
-    """Return the name of the rule on a clamp's stroke, with
-    the rule on its body added where a program may hit that.
+    """Return the name of the rule on a clamp's stroke, given as ``rule``.
+
+    The rule on the clamp's body is added where the query has a program that may hit it.
     """
     return f"{rule}, {describe_body_rule(query)}" if has_body_to_pass(query) else rule

@@ -52,11 +52,12 @@ class SearchBlock:
 
     Parameters
     ----------
-    work : called with what fixtures must reach to be of interest; returns records (N, 19).
+    work : called with the limits that fixtures must keep to be of interest; returns records (N, 19), see
+        ``kernels.contact.record``.
     cost : estimated time, in units common to all blocks.
-    cells : how many cells of orientation it works on.
-    start : orientation in radians at which its first cell begins.
-    dense : expected number of records relative to its cost.
+    cells : number of cells of orientation that the block covers.
+    start : orientation psi in radians at which its first cell begins.
+    dense : expected number of records, divided by ``cost``.
     """
 
     work: Callable[[InterestLimits], Records]
@@ -72,17 +73,18 @@ def estimate_cost(blocks: Iterable[SearchBlock]) -> float:
 
 
 def divide_into_cells(half_turns: int, cells: int) -> NDArray[np.float64]:
-    """Return the edges (cells + 1,) in radians of equal
-    cells that cover one or two half turns of orientations.
+    """Return the edges of equal cells of orientation, as psi in radians, ascending, (cells + 1,).
+
+    The cells together cover ``half_turns`` half turns (1 or 2).
     """
     return FIRST_ORIENTATION + half_turns * pi * np.arange(cells + 1) / cells
 
 
 def find_curves_in_cell(table: CurveTable, low: float, high: float) -> NDArray[np.int64]:
-    """Return the indices, ascending, of the curves that exist
-    somewhere between two orientations in radians, or within 1e-9.
+    """Return the indices, ascending, of the chord curves that exist somewhere between two orientations psi.
 
-    The curves of each sector (1/64 turn) are cached in ``table.sectors``.
+    ``low`` and ``high`` are in radians; curves that miss the range by at most 1e-9 are included. The curves
+    of each sector (1/64 turn) are cached in ``table.sectors``.
     """
     begin = (low - SLACK) % tau
     end = begin + (high - low) + 2 * SLACK
@@ -100,11 +102,10 @@ def find_curves_in_cell(table: CurveTable, low: float, high: float) -> NDArray[n
 def find_curves_between(
     spans: tuple[NDArray[np.float64], NDArray[np.float64]], begin: float, end: float
 ) -> NDArray[np.int64]:
-    """Return the indices, ascending, of the curves whose
-    spans meet the orientations from ``begin`` to ``end``.
+    """Return the indices, ascending, of the curves that exist at an orientation from ``begin`` to ``end``.
 
-    ``spans`` are first and last find_candidate_orientations (N,) in radians; ``begin`` is in [0, 2 pi). Spans and range
-    count modulo a turn.
+    ``spans`` are the first and the last orientation of each curve, each (N,) in radians. ``begin`` is in [0,
+    2 pi). Spans and the range are compared modulo a turn.
     """
     first, last = spans
     # Where the cell runs over a whole turn, or a curve does, the other may be met a turn later.
@@ -115,9 +116,10 @@ def find_curves_between(
 def count_curves_in_cells(
     table: CurveTable, low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Return how many curves (K,) exist in each of the cells from ``low`` (K,) to ``high`` (K,), in radians.
+    """Return the number of curves that exist in each of K cells, (K,).
 
-    Unlike :func:`find_curves_in_cell` there is no tolerance at the cells' ends.
+    Cell k extends from ``low[k]`` to ``high[k]``, orientations psi in radians. Unlike
+    :func:`find_curves_in_cell` there is no tolerance at the cells' ends.
     """
     first, last = table.sorted_spans
     turns = [-tau, 0.0, tau]
@@ -136,24 +138,26 @@ def run_blocks(
     pool: Executor | None = None,
     needed: InterestLimits = ANYTHING,
 ) -> tuple[list[Records], list[SearchBlock]]:
-    """Run all blocks on threads; return their records and the blocks that were done.
+    """Run all blocks on threads; return (1) their records and (2) the blocks that were done.
 
     Parameters
     ----------
     progress : called from this thread as ``progress(fraction done, records found)``.
     cancel : when set, no further block is begun.
-    receive : called from this thread with the records of each block, in the order of the blocks; these
-        records are then not returned. It returns what further fixtures must reach, which is passed to the
-        block ``LAG`` places later. So what a block leaves out does not depend on the threads' speed.
+    receive : called from this thread with the records of each block, in the order of the blocks; the records
+        are then not returned. It returns the limits that further fixtures must keep. They are passed to the
+        block ``LAG`` places later, so that what a block leaves out does not depend on the threads' speed.
+        None to return the records, and to pass no limits to the blocks.
     look : called from this thread with the records of each block as it finishes, in any order.
     stop : called once when the work is cancelled or given up, to make running blocks end soon with what they
         have found.
     pool : executor with ``threads`` threads; None to make one.
-    needed : what fixtures must reach before anything is received.
+    needed : limits that fixtures must keep in the first blocks; not used without ``receive``.
 
     Returns
     -------
-    (records of the blocks in their order, also of stopped blocks; the blocks that came to their end)
+    (list of the records (N, 19) of each block in the order of the blocks, stopped blocks included; the blocks
+    that came to their end, in the order in which they ended)
     """
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
@@ -191,14 +195,15 @@ def iterate_finished_blocks(
     stop: Callable[[], None] | None,
     pool: Executor | None,
 ) -> Iterator[tuple[int, Records, bool]]:
-    """Yield (number, records, whether it came to its end) for each block as it finishes, in any order.
+    """Yield (index of a block, its records, whether it came to its end) as each block finishes, in any order.
 
     No block is begun once ``cancel`` is set; then ``stop`` is called once.
 
     Parameters
     ----------
-    margins : what fixtures must reach after 0, 1, 2, … received blocks; the caller appends to it. A block
-        waits until the entry ``LAG`` places before it is there. None to need nothing.
+    margins : limits that fixtures must keep after 0, 1, 2, … received blocks; the caller appends to the list.
+        Block k is begun with entry k - ``LAG`` (at least 0), and waits until the list has it. None for no
+        limits.
     pool : executor to use; None to make one with ``threads`` threads.
     """
     first, running, whole = 0, dict[Future[Records], int](), True

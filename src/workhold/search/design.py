@@ -111,15 +111,15 @@ def design(
     preview: Preview | None = None,
     **further: Any,
 ) -> Result:
-    """Return every fixture of a workpiece in a toolkit, or the best, ranked.
+    """Return every fixture of a workpiece in a toolkit, or only the best ones; the best come first.
 
     Parameters
     ----------
     workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force : see
         :class:`workhold.Query`.
     max_location_error, thickness : the same.
-    types : names of arrangements: of a vise "I" (two pegs on each jaw), "II" (three and one), or both; None
-        is all.
+    types : names of the arrangements to search. Those of a vise are "I" (two pegs on each jaw) and "II" (three
+        and one). None for all.
     rank_by : the query's ranking.
     prefer : instead of a ranking, what is wanted most: "square", "strong", "precise" or "roomy".
     threads, progress, cancel, preview : see :func:`answer`.
@@ -128,12 +128,13 @@ def design(
     Returns
     -------
     Result
-        As of :func:`answer`.
+        The same as :func:`answer` returns.
 
     Raises
     ------
     InputError
-        As :class:`workhold.model.query.Query` and :func:`answer`; for a ranking and a preference together.
+        Where :class:`workhold.model.query.Query` or :func:`answer` raises it; for a ranking and a preference
+        given together.
 
     Examples
     --------
@@ -189,14 +190,14 @@ def answer(
     Returns
     -------
     Result
-        Fixtures best first (see ``listing.ranking``); those that are equally good in the order of their
+        Fixtures, best first (see ``listing.ranking``). Equally good fixtures are in the order of their
         holes, orientation, faces and place.
 
     Raises
     ------
     InputError
         For faces that do not exist, a peg that fits nowhere along the part, restrictions that leave nothing
-        to touch, and a number of threads that is none.
+        to touch, and an invalid number of threads.
 
     Examples
     --------
@@ -245,9 +246,10 @@ def answer(
 
 
 def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
-    """Return whether the search is so large that searching by limits of the location error pays.
+    """Return whether a search is so large that first searching up to a limit of the location error saves
+    time.
 
-    Always False for arrangements with fewer than three standing pegs.
+    Always False where one of the query's arrangements has fewer than three standing pegs.
     """
     if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.types):
         # With two standing pegs there is no bound of the error from the features they touch.
@@ -275,8 +277,8 @@ def find_best_fixtures(
 ) -> Result | None:
     """Return the best fixtures, by searches up to growing limits of the location error.
 
-    None where no limit is small enough to help, so that a whole search is needed. After ``cancel``, an
-    incomplete result.
+    None where limits do not help, so that the caller must search everything. After ``cancel``, an incomplete
+    result.
     """
     is_paired = query.toolkit.travels > 1
     problems = (
@@ -313,11 +315,10 @@ def find_fixtures_within_limits(
     cancel: Event | None,
     preview: Preview | None,
 ) -> FoundUpTo:
-    """Search, one direction after the other, for the fixtures
-    within a limit of the location error, with one moving carrier.
+    """Search for the fixtures with one clamp within a limit of the location error, direction by direction.
 
-    Return the ranking keys of what was found, and a function that makes the result. ``limits`` and
-    ``problems`` have one entry for each direction.
+    Return (1) the ranking keys of the fixtures found, and (2) a function that makes the result. ``limits``
+    and ``problems`` have one entry for each direction of the clamp.
     """
     kepts, works = list[BestFixtures](), list[SearchWork]()
     for place, (problem, limit) in enumerate(zip(problems, limits, strict=True)):
@@ -329,6 +330,7 @@ def find_fixtures_within_limits(
     keys = reduce(OrderKeys.concatenate, [kept.found_keys for kept in kepts])
 
     def finish() -> Result:
+        """Return the result, joined from all directions."""
         results = [
             make_best_result(kept, work, len(kepts) > 1, is_limited=True)
             for kept, work in zip(kepts, works, strict=True)
@@ -347,10 +349,10 @@ def find_paired_fixtures_within_limits(
     cancel: Event | None,
     preview: Preview | None,
 ) -> FoundUpTo:
-    """Search for the fixtures with two clamps within ``limits[0]`` of the location error.
+    """Search for the fixtures with two clamps whose location error is within the limit ``limits[0]``.
 
-    Return the ranking keys of what was found, and a function that makes the result. ``problems`` is not used;
-    it is there for the signature of :func:`find_fixtures_within_limits`.
+    Return (1) the ranking keys of the fixtures found, and (2) a function that makes the result. ``problems``
+    is not used; it is there for the signature of :func:`find_fixtures_within_limits`.
     """
     with LatticeShares.open_for_query(query, threads, cancel, limits[0]) as shares:
         result = answer_by_shares(shares, progress, cancel, preview)
@@ -367,10 +369,10 @@ def answer_one_direction(
     sink: ResultSink | None = None,
     is_part: bool = False,
 ) -> Result:
-    """Return the answer to a query in a toolkit with one moving carrier, see :func:`answer`.
+    """Return the answer to a query in a toolkit with one moving carrier, as :func:`answer` does.
 
-    With ``is_part`` the toolkit is one of several directions, and the result lists what may be among the best
-    of all.
+    ``is_part`` says that the toolkit is one of several directions of the clamp. The result then lists every
+    fixture that may be among the best of all directions.
     """
     problem = Problem.from_query(query)
     precision = bound_location_errors(problem) if can_limit_errors(query) else ANY_ERROR
@@ -409,16 +411,20 @@ def answer_one_direction(
 
 
 def send_to_sink(result: Result, sink: ResultSink | None) -> Result:
-    """Give a result that is whole in memory to the sink, if there is one, and return the result."""
+    """Give a result to the sink, if there is one, and return the same result.
+
+    The result's table must hold all its fixtures.
+    """
     if sink is not None:
         sink.receive(result, len(result), [result.table])
     return result
 
 
 def add_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Event | None) -> Result:
-    """Return the result with the reason why it has no fixture, if it is complete and has none.
+    """Return a result with the reason why it has no fixture, if it is complete, has none and gives no reason
+    yet.
 
-    Any other result is returned unchanged, and so is one for which ``cancel`` gets set meanwhile.
+    Any other result is returned unchanged, and so is any result where ``cancel`` is set meanwhile.
     """
     if not result.complete or any(result.found.values()) or result.reasons:
         return result
@@ -433,7 +439,8 @@ def explain_no_fixture(
 ) -> Note:
     """Return the reason why a search found no fixture.
 
-    ``contacts`` counts simultaneous contacts examined, ``proven`` those proven to hold the part.
+    ``contacts`` is the number of simultaneous contacts examined, ``proven`` the number of those proven to
+    hold the part.
     """
     problem, table, wording = search.problem, search.table, search.problem.toolkit.wording
     line = find_program_line_in_the_way(problem.query)
@@ -452,10 +459,10 @@ def explain_no_fixture(
 
 
 def blame_what_was_asked(reason: Note, problem: Problem, threads: int) -> Note:
-    """Return the reason, with the query's requests added if without them its cause would be gone.
+    """Return the reason why there is no fixture, with the query's requests named where they cause it.
 
-    Only reasons that blame the shape of the part or the pitch are examined; other reasons come back
-    unchanged.
+    Only reasons that blame the shape of the part or the pitch are examined: the requests are named if without
+    them the part or the pitch would not be to blame. Other reasons come back unchanged.
     """
     query, toolkit = problem.query, problem.toolkit
     if not isinstance(reason, NoFixture) or reason.stage not in STAGES[:2] or reason.line is not None:
@@ -484,13 +491,13 @@ class ToolkitOutcome:
 
     Parameters
     ----------
-    name : what it is called.
+    name : name of the toolkit.
     found : number of fixtures of each arrangement; empty for an impossible toolkit, and where they were not
         counted.
     figures : figures of quality of the first fixture by key; empty when there is none.
     fit : whether the first fixture is fit for a workshop.
-    held : share from 0 to 1 of the part's longer side that lies between the first fixture's outermost
-        contacts.
+    held : share from 0 to 1 of the part's longer side that lies between the outermost contacts of the first
+        fixture; 0 when there is none.
     reason : why there is no fixture, or why the toolkit is impossible; empty otherwise.
     about : estimated number of fixtures, to two digits, where there are too many to count; else None.
     """
@@ -514,12 +521,12 @@ def explore(
 ) -> Iterator[ToolkitOutcome]:
     """Yield the outcome of each query, one toolkit after the other.
 
-    A query that is an InputError, or raises one, yields an outcome with its text as reason. The iteration
-    ends early once cancelled.
+    A query that is an InputError, or that raises one, yields an outcome with the error's text as reason. The
+    iteration ends early once ``cancel`` is set.
 
     Parameters
     ----------
-    queries : (name of the toolkit, query, or the error why there is none).
+    queries : pairs of the toolkit's name and its query, or the error why there is no query.
     cancel : when set, no further query is answered.
     """
     for name, query in queries:
@@ -550,8 +557,10 @@ def explore(
 
 
 def is_held_fit(hold: JawHold | StrappedHold) -> bool:
-    """Return whether a hold by friction is fit for a workshop: not
-    unfit, and pressed all over, or straps that hold something.
+    """Return whether a hold by friction is fit for a workshop.
+
+    Two cases: (a) flat jaws: the hold is not unfit, and both jaws press all over; (b) straps: it is not
+    unfit, and the straps hold something.
     """
     if isinstance(hold, JawHold):
         return not hold.is_unfit and hold.full_contact
@@ -559,8 +568,9 @@ def is_held_fit(hold: JawHold | StrappedHold) -> bool:
 
 
 def measure_held_share(fixture: Fixture, workpiece: Workpiece) -> float:
-    """Return the share, 0 to 1, of the part's longer side
-    (as drawn) that lies between its outermost contacts.
+    """Return the share, 0 to 1, of the part's longer side that lies between the fixture's outermost contacts.
+
+    The longer side is that of the bounding box of the part as drawn.
     """
     x0, y0, x1, y1 = workpiece.bounds
     sides, back = (x1 - x0, y1 - y0), fixture.pose.inverse
@@ -578,11 +588,12 @@ def choose_first_toolkit(
     ranking: Sequence[str],
     is_sold: Callable[[str], bool] = lambda name: True,
 ) -> ToolkitOutcome | None:
-    """Return the toolkit whose first fixture is the best of all; None when none has a fixture.
+    """Return the outcome of the toolkit whose first fixture is the best; None when no toolkit has a fixture.
 
-    First come fixtures fit for a workshop, then toolkits that ``is_sold(name)`` says are sold. With a ranking
-    by warnings first, fewer warnings come next, then more tenths of the part's length between the contacts,
-    then the other figures. With any other ranking the figures come first, and the length last.
+    Fixtures fit for a workshop come first, then toolkits for which ``is_sold(name)`` is true. Two cases
+    follow: (a) with a ranking that begins with the warnings, fewer warnings, then more tenths of the part's
+    length between the contacts, then the other figures; (b) with any other ranking, first its figures, then
+    the length.
     """
     able = [item for item in explored if item.figures]
     if not able:

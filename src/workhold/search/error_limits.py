@@ -1,4 +1,4 @@
-"""The best fixtures first: searches up to a limit of the location error, which grows until enough are found.
+"""The best fixtures first: searches up to a limit of the location error that grows until enough are found.
 
 In the usual ranking a fixture that is fit for a workshop and has no warning surely comes before another whose
 effective location error is a tenth larger. So once as many such fixtures are known as are asked for, nothing
@@ -7,8 +7,8 @@ first.
 
 Three locators have a small error only far apart and on faces with different normals. So features are cut into
 short stretches, called spots, and the error of three locators on three spots is bounded
-(``kernels.contact.location_bounds``). Chords are made only between spots that two locators of a seat with a
-small error may touch. A limited search is a small part of the whole, and is done in the same way, with proof.
+(``kernels.contact.location_bounds``). Chords are made only between spots that two locators with a small
+error may touch. A limited search is a small part of the whole, and is done in the same way, with proof.
 
 Angles other than the drawing's and its quarter turns increase the effective error by half. So at square
 angles the limit holds as it is; at others it is divided by 1.5, and often nothing is left there.
@@ -85,8 +85,8 @@ NEARER = 40
 def can_limit_errors(query: Query) -> bool:
     """Return whether a query's best fixtures can be searched by limits of the location error.
 
-    It must ask for the best, in the usual ranking, with a tolerance above 0, and the part must have one
-    outline for all carriers.
+    The query must ask for a number of best fixtures, in the usual ranking, with a tolerance above 0. The part
+    must have the same outline for all carriers.
     """
     off = query.tolerance.peg + query.tolerance.face
     return query.best is not None and query.has_house_order and off > 0.0 and not query.workpiece.outlines
@@ -94,14 +94,15 @@ def can_limit_errors(query: Query) -> bool:
 
 @frozen(eq=False)
 class ErrorLimit:
-    """A limit of the effective location error, and the search work that it leaves.
+    """A limit of the effective location error, and which contacts of locators it leaves to search.
 
     Parameters
     ----------
-    precision : the limit, for the kernels.
-    square, aslant : which pairs of spots two locators may touch, where the part lies square to the drawing,
-        and at other angles.
-    boxes, ruled_out : how many triples of spots were looked at, and how many the bound ruled out.
+    precision : error bounds with the limit, as the kernels take them.
+    square : which pairs and triples of spots locators may touch, where the part lies square to the drawing.
+    aslant : the same for all other angles.
+    boxes : number of triples of spots that were looked at.
+    ruled_out : number of the triples that the bound ruled out.
     """
 
     precision: Precision
@@ -122,9 +123,10 @@ class LocatorSpots:
 
     Parameters
     ----------
-    spots : (S, 7), see ``kernels.contact.location_bounds``; the coarsest first.
-    roots : how many of them are coarsest.
-    starts : (F + 1,); the finest spots of feature f are numbered starts[f] to starts[f + 1] - 1.
+    spots : (S, 7) spots, the coarsest first; columns see ``kernels.contact.location_bounds``.
+    roots : number of coarsest spots.
+    starts : (F + 1,) for F features; the finest spots of feature f have the numbers starts[f] to
+        starts[f + 1] - 1.
     precision : error bounds without a limit.
     """
 
@@ -135,7 +137,10 @@ class LocatorSpots:
 
     @classmethod
     def from_problem(cls, problem: Problem) -> LocatorSpots:
-        """Return the spots of a problem's standing features; a whole circle has one finest spot."""
+        """Return the spots of the features that a problem's standing pegs touch.
+
+        A whole circle is numbered as a single finest spot.
+        """
         rows, precision = loosen_rows(problem.rows[:, :SEGMENT_LENGTH]), bound_location_errors(problem)
         apart = find_largest_distance(find_outermost_points(problem))
         first, end = problem.standing
@@ -159,11 +164,11 @@ class LocatorSpots:
         return ErrorLimit(limit_precision(self.precision, most), square, aslant, boxes, ruled_out)
 
     def find_near_spots(self, most: float) -> tuple[NearSpots, IntArray]:
-        """Return which pairs and triples of finest spots three locators
-        may touch for an effective error of at most ``most`` mm.
+        """Return (1) the spots that locators may touch together, and (2) counts (2,).
 
-        With it come counts (2,): triples looked at, and triples ruled out. Triples are kept for up to
-        :data:`MOST_TRIPLED` spots.
+        The spots are given as the pairs and triples of finest spots that three locators may touch for an
+        effective error of at most ``most`` mm. Triples are kept for up to :data:`MOST_TRIPLED` spots. The
+        counts are: triples looked at, triples ruled out.
         """
         count, counts = int(self.starts[-1]), np.zeros(2, np.int64)
         kept = count if count <= MOST_TRIPLED else 0
@@ -179,7 +184,9 @@ class LocatorSpots:
 
 
 def bound_location_errors(problem: Problem) -> Precision:
-    """Return what bounds a problem's location errors, without a limit (``most`` is inf)."""
+    """Return the bounds of a problem's location errors as the kernels take them, without a limit (``most`` is
+    inf).
+    """
     points = find_outermost_points(problem)
     query, length = problem.query, problem.wrench_length
     angles = np.arange(DIRECTIONS) * (pi / DIRECTIONS)
@@ -203,10 +210,10 @@ def bound_location_errors(problem: Problem) -> Precision:
 
 
 def find_outermost_points(problem: Problem) -> Array:
-    """Return a few points (C, 2) in mm of the silhouette,
-    relative to its centre, each outermost in one of 8 directions.
+    """Return a few points (C, 2) in mm of the part's silhouette that are each outermost in one of 8
+    directions.
 
-    Points nearly coincident with another are left out.
+    Coordinates are relative to the part's centre. Points nearly coincident with another one are left out.
     """
     corners, arcs = find_silhouette_extremes(problem.workpiece)
     points = [corners]
@@ -231,11 +238,10 @@ def find_largest_distance(points: Array) -> float:
 
 
 def compute_contact_allowances(rows: Array, points: Array) -> Array:
-    """Return (F,), by which factor of its shift a contact
-    on each feature changes the location error, at most.
+    """Return for each feature how much a shift of the contact changes the location error, at most, (F,).
 
-    On a line per mm of shift, on an arc per radian. ``rows`` are feature rows, ``points`` (C, 2) those of the
-    silhouette in mm.
+    The shift is in mm along a straight feature, in radians along an arc. ``rows`` are the kernel rows of F
+    features; ``points`` (C, 2) are points of the silhouette in mm.
     """
     apart, hull = find_largest_distance(points), compute_convex_hull(map(tuple, points.tolist()))
     away = [
@@ -246,8 +252,9 @@ def compute_contact_allowances(rows: Array, points: Array) -> Array:
 
 
 def measure_distance_from_hull(hull: Sequence[Point], place: Point) -> float:
-    """Return the distance in mm of a point from a convex
-    hull, a counter-clockwise list of corners; 0 inside.
+    """Return the distance in mm of a point from a convex hull; 0 inside.
+
+    ``hull`` lists the corners counter-clockwise.
     """
     sides = [Line(one, other) for one, other in zip(hull, [*hull[1:], hull[0]], strict=True)]
     if len(hull) > 2 and all(is_left_of(side, place) for side in sides):
@@ -256,23 +263,23 @@ def measure_distance_from_hull(hull: Sequence[Point], place: Point) -> float:
 
 
 def is_left_of(side: Line, place: Point) -> bool:
-    """Return whether a point is to the left of a directed segment, or on its line."""
+    """Return whether a point is to the left of a directed segment, or on the line through it."""
     (x0, y0), (x1, y1) = side.start, side.end
     return (x1 - x0) * (place[1] - y0) >= (y1 - y0) * (place[0] - x0)
 
 
 def cut_feature(row: Array, number: int, give: float, apart: float, length: float) -> list[Array]:
-    """Return the spots (2**k, 7) of a feature in lists from
-    coarse to fine, each spot of one list two of the next.
+    """Return the spots of a feature as a list of arrays (2**k, 7), from the coarsest to the finest.
 
-    There are at most ``MOST_CUTS + 1`` lists.
+    Each array has twice as many spots as the one before: spot i is cut into the spots 2·i and 2·i + 1. There
+    are at most ``MOST_CUTS + 1`` arrays.
 
     Parameters
     ----------
     row : kernel row of the feature.
-    number : of the feature.
-    give : see :func:`compute_contact_allowances`.
-    apart : the largest distance in mm of two points of the silhouette.
+    number : number of the feature.
+    give : the feature's value from :func:`compute_contact_allowances`.
+    apart : largest distance in mm between two points of the silhouette.
     length : characteristic length L of the wrenches, in mm.
     """
     half, is_arc = float(row[HALF_EXTENT]), row[IS_ARC] != 0.0
@@ -284,7 +291,10 @@ def cut_feature(row: Array, number: int, give: float, apart: float, length: floa
 
 
 def make_spots(row: Array, number: int, count: int, give: float, length: float) -> Array:
-    """Return ``count`` equal spots (count, 7) of a feature; the columns for their children stay 0."""
+    """Return ``count`` equal spots of a feature, (count, 7); the columns that link to finer spots stay 0.
+
+    Parameters as in :func:`cut_feature`.
+    """
     half, out = float(row[HALF_EXTENT]) / count, np.zeros((count, SPOT_LENGTH))
     at = (2.0 * np.arange(count) + 1.0 - count) * half
     axis = row[[3, 4]]
@@ -303,16 +313,16 @@ def make_spots(row: Array, number: int, count: int, give: float, length: float) 
 
 
 def join_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
-    """Return all spots (S, 7) of features, the coarsest of
-    each first, linked to the spots that they consist of.
+    """Return all spots of all features, (S, 7), from coarse to fine, each linked to the spots that it is cut
+    into.
 
-    The input arrays' link columns are filled in place: a spot that is cut has count 2 and the index of its
-    first half; a finest spot has its number.
+    The link columns of the input arrays are filled in place. A spot that is cut has count 2 and the index of
+    its first half; a finest spot has its number.
 
     Parameters
     ----------
-    cut : of each feature, see :func:`cut_feature`.
-    starts : (F + 1,) numbers of the finest spots of each feature.
+    cut : for each feature the arrays that :func:`cut_feature` returns.
+    starts : (F + 1,); the finest spots of feature f have the numbers starts[f] to starts[f + 1] - 1.
     """
     sizes = np.array(
         [[len(level[k]) if k < len(level) else 0 for level in cut] for k in range(MOST_CUTS + 1)]
@@ -333,7 +343,8 @@ def join_spots(cut: Sequence[Sequence[Array]], starts: IntArray) -> Array:
 def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
     """Return lower bounds of the ranking keys of fixtures whose effective error is above ``most`` mm.
 
-    There are six rows: drawn angle, quarter turn, other angle, each without and with a dowel in a bore.
+    The six rows are: drawn angle, quarter turn, other angle; each first without and then with a dowel in a
+    bore.
     """
     times = [find_factor(key) for key in (None, "quarter_turn", "other_angle")]
     rows = [(place, times[place] * bore) for place in range(3) for bore in (1.0, IN_BORE)]
@@ -349,20 +360,25 @@ def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
 
 
 def choose_first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
-    """Return the first limit in mm, given the spots of each direction of the toolkit."""
+    """Return the first limit of the effective location error in mm, given the spots of each direction of the
+    clamp.
+    """
     return choose_limit_growth(query)[0] * min(one.least for one in spots)
 
 
 def choose_limit_growth(query: Query) -> tuple[float, float, int]:
-    """Return (first limit over the least error, each next limit over the one before, how many limits)."""
+    """Return how the limits of the location error grow.
+
+    The result is (first limit divided by the least error, each further limit divided by the one before,
+    largest number of limits).
+    """
     return OF_ONE if query.toolkit.travels == 1 else OF_TWO
 
 
 def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
-    """Return whether the best fixtures are surely among
-    those found with an effective error up to ``most`` mm.
+    """Return whether the best fixtures are surely among those with an effective error up to ``most`` mm.
 
-    ``kept`` are the ranking keys of what was found.
+    ``kept`` are the ranking keys of the fixtures found up to that limit.
     """
     if most == inf:
         return True
@@ -373,7 +389,8 @@ def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
 def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
     """Return the next limit in mm, after ``most`` was not enough; inf where limits do not help any longer.
 
-    ``kept`` are the keys of what was found up to ``most``, ``number`` counts the limits tried.
+    ``kept`` are the ranking keys of the fixtures found up to ``most`` mm, ``number`` is how many limits were
+    tried.
     """
     known = kept.find_last_fine_error(query.best or 0)
     if known is None:
@@ -388,7 +405,8 @@ def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -
 
 
 def find_factor(key: str | None) -> float:
-    """Return the factor on the location error for a doubt,
-    by its key in ``model.choose_first_toolkit.FACTORS``; 1 for None.
+    """Return the factor by which a doubt multiplies the location error; 1.0 for None.
+
+    ``key`` is the doubt's key in ``FACTORS``, such as "quarter_turn".
     """
     return next((one.times for one in FACTORS if one.key == key), 1.0)

@@ -61,10 +61,10 @@ BEGIN = 0.618
 
 
 def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
-    """Return the estimated number of fixtures of a query, all of them, whatever its ``best``.
+    """Return the estimated number of all fixtures of a query, whatever its ``best`` is.
 
-    None where they are surely few, with a wall, friction, seating, or rules for each fixture by itself, and
-    once ``cancel`` is set.
+    None where they are surely few; with a wall, with friction, with seating, and with rules tested on each
+    fixture by itself, which are not estimated; and once ``cancel`` is set.
     """
     held_flat = WALL_END in query.toolkit.contacts or query.toolkit.holds_by_friction
     if held_flat or query.seating is not None or query.is_sifted:
@@ -80,11 +80,11 @@ def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -
 def ask_for_best_where_many(
     query: Query, threads: int, cancel: Event | None = None
 ) -> tuple[Query, int | None]:
-    """Return a query for all fixtures, or for the best
-    :data:`LISTED` where there are about more than :data:`MANY`.
+    """Return (1) the query, or where it has too many fixtures, a query for the best; and (2) the estimated
+    number.
 
-    With it comes the estimated number; None where they are few, and for a query that asks for the best
-    already.
+    With more than about :data:`MANY` fixtures the best :data:`LISTED` are asked for. The number is None where
+    the fixtures are few, where it cannot be estimated, and for a query that already asks for the best.
     """
     if query.best is not None:
         return query, None
@@ -93,8 +93,9 @@ def ask_for_best_where_many(
 
 
 def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> int | None:
-    """Return the estimated number of fixtures in a toolkit
-    with one moving carrier; None where few, or once cancelled.
+    """Return the estimated number of fixtures in a toolkit with one moving carrier.
+
+    None where they are surely few, or once cancelled.
     """
     problem = Problem.from_query(query)
     search = ToolkitSearch.from_problem(problem, threads=threads, cancel=cancel)
@@ -124,7 +125,10 @@ def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> 
 
 
 def estimate_clamp_pairs(query: Query, threads: int, cancel: Event | None) -> int | None:
-    """Return the estimated number of listed fixtures with two clamps; None where few, or once cancelled."""
+    """Return the estimated number of listed fixtures with two clamps.
+
+    None where they are surely few, or once cancelled.
+    """
     searches = make_searches(query, threads, cancel)
     one = searches[0]
     blocks = one.make_blocks(one.problem.toolkit.types, MOST_CELLS)
@@ -147,14 +151,14 @@ def estimate_clamp_pairs(query: Query, threads: int, cancel: Event | None) -> in
 
 @frozen(eq=False)
 class FeatureStretches:
-    """A random choice among triples of stretches of features that three locators touch.
+    """A random choice among the triples of stretches of features that three locators can touch.
 
-    The locators of a seat touch the same stretches whatever the directions of its clamps are.
+    The choice concerns the locators alone, so that it is the same for all directions of the clamps.
 
     Parameters
     ----------
-    every : one in ``every`` triples is chosen.
-    near : the stretches, and which triples are chosen.
+    every : about one in ``every`` triples is chosen.
+    near : how the features are cut into stretches, and which triples of stretches are chosen.
     numbers : (M,) a random number for each stretch.
     """
 
@@ -164,7 +168,10 @@ class FeatureStretches:
 
     @classmethod
     def from_problems(cls, problems: Sequence[Problem], every: int) -> FeatureStretches:
-        """Return the choice for the problems of all directions; the stretches are about equally long."""
+        """Return a choice that is valid for the problems of all directions of the clamp.
+
+        The stretches are about equally long.
+        """
         rows = problems[0].rows[slice(*problems[0].standing)]
         lengths = rows[:, HALF_EXTENT] * np.where(rows[:, IS_ARC] != 0.0, rows[:, RADIUS], 1.0)
         counts = np.maximum(np.rint(STRETCHES * lengths / lengths.sum()), 1).astype(np.int64)
@@ -179,14 +186,16 @@ class FeatureStretches:
         return cls(every, NearSpots(starts, joined, triples.astype(np.int8)), numbers)
 
     def select_contacts(self, records: list[Array], problem: Problem) -> Array:
-        """Return, of the records of blocks, those (M, 19) whose three locators touch a chosen triple."""
+        """Return those records (M, 19) of blocks whose three locators touch a chosen triple of stretches."""
         blocks = split_into_blocks(records)
         if self.every > 1:
             blocks = (block[self.are_chosen(block, problem)] for block in blocks)
         return np.concatenate(list(blocks))
 
     def are_chosen(self, records: Array, problem: Problem) -> BoolArray:
-        """Return whether each record's (N, 19) three locators touch a chosen triple of stretches, (N,)."""
+        """Return a mask (N,): True for records (N, 19) whose three locators touch a chosen triple of
+        stretches.
+        """
         c = make_candidates(records, problem)
         feature, rows = c.feature[:, :LOCATORS], problem.rows[c.feature[:, :LOCATORS]]
         axis, ray = rows[..., AXIS_X : AXIS_Y + 1], c.point[:, :LOCATORS] - rows[..., X : Y + 1]
@@ -202,10 +211,11 @@ class FeatureStretches:
 
 
 def sum_up_cells(blocks: Sequence[SearchBlock]) -> tuple[Array, Array, Array]:
-    """Return (starts, costs, finds) of the cells in which blocks begin, ascending.
+    """Return (starts, costs, finds) of the cells of orientation in which blocks begin, each (C,), starts
+    ascending.
 
-    ``starts`` are find_candidate_orientations in radians; ``costs`` and ``finds`` sum the estimated work and the expected
-    records.
+    ``starts`` are orientations psi in radians. ``costs`` and ``finds`` are the estimated work and the
+    expected number of records, summed over the blocks that begin in the cell.
     """
     starts, number = np.unique([block.start for block in blocks], return_inverse=True)
     costs, finds = np.zeros(len(starts)), np.zeros(len(starts))
@@ -223,9 +233,10 @@ def estimate_listed(
     threads: int,
     cancel: Event | None,
 ) -> float:
-    """Return the estimated number of listed fixtures with two clamps, with orientations in one range.
+    """Return the estimated number of listed fixtures with two clamps whose orientation lies in one range.
 
-    ``ranges`` are that range in radians first, then the same a whole turn later and earlier.
+    ``ranges`` are three (low, high) in radians: the range itself, a whole turn later, and a whole turn
+    earlier.
     """
     low, high = map(degrees, ranges[0])
     # Of cells that only touch the range none is searched.
@@ -247,7 +258,10 @@ def estimate_listed(
 
 
 def thin_contacts(records: Array, problem: Problem, every: int) -> Array:
-    """Return, of records (N, 19), about one in ``every`` seats with all contacts of these seats."""
+    """Return the records (M, 19) of about one in ``every`` seats; of a chosen seat all records are kept.
+
+    A seat is the pose that three locators fix.
+    """
     holes, theta, *_ = number_seats(records, problem)
     # Seats with the same holes and nearly the same orientation are taken together.
     seats = holes * 0x85EBCA6B + np.round(theta / (100.0 * SAME_POSE)).astype(np.int64)
@@ -255,10 +269,10 @@ def thin_contacts(records: Array, problem: Problem, every: int) -> Array:
 
 
 def draw_by_size(sizes: Array, count: float) -> tuple[IntArray, Array]:
-    """Return about ``count`` indices, drawn with chances in
-    proportion to their sizes (N,) but at most 1, and the chances.
+    """Return (1) the indices of drawn items, about ``count`` of N, and (2) the chance of each drawn item.
 
-    The draw is systematic and always the same.
+    Chances are in proportion to ``sizes`` (N,), but at most 1. The draw is systematic: equal arguments give
+    an equal draw.
     """
     chances = np.minimum(count * sizes / sizes.sum(), 1.0)
     steps = np.floor(np.cumsum(chances) + BEGIN)
@@ -267,7 +281,8 @@ def draw_by_size(sizes: Array, count: float) -> tuple[IntArray, Array]:
 
 
 def estimate_draw_count(work: float, costs: Array, finds: Array) -> float:
-    """Return how many items, drawn with chances in proportion
-    to ``finds`` (N,), cost ``work`` together on average.
+    """Return how many items to draw so that the drawn items cost ``work`` together on average.
+
+    Items are drawn with chances in proportion to ``finds`` (N,); item k costs ``costs[k]``.
     """
     return work * float(finds.sum() / (finds @ costs))

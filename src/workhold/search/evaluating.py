@@ -47,7 +47,7 @@ class Evaluation:
 
     Parameters
     ----------
-    holes : as they were given.
+    holes : names of the holes, as they were given.
     result : the fixtures, one for each pose in which the pegs hold the part, best first. Its toolkit has no
         more holes than the set-up needs.
     reason : why there is no fixture, in a sentence; empty where there is one.
@@ -80,21 +80,22 @@ def evaluate(
     jaw_force: float | None = None,
     threads: int | None = None,
 ) -> Evaluation:
-    """Find all poses in which the part touches exactly the pegs in given holes and is held by them.
+    """Return an evaluation of a set-up: all poses in which the part touches exactly these pegs and is held.
 
     Parameters
     ----------
     workpiece, toolkit : what is held, and in what; lengths in mm.
-    holes : names of the holes of all pegs, as ``peg.hole`` has them, such as "L-A2" of a vise, "B3" of a plate.
-        Of a plate the hole of a clamp may be named as well, as "clamp E2"; else it may be bolted anywhere. Where
-        all pegs stand some holes farther on it is the same set-up.
+    holes : names of the holes of all pegs, as in ``peg.hole``, such as "L-A2" of a vise or "B3" of a plate.
+        On a plate the hole of a clamp may be named as well, as "clamp E2"; otherwise the clamp may be bolted
+        anywhere. A set-up is the same where all its pegs stand equally many holes farther on.
     contact_margin, restrictions, tolerance, loads, jaw_force : see :class:`workhold.Query`.
     threads : how many share the work; None for one on each processor.
 
     Raises
     ------
     InputError
-        For names of no holes, another number of them than the toolkit has pegs, and what a query refuses.
+        For a name that is no hole, for more or fewer holes than the toolkit has pegs, and where a query
+        raises it.
 
     Examples
     --------
@@ -130,7 +131,9 @@ def evaluate(
 
 
 def make_zero_counts(query: Query) -> tuple[dict[str, int], dict[str, int]]:
-    """Return two dicts with a count of 0 for each type: the fixtures found, and the distinct ones."""
+    """Return two dicts with a count of 0 for each type of the query:
+    fixtures found, and distinct fixtures.
+    """
     counts = dict.fromkeys(query.toolkit.types, 0)
     return counts, dict(counts)
 
@@ -143,7 +146,8 @@ class GivenSetUp:
     ----------
     toolkit : the toolkit.
     pegs : holes of the pegs, in the order given.
-    clamps : holes in which clamps are bolted, in the order given; empty where that is left open.
+    clamps : holes in which clamps are bolted, in the order given; empty where the clamps may be bolted
+        anywhere.
     """
 
     toolkit: Toolkit
@@ -152,12 +156,14 @@ class GivenSetUp:
 
     @classmethod
     def from_names(cls, names: Sequence[str], toolkit: Toolkit) -> GivenSetUp:
-        """Return the set-up of pegs in named holes, and of clamps in holes named with "clamp " before.
+        """Return the set-up with pegs and clamps in named holes.
+
+        The name of a clamp's hole begins with "clamp ", the name of a peg's hole does not.
 
         Raises
         ------
         InputError
-            For a name of no hole, or another number of pegs or clamps than the toolkit has.
+            For a name that is no hole, and for more or fewer pegs or clamps than the toolkit has.
         """
         lattices = [carrier for carrier in toolkit.carriers if carrier.has_lattice]
         for name in names:
@@ -217,13 +223,14 @@ class GivenSetUp:
 
     @property
     def counts_from_wall(self) -> bool:
-        """Whether rows are counted from a wall, so that the
-        same pegs some rows farther on are another set-up.
-        """
+        """Whether rows are counted from a wall, so that pegs moved by some rows are another set-up."""
         return self.is_beside_wall and any(carrier.on for carrier in self.toolkit.carriers)
 
     def find_matching_fixtures(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.bool_]:
-        """Return which fixtures (N,) of a table have their pegs, and given clamps, in the set-up's holes."""
+        """Return a mask (N,): True for fixtures whose pegs and clamps stand in the set-up's holes.
+
+        Where the set-up names no clamps, only pegs are compared. ``toolkit`` is the toolkit of the table.
+        """
         wanted = self.make_pattern([*self.pegs, *(evolve(one, carrier=CLAMP) for one in self.clamps)])
         found = np.zeros(len(table), np.bool_)
         for number, (kind, columns, rows) in enumerate(
@@ -239,10 +246,10 @@ class GivenSetUp:
         return found
 
     def make_pattern(self, holes: Sequence[HoleSelection]) -> frozenset[tuple[str, int, int]]:
-        """Return the holes as a set of (carrier name, column, row) that is equal for equal set-ups.
+        """Return the holes as a set of (carrier name, column, row), equal for two equal set-ups.
 
-        Where holes cannot be blocked (a plate), columns count from the lowest one; so do rows unless they
-        count from a wall.
+        Where holes cannot be blocked (a plate), columns count from the set-up's lowest column, and rows from
+        its lowest row, unless rows are counted from a wall.
         """
         column, row = (
             (0, 0)
@@ -253,10 +260,10 @@ class GivenSetUp:
         return frozenset((hole.carrier, hole.column - column, (hole.row or 0) - row) for hole in holes)
 
     def describe_distant_peg(self, diameter: float) -> str:
-        """Return a sentence on the first peg too far from all
-        others of its carrier for a part of this diameter in mm.
+        """Return a sentence on the first peg that is too far from every other peg of its carrier.
 
-        Empty where there is none.
+        Too far means that no pose of a part of this diameter in mm touches both. Empty where there is no such
+        peg.
         """
         for hole in self.pegs:
             carrier = self.toolkit.find_carrier(hole.carrier)
@@ -279,8 +286,9 @@ class GivenSetUp:
         return ""
 
     def explain_no_fixture(self, query: Query, threads: int) -> str:
-        """Return a sentence that says why no fixture stands in the
-        set-up's holes, given the query of its smallest toolkit.
+        """Return a sentence that says why no fixture stands in the set-up's holes.
+
+        ``query`` is the query of the set-up's smallest toolkit, see :meth:`make_smallest_toolkit`.
         """
         named = join_words(
             [make_hole_label(hole, self.toolkit.find_carrier(hole.carrier)) for hole in self.pegs]
@@ -311,7 +319,9 @@ class GivenSetUp:
 
 
 def make_hole_label(hole: HoleSelection, carrier: Carrier) -> str:
-    """Return the name of a hole on its carrier, such as "L-A2"; row 1 for a whole column."""
+    """Return the name of a hole on its carrier, such as "L-A2"; a whole
+    column is named by its hole in row 1.
+    """
     return carrier.name_place(hole.column, hole.row or 0)
 
 
@@ -321,7 +331,7 @@ def find_named_hole(name: str, lattices: Iterable[Carrier]) -> HoleSelection:
     Raises
     ------
     InputError
-        For a name of no hole of these lattices, and of a whole column.
+        For a name that is no hole of the lattices, and for the name of a whole column.
     """
     carriers = {carrier.name: carrier for carrier in lattices}
     first = next(iter(carriers.values()))

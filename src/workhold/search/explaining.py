@@ -1,4 +1,4 @@
-"""Why there is no fixture: what each rule takes away of the contacts, what is nearest, which change helps.
+"""Why there is no fixture: how many contacts each rule removes, the nearest miss, and which changes help.
 
 Contacts on a lattice are tested in ``search.broken_rules``, contacts beside a wall here.
 """
@@ -52,10 +52,10 @@ __all__ = ["explain", "count_removals_beside_wall"]
 
 
 def count_removals_beside_wall(query: Query, alone: bool) -> RuleRemovals:
-    """Return how many pairs of contacts there are beside a
-    wall, with one moving clamp, and how many each rule removes.
+    """Return how many pairs of contacts there are beside a wall, and how many each rule removes.
 
-    Pairs are those of a locator and the clamp, or of two pegs of a sliding lattice.
+    A pair is a locator and the clamp, or two pegs of a sliding lattice. The query's toolkit has one direction
+    of the clamp.
 
     Parameters
     ----------
@@ -76,8 +76,11 @@ def count_removals_beside_wall(query: Query, alone: bool) -> RuleRemovals:
 
 
 def count_left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
-    """Yield (rule's words, how many pairs are left) for each rule
-    in the order asked; the first has no words and counts all.
+    """Yield (name of a rule, number of pairs that keep it and all
+    rules before it), in the order of the rules.
+
+    The first entry has an empty name and counts all pairs. ``alone`` as in
+    :func:`count_removals_beside_wall`.
     """
     toolkit, asked = query.toolkit, query.restrictions
     free = toolkit.without_limits(toolkit.limits)
@@ -123,9 +126,9 @@ def count_left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
 
 
 def make_search(query: Query, explains: bool = False) -> FlushSearch | None:
-    """Return the search of a query beside a wall, not yet run; None where no feature is left to touch.
+    """Return the search of a query beside a wall, not yet run; None where the query has no valid problem.
 
-    ``explains`` makes it keep the nearest miss.
+    ``explains`` makes the search keep the nearest miss.
     """
     kind = LatticePairSearch if query.toolkit.moving.on is None else WallSearch
     try:
@@ -135,8 +138,9 @@ def make_search(query: Query, explains: bool = False) -> FlushSearch | None:
 
 
 def run_flush_search(query: Query) -> FlushSearch | None:
-    """Return the search of a query beside a wall, run on
-    all hull edges; None where no feature is left to touch.
+    """Return the search of a query beside a wall, run on all hull edges, with its nearest miss.
+
+    None where the query has no valid problem, as when no feature is left to touch.
     """
     search = make_search(query, explains=True)
     for edge in [] if search is None else search.edges:
@@ -146,13 +150,17 @@ def run_flush_search(query: Query) -> FlushSearch | None:
 
 
 def count_examined(query: Query) -> int:
-    """Return how many pairs of contacts the search of a query examines."""
+    """Return how many pairs of contacts the search of a query beside a wall examines."""
     search = run_flush_search(query)
     return 0 if search is None else search.examined
 
 
 def count_placed(query: Query) -> int:
-    """Return how many pairs have a place in the toolkit and keep what is asked of each fixture by itself."""
+    """Return how many pairs beside a wall hold the part, have a place
+    in the toolkit, and keep the fixture rules.
+
+    The fixture rules are the faces to touch and the largest location error.
+    """
     search = make_search(query)
     if search is None:
         return 0
@@ -165,8 +173,8 @@ def count_placed(query: Query) -> int:
 
 
 def make_nearest_miss(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
-    """Return the first row of a table as a nearest miss,
-    with a sentence why its contacts do not press the part.
+    """Return the first row of a table as a nearest miss, with a
+    sentence why its contacts do not press the part.
     """
     fixture = make_fixture_of_row(table, toolkit, 0, workpiece)
     pulls = sum(peg.force < 0 for peg in fixture.pegs)
@@ -191,7 +199,7 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     ----------
     query : a query without any fixture.
     threads : how many threads share the work; None for one on each processor.
-    unit : of the lengths in the explanation's words.
+    unit : unit of lengths in the explanation's sentences.
     """
     # The ranking makes no difference here, and may name a figure that a changed toolkit has not.
     query = evolve(query, rank_by="warnings")
@@ -213,7 +221,9 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
 
 
 def count_removals_between_jaws(query: Query) -> RuleRemovals:
-    """Return in how many ways a part can lie between flat jaws, and how many of them each rule takes away."""
+    """Return in how many ways a part can lie between flat jaws, and how
+    many of these ways each rule removes.
+    """
     rules = Counter(one.rule for one in JawSearch(query).examine_all())
     first = left = sum(rules.values())
     removals = []
@@ -225,7 +235,7 @@ def count_removals_between_jaws(query: Query) -> RuleRemovals:
 
 
 def count_removals_of_seats(query: Query, threads: int | None) -> RuleRemovals:
-    """Return how many seats of three locators a plate has, and how many of them each rule takes away."""
+    """Return how many seats of three locators a plate has, and how many of these seats each rule removes."""
     toolkit, asked = query.toolkit, query.restrictions
     bare = evolve(
         query,
@@ -259,8 +269,9 @@ def count_removals_of_seats(query: Query, threads: int | None) -> RuleRemovals:
 
 
 def count_seats(query: Query, threads: int | None) -> int:
-    """Return how many seats a query has that keep its
-    largest location error; 0 where nothing is left to touch.
+    """Return how many seats of three locators keep a query's rules, the largest location error included.
+
+    0 where the search refuses the query, as when nothing is left to touch.
     """
     try:
         return len(select_within_error(find_seats(query, choose_thread_count(threads)).table, query))
@@ -269,8 +280,9 @@ def count_seats(query: Query, threads: int | None) -> int:
 
 
 def explain_no_contacts(ways: Sequence[Query]) -> Note:
-    """Return the note why nothing touches a part at the same
-    time, given the query of each direction of the toolkit.
+    """Return the note why no set of pegs can touch the part at the same time.
+
+    ``ways`` has the query of each direction of the toolkit.
     """
     wording = ways[0].toolkit.wording
     if ways[0].toolkit.strap_set is not None:
@@ -281,10 +293,10 @@ def explain_no_contacts(ways: Sequence[Query]) -> Note:
 
 
 def find_helpful_changes(query: Query, threads: int | None, unit: Unit) -> tuple[HelpfulChange, ...]:
-    """Return changes of a query that lead to fixtures, those with the most fixtures first.
+    """Return changes of a query that lead to fixtures; the change with the most fixtures comes first.
 
-    They are single changes; where no single one that lifts a request helps, the smallest combination found of
-    such changes.
+    All are single changes, except where no single change that drops a request helps: then the smallest
+    combination of such changes that was found is added.
     """
     out, lifts = [], list[QueryChange]()
     for change in list_changes(query, unit):
@@ -303,8 +315,10 @@ def find_helpful_changes(query: Query, threads: int | None, unit: Unit) -> tuple
 def answer_changed_query(
     changed: Callable[[Query], Query], query: Query, threads: int | None
 ) -> Result | None:
-    """Return what a changed query finds within :data:`HELP_SECONDS`,
-    perhaps incomplete; None where it is no valid query.
+    """Return the result of a query after a change.
+
+    The search is stopped after :data:`HELP_SECONDS`; the result is then incomplete. None where the changed
+    query is invalid.
     """
     enough = Event()
     timer = Timer(HELP_SECONDS, enough.set)
@@ -321,18 +335,17 @@ def answer_changed_query(
 def find_changes_together(
     query: Query, lifts: Sequence[QueryChange], threads: int | None
 ) -> Iterator[HelpfulChange]:
-    """Yield at most one change that leaves out several requests
-    at once, as few of ``lifts`` as suffice for fixtures.
+    """Yield at most one change: one that drops several requests at once, as few as lead to fixtures.
 
-    ``lifts`` are the changes that leave out one request each; nothing is yielded if even all of them do not
-    help.
+    ``lifts`` are the changes that drop one request each. Nothing is yielded if dropping all of them gives no
+    fixture.
     """
 
     def found_without(some: Sequence[QueryChange]) -> Result | None:
-        """Return the result without some requests, if it has any fixture, else None."""
+        """Return the result without the requests that ``some`` changes drop; None if it has no fixture."""
 
         def changed(asked: Query) -> Query:
-            """Return the query without these requests."""
+            """Return a query after all of the changes ``some``."""
             for lift in some:
                 asked = lift.change(asked)
             return asked
@@ -352,10 +365,10 @@ def find_changes_together(
 
 
 def describe_nearest_turn(query: Query, result: Result) -> str:
-    """Return words on how many degrees beyond the allowed
-    angles the part can be held, preferably without warnings.
+    """Return words on how many degrees outside the allowed angles the nearest fixture of a result is.
 
-    Empty where no angles were asked for, or the result keeps them.
+    Only fixtures with the fewest warnings are considered. Empty where the query allows all angles, or where
+    the result was found with its angles kept.
     """
     if not query.restrictions.angles or result.query.restrictions.angles:
         return ""
@@ -380,11 +393,11 @@ class QueryChange(NamedTuple):
     Parameters
     ----------
     words : description of the change.
-    changed : returns the changed query; raises InputError where there is none.
-    fields : fields of the toolkit that it changes; None if it changes none.
-    rules : names of the requests that it leaves out, see ``Query.asked``.
+    changed : returns the changed query; raises InputError where the changed query is invalid.
+    fields : new values of the toolkit's fields that the change sets; None if it sets none.
+    rules : names of the requests that the change drops, see ``Query.asked``.
     change : makes the same change to any query, so that changes can be combined.
-    is_whole : whether it leaves out its requests entirely, not in part.
+    is_whole : whether the change drops its requests entirely, not in part.
     """
 
     words: str
@@ -396,8 +409,9 @@ class QueryChange(NamedTuple):
 
 
 def list_changes(query: Query, unit: Unit) -> Iterator[QueryChange]:
-    """Yield the single changes of a query to try: without each
-    request, then with the toolkit's limits lifted or changed.
+    """Yield the single changes of a query to try.
+
+    First come the changes that drop one request each, then those that lift or change a limit of the toolkit.
     """
     asked, toolkit = query.restrictions, query.toolkit
 
@@ -408,7 +422,7 @@ def list_changes(query: Query, unit: Unit) -> Iterator[QueryChange]:
         fields: Mapping[str, Any] | None = None,
         is_whole: bool = True,
     ) -> QueryChange:
-        """Return a change of the query that leaves out some requests."""
+        """Return a change of the query that drops some requests."""
         return QueryChange(words, partial(change, query), fields, rules, change, is_whole)
 
     if asked.avoid:
@@ -444,17 +458,17 @@ def list_changes(query: Query, unit: Unit) -> Iterator[QueryChange]:
 
 
 def change_restrictions(query: Query, **changed: Any) -> Query:
-    """Return a query with some fields of its restrictions changed."""
+    """Return a query with some fields of its restrictions replaced, given by name."""
     return evolve(query, restrictions=evolve(query.restrictions, **changed))
 
 
 def change_toolkit(query: Query, change: ToolkitChange) -> Query:
-    """Return a query with the toolkit's fields changed.
+    """Return a query with some fields of its toolkit changed.
 
     Raises
     ------
     InputError
-        When there is no such toolkit.
+        When the changed toolkit is invalid.
     """
     return move_to_toolkit(query, query.toolkit.with_fields(change.fields))
 
@@ -462,7 +476,7 @@ def change_toolkit(query: Query, change: ToolkitChange) -> Query:
 def move_to_toolkit(query: Query, toolkit: Toolkit) -> Query:
     """Return a query with another toolkit of the same kind.
 
-    Where the number of pegs differs, its types, ranking and listing go back to their defaults.
+    Where the number of pegs differs, the query's types, ranking and listing go back to their defaults.
     """
     if toolkit.peg_count == query.toolkit.peg_count:
         return evolve(query, toolkit=toolkit)

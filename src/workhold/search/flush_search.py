@@ -44,9 +44,10 @@ class PartOnWall:
 
     Parameters
     ----------
-    rows : (F, 12) kernel rows in the wall's frame: u along the hull edge from its start, v up from it, in mm.
-    length : of the hull edge, in mm.
-    turn : error bound of its direction, in radians.
+    rows : (F, 12) kernel rows of F features in the wall's frame: u along the hull edge from its start, v up
+        from the edge, in mm.
+    length : length of the hull edge, in mm.
+    turn : error bound of the hull edge's direction, in radians.
     off : error bound of lengths, in mm.
     """
 
@@ -57,7 +58,7 @@ class PartOnWall:
 
 
 def lay_part_on_wall(problem: Problem, edge: int) -> PartOnWall:
-    """Return a problem's features in the frame of the wall, with the hull edge of this number on the wall."""
+    """Return a problem's features in the wall's frame, with hull edge number ``edge`` on the wall."""
     rows = problem.rows
     start, end = problem.workpiece.flush.ends[edge] - np.array(problem.workpiece.center)
     step = end - start
@@ -73,10 +74,10 @@ def lay_part_on_wall(problem: Problem, edge: int) -> PartOnWall:
 
 
 def list_allowed_edges(problem: Problem) -> list[int]:
-    """Return the numbers of the hull edges on which a part may lie, ascending.
+    """Return the indices of the hull edges on which a part may lie, ascending.
 
-    Left out are edges at a forbidden angle, edges of faces to avoid alone, edges with a keep-out zone that
-    reaches into the wall, and edges where the program's tools come too near the wall.
+    Left out are edges at a forbidden angle, edges that only faces to avoid touch, edges with a keep-out zone
+    that reaches into the wall, and edges where the program's tools come too near the wall.
     """
     part, asked = problem.workpiece, problem.restrictions
     avoided, carriers = list_avoided_faces(part, asked), problem.toolkit.carriers
@@ -101,19 +102,24 @@ def list_allowed_edges(problem: Problem) -> list[int]:
 
 @define(eq=False)
 class FlushSearch:
-    """A search for what presses a part against a wall, one hull edge after the other, with its counts.
+    """A search for pairs of contacts that press a part against a wall,
+    one hull edge after the other, with counts.
+
+    A pair is a locator and a clamp, or two pegs of a sliding lattice.
 
     Parameters
     ----------
-    problem : what is searched.
-    explains : whether to keep the pair that comes nearest.
-    locators : how many contacts of locators there were.
-    examined, verified, escalated : how many pairs of contacts there were; how many were proven to press the
-        part; how many were decided in ball arithmetic.
+    problem : the problem that is searched.
+    explains : whether to keep the pair that comes nearest to pressing the part.
+    locators : number of contacts of locators found so far.
+    examined : number of pairs of contacts so far.
+    verified : number of these pairs that were proven to press the part.
+    escalated : number of these pairs that were decided in ball arithmetic.
     undecided : pairs that ball arithmetic leaves undecided, for the search report.
     is_square : whether every face met so far is straight, and parallel or square to the wall.
-    nearest : the smallest share of a contact in the null vector, for the pair in which that is largest, and
-        its table; None while no pair is known. Kept only with ``explains`` and while no pair is verified.
+    nearest : the pair that comes nearest to pressing the part, as (score, table of one row); None while no
+        pair is known. The score is the pair's smallest entry of the null vector, whose absolute values sum to
+        1. Kept only with ``explains`` and while no pair is verified.
     """
 
     problem: Problem
@@ -128,7 +134,7 @@ class FlushSearch:
 
     @property
     def edges(self) -> list[int]:
-        """Numbers of the hull edges on which the part may lie, ascending."""
+        """Indices of the hull edges on which the part may lie, ascending."""
         return list_allowed_edges(self.problem)
 
     @property
@@ -142,22 +148,23 @@ class FlushSearch:
         raise NotImplementedError
 
     def iterate_fixtures(self, edge: int) -> Iterator[Any]:
-        """Yield the pairs that press the part as it lies on a hull edge, in batches of the subclass's kind.
+        """Yield the pairs that press the part as it lies on hull edge ``edge``, in batches.
 
-        The counts are updated while it runs.
+        The type of a batch depends on the subclass. The counts are updated while the iteration runs.
         """
         raise NotImplementedError
 
     def place_fixtures(self, parts: list[Any], edge: int) -> FixtureTable:
-        """Return the table of those pairs on a hull edge that have a place in the toolkit, each once.
+        """Return the table of those pairs that have a place in the toolkit, each once.
 
-        ``parts`` are batches from :meth:`iterate_fixtures`, at least one.
+        ``parts`` are batches that :meth:`iterate_fixtures` yields for hull edge ``edge``, at least one.
         """
         raise NotImplementedError
 
     def lay_on_edge(self, edge: int) -> PartOnWall:
-        """Return the part as it lies on a hull edge; sets
-        ``is_square`` to False where a face is round or oblique.
+        """Return the part as it lies on hull edge ``edge``.
+
+        Sets ``is_square`` to False where a face is round or oblique to the wall.
         """
         lying = lay_part_on_wall(self.problem, edge)
         tilted = np.minimum(np.abs(lying.rows[:, AXIS_X]), np.abs(lying.rows[:, AXIS_Y])) > PARALLEL
@@ -167,13 +174,15 @@ class FlushSearch:
     def keep_nearest(
         self, null: Array, is_none: BoolArray, table: Callable[[IntArray], FixtureTable]
     ) -> None:
-        """Keep the pair with the largest least share in ``nearest``, as long as no pair is verified.
+        """Update ``nearest`` with the best of M pairs, as long as no pair is verified.
+
+        The best pair has the largest smallest entry in its null vector.
 
         Parameters
         ----------
         null : (M, 4) null vectors of pairs.
-        is_none : (M,) pairs to leave out, since the force that others are relative to is zero.
-        table : returns the table of the pairs of an index array.
+        is_none : (M,) True for pairs to leave out: the force by which a fixture's forces are divided is zero.
+        table : returns the fixture table of the pairs with given indices.
         """
         if self.verified or len(null) == 0:
             return

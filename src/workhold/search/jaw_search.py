@@ -1,13 +1,15 @@
-"""Every way to hold a part between two flat jaws: each hull edge on the fixed jaw, each height of parallels, each stop.
+"""Every way to hold a part between two flat jaws: each hull edge on the fixed jaw, each height of parallels,
+each stop.
 
-The hull edge on the fixed jaw fixes the angle. The jaw that moves touches what is farthest from it: a hull edge that is
-parallel, or an arc's point, or a corner. What both touch, and where along the jaws it lies, follows in closed form; so
-the list is complete. A part without a hull edge, such as a disc, stands as it is drawn.
+The hull edge on the fixed jaw fixes the angle. The jaw that moves touches what is farthest from it: a hull
+edge that is parallel, or an arc's point, or a corner. What both touch, and where along the jaws it lies,
+follows in closed form; so the list is complete. A part without a hull edge, such as a disc, stands as it is
+drawn.
 
 Glossary
 --------
-touch : a stretch along a jaw that the part touches, or a point of it.
-examined : a hull edge with parallels and a stop, and the first rule that it breaks.
+touch : a stretch along a jaw, or a point of the jaw, that the part touches.
+examined hold : a combination of hull edge, parallels and stop, with the first rule that it breaks.
 """
 
 from __future__ import annotations
@@ -82,8 +84,8 @@ class JawTouch:
 
     Parameters
     ----------
-    low, high : from where to where along the jaw, in mm; equal for a point.
-    band : (lowest, highest) height at which it touches, in mm.
+    low, high : ends of the stretch, in mm along the jaw; equal for a point.
+    band : (lowest, highest) height of the touch above the part's lower side, in mm.
     faces : numbers of the faces that touch; empty for a corner.
     """
 
@@ -94,19 +96,19 @@ class JawTouch:
 
     @property
     def is_point(self) -> bool:
-        """Whether it is a point rather than a stretch."""
+        """Whether the touch is a point rather than a stretch."""
         return self.high <= self.low
 
 
 @frozen(eq=False)
 class JawOutline:
-    """The outline of a part that jaws with their top at one height meet.
+    """The outline of a part that the jaws meet, for one height of the jaws' top.
 
     Parameters
     ----------
-    outline : of the part between the heights of the jaws.
-    first : the number of its first segment.
-    height : of the part, in mm; None where not given.
+    outline : outline of the part at the heights of the jaws.
+    first : number that the outline's first segment has in files and pictures.
+    height : height of the part, in mm; None where not given.
     """
 
     outline: Workpiece
@@ -125,14 +127,15 @@ class JawOutline:
 
     @cached_property
     def angles(self) -> list[float]:
-        """Orientations in radians in [0, 2 pi), one for each hull
-        edge that can lie on the fixed jaw; [0.0] without hull edges.
+        """Orientations in radians in [0, 2 pi); entry k brings hull edge k onto the fixed jaw.
+
+        [0.0] for a part without hull edges.
         """
         turns = [-atan2(edge.tangent[1], edge.tangent[0]) % (2 * pi) for edge in self.edges]
         return turns or [0.0]
 
     def find_band(self, number: int) -> Band | None:
-        """Return the heights (low, high) in mm at which a face may be touched; None where it may not.
+        """Return the heights (low, high) in mm at which a jaw may touch a face; None where it may not.
 
         ``number`` is the face's index in ``segments``.
         """
@@ -142,12 +145,12 @@ class JawOutline:
         return UNKNOWN_BAND if self.height is None else (0.0, self.height)
 
     def find_face_number(self, index: int) -> int:
-        """Return the number in files and pictures of the face with an index in ``segments``."""
+        """Return the number, as files and pictures show it, of the face ``segments[index]``."""
         return self.first + self.outline.outer_faces[index].number
 
     def lay_at_angle(self, place: int) -> PartOnJaw:
-        """Return the part as it lies at ``angles[place]``,
-        with the hull edge of that place on the fixed jaw.
+        """Return the part as it lies at ``angles[place]``, with hull edge
+        ``edges[place]`` on the fixed jaw.
         """
         return PartOnJaw(self, self.angles[place], self.edges[place] if self.edges else None)
 
@@ -158,7 +161,7 @@ class PartOnJaw:
 
     Parameters
     ----------
-    of : the outline and its hull edges.
+    of : outline of the part, with its hull edges.
     theta : orientation in radians.
     edge : the hull edge that lies on the fixed jaw; None for a part without one.
     """
@@ -174,10 +177,10 @@ class PartOnJaw:
 
     @cached_property
     def reaches(self) -> dict[tuple[int, int], tuple[float, list[tuple[float, float, tuple[int, ...]]]]]:
-        """Reach of the turned outline by direction: key (-1, 0), (1, 0), (0, -1) or (0, 1).
+        """Outermost points of the turned outline, by direction (-1, 0), (1, 0), (0, -1) or (0, 1).
 
-        Each value is the largest coordinate in mm along the direction, and the points (x, y, indices of
-        faces) there. A point on an arc has one face, a corner two.
+        Each value is (1) the largest coordinate in mm along the direction, and (2) the points (x, y, indices
+        of faces) there. A point on an arc has one face, a corner two.
         """
         points: list[tuple[float, float, tuple[int, ...]]] = []
         count = 0
@@ -211,14 +214,17 @@ class PartOnJaw:
         return out
 
     def measure_reach(self, a: int, b: int) -> float:
-        """Return the largest coordinate in mm of the turned outline
-        along the direction (a, b), one of the keys of ``reaches``.
+        """Return the largest coordinate in mm of the turned outline along a direction (a, b).
+
+        The direction is one of the keys of ``reaches``.
         """
         return self.reaches[a, b][0]
 
     @cached_property
     def opposite(self) -> HullEdge | None:
-        """Hull edge that lies on the moving jaw: that antiparallel to ``edge``; None without one."""
+        """Hull edge that lies on the moving jaw, antiparallel to
+        ``edge``; None where there is no such hull edge.
+        """
         if self.edge is None:
             return None
         tx, ty = self.edge.tangent
@@ -233,7 +239,7 @@ class PartOnJaw:
 
     @cached_property
     def level(self) -> float:
-        """y of the fixed jaw in mm, in the turned drawing."""
+        """Coordinate y of the fixed jaw in mm, in the turned drawing."""
         return -self.measure_reach(0, -1) if self.edge is None else self.turn_point(self.edge.start.point)[1]
 
     @cached_property
@@ -243,15 +249,15 @@ class PartOnJaw:
 
     @cached_property
     def touched(self) -> tuple[list[JawTouch], list[JawTouch]]:
-        """Touches on the fixed jaw, and touches on the moving jaw."""
+        """Touches on the fixed jaw, and touches on the moving jaw, as two lists."""
         return self.find_touches(self.edge, -1), self.find_touches(self.opposite, 1)
 
     def find_touches(self, edge: HullEdge | None, way: int) -> list[JawTouch]:
-        """Return the stretches and points at which the part touches
-        the jaw below (way -1) or above (way 1), stretches first.
+        """Return the stretches and points at which the part touches a jaw, stretches first.
 
-        ``edge`` is the hull edge on that jaw; None to take the outermost points. Faces that may not be
-        touched are left out, and so are corners on a stretch that is listed.
+        ``way`` is -1 for the fixed jaw, 1 for the moving jaw. ``edge`` is the hull edge on that jaw, or None
+        to take the outermost points. Left out are faces that may not be touched, and corners on a stretch
+        that is listed.
         """
         if edge is None:
             along = [HullTouch(x, x, faces) for x, _, faces in self.reaches[0, way][1]]
@@ -275,7 +281,10 @@ class PartOnJaw:
         return out
 
     def list_touched_faces(self) -> set[int]:
-        """Return the numbers of all faces that touch either jaw, both faces of a corner included."""
+        """Return the numbers of all faces that touch the fixed or the moving jaw.
+
+        Where only a corner touches, both its faces count.
+        """
         out = set[int]()
         for edge, way in ((self.edge, -1), (self.opposite, 1)):
             if edge is None:
@@ -289,7 +298,7 @@ class PartOnJaw:
 
 
 def select_gripped(touches: Sequence[JawTouch], top: float, least: float) -> list[JawTouch]:
-    """Return the touches cut to the heights 0 to ``top`` that are still at least ``least`` high, in mm.
+    """Return the touches cut to the heights 0 to ``top`` mm, without those then less than ``least`` mm high.
 
     Points are returned only where no stretch is left.
     """
@@ -299,10 +308,10 @@ def select_gripped(touches: Sequence[JawTouch], top: float, least: float) -> lis
 
 
 def clip_touches_to_jaws(touches: Sequence[JawTouch], shift: float, width: float) -> JawPatch | None:
-    """Return the touches, moved by ``shift`` mm along the jaws,
-    that lie on jaws from 0 to ``width`` mm, as one patch.
+    """Return the part of the touches that lies on a jaw, as one patch; None where no touch lies on the jaw.
 
-    Adjacent stretches of the same heights are joined. None where nothing lies on the jaws.
+    The touches are first moved by ``shift`` mm along the jaw, which extends from 0 to ``width`` mm. Adjacent
+    stretches of the same heights are joined.
     """
     moved = [evolve(one, low=one.low + shift, high=one.high + shift) for one in touches]
     rows = list[tuple[float, float, float, float]]()
@@ -322,8 +331,9 @@ def clip_touches_to_jaws(touches: Sequence[JawTouch], shift: float, width: float
 
 
 def find_common_middle(one: Sequence[JawTouch], other: Sequence[JawTouch]) -> float | None:
-    """Return the middle, in mm along the jaws, of the overlap
-    of two jaws' ranges of touches; None without overlap.
+    """Return the middle, in mm along the jaws, of the overlap of two ranges; None without overlap.
+
+    The ranges are those from the lowest to the highest touch on ``one`` jaw and on the ``other``.
     """
     low = max(min(touch.low for touch in touches) for touches in (one, other))
     high = min(max(touch.high for touch in touches) for touches in (one, other))
@@ -332,14 +342,15 @@ def find_common_middle(one: Sequence[JawTouch], other: Sequence[JawTouch]) -> fl
 
 @frozen
 class ExaminedHold:
-    """A hull edge with parallels and a stop, and the first rule that it breaks.
+    """A combination of hull edge, parallels and stop, and the first rule that it breaks.
 
     Parameters
     ----------
-    theta, position : the pose, in radians and mm.
-    hold : how the jaws hold it; None where a rule is broken before both touch it.
-    rule : the first rule that it breaks, one of :data:`RULES`; None for a fixture.
-    line : of the program whose tool comes too near a jaw.
+    theta : orientation of the part, in radians.
+    position : place of the drawing's origin in the frame of the jaws, in mm.
+    hold : how the jaws hold the part; None where a rule is broken before both jaws touch it.
+    rule : key in :data:`RULES` of the first rule that is broken; None for a fixture.
+    line : line of the program whose tool comes too near a jaw; None where no tool does.
     """
 
     theta: float
@@ -380,18 +391,16 @@ class JawSearch:
         return sum(len(some) for some in self.lyings.values()) * len(self.jaws.stops)
 
     def examine_all(self) -> Iterator[ExaminedHold]:
-        """Yield every combination of parallels, stop and hull
-        edge as examined, with the first rule that it breaks.
-        """
+        """Yield the examined hold of every combination of parallels, stop and hull edge."""
         for parallels, stop in product(self.jaws.parallels, self.jaws.stops):
             for lying in self.lyings[parallels]:
                 yield self.examine(lying, parallels, stop)
 
     def examine(self, lying: PartOnJaw, parallels: float, stop: str | None) -> ExaminedHold:
-        """Return the hold with the part in a position, on parallels
-        and against a stop ("left", "right", None), as examined.
+        """Return the examined hold of a part that lies on the fixed jaw, on parallels and against a stop.
 
-        Loads and warnings are not yet applied.
+        ``parallels`` is their height in mm; ``stop`` is "left", "right" or None. Loads and warnings are not
+        yet applied.
         """
         query, jaws = self.query, self.jaws
         top = jaws.compute_top(parallels)
@@ -437,8 +446,9 @@ class JawSearch:
         return evolve(found, rule=rule)
 
     def find_broken_rule(self, hold: JawHold, lying: PartOnJaw) -> str | None:
-        """Return the key in :data:`RULES` of the first broken rule
-        from opening to faces to touch; None where it keeps all.
+        """Return the key in :data:`RULES` of the first broken rule; None where all are kept.
+
+        Tested are, in this order, "opening", "push", "avoid" and "touch".
         """
         most = self.jaws.max_opening
         if most is not None and hold.opening > most + TOUCHING:
@@ -456,9 +466,10 @@ class JawSearch:
         return None
 
     def find_line_near_jaws(self, program: Program, one: ExaminedHold, hold: JawHold) -> int | None:
-        """Return the line of a program whose tool comes too near a jaw; None where none does.
+        """Return the line of a program whose tool comes too near a jaw; None where no tool does.
 
-        Each jaw is a box from its face outward, as deep as the jaw's thickness.
+        Each jaw is a box from its face outward, as deep as the jaw is thick. ``one`` gives the pose, ``hold``
+        the opening.
         """
         swept = find_swept_below(program, self.jaws.compute_top(hold.parallels))
         if not len(swept):
@@ -475,14 +486,14 @@ class JawSearch:
         return None
 
     def list_faces_in_outlines(self, faces: Sequence[int]) -> set[int]:
-        """Return the numbers of faces, with the numbers that
-        the same faces have in every other outline of a solid.
+        """Return the numbers of faces, and the numbers that the same
+        faces have in the other outlines of a solid.
         """
         numbered = self.query.workpiece.numbered
         return {*faces, *numbered.list_segments_under(numbered.list_faces_over(faces))}
 
     def make_grip(self, one: ExaminedHold, hold: JawHold) -> FrictionHold:
-        """Return the friction model of a hold, with the points on the stop, for its loads."""
+        """Return the friction model of a hold, with the points at which the part touches the stop."""
         lying = next(each for each in self.lyings[hold.parallels] if each.theta == one.theta)
         points, way = list[tuple[float, float, float]](), 1.0
         if hold.stop is not None:
@@ -508,8 +519,9 @@ class JawSearch:
         return UNKNOWN_BAND[1] if known is None else known
 
     def compute_wrenches(self, load: Load, one: ExaminedHold, grip: FrictionHold) -> Array:
-        """Return wrenches (N, 6) that span a load's range, times
-        the safety factor, as ``FrictionHold`` counts them.
+        """Return wrenches (N, 6) whose convex hull covers a load's range, multiplied by the safety factor.
+
+        The components are those of ``FrictionHold``.
         """
         height = load.height if load.height is not None else self.height
         if self.query.part_height is None:
@@ -530,8 +542,8 @@ class JawSearch:
 
     @property
     def first_cut(self) -> ProgramJawForce | None:
-        """Need of a program that no jaw force holds, at its first
-        cut, with a force of None; None where nothing is cut.
+        """The program's first cut as a need that no jaw force meets (its
+        force is None); None where nothing is cut.
         """
         pieces, program = self.pieces, self.query.program
         if pieces is None or program is None or not len(pieces):
@@ -540,8 +552,8 @@ class JawSearch:
         return ProgramJawForce(None, int(program.moves.line[move]), int(program.moves.tool[move]), move)
 
     def compute_program_need(self, one: ExaminedHold, grip: FrictionHold) -> ProgramJawForce | None:
-        """Return the largest jaw force that the program's
-        tools need, and where; None without cutting forces.
+        """Return the largest jaw force that the program's tools need, and
+        at which move; None without cutting forces.
         """
         pieces, query = self.pieces, self.query
         if pieces is None or query.program is None:
@@ -549,9 +561,11 @@ class JawSearch:
         return find_worst_move(grip, pieces, query.program, one.theta, one.position, query.safety_factor)
 
     def apply_loads(self, one: ExaminedHold) -> ExaminedHold:
-        """Return a hold with the jaw forces that its loads and program need, its pressure and its warnings.
+        """Return an examined hold with the jaw forces that the loads and
+        the program need, its pressure and warnings.
 
-        Without full contact every need is None: no force holds.
+        Where the jaws do not press all over what they touch, every needed force is None: no load counts as
+        held.
         """
         hold, loads = one.hold, self.query.loads
         assert hold is not None
@@ -572,7 +586,7 @@ class JawSearch:
 
     @property
     def acting(self) -> str:
-        """Names of what acts on the part, for sentences: "the loads", "the tools", or both."""
+        """Name of what acts on the part, for sentences: "the loads", "the tools", or both."""
         names = ("the loads", bool(self.query.loads)), ("the tools", self.pieces is not None)
         return " and ".join(name for name, is_there in names if is_there)
 
@@ -610,7 +624,10 @@ class JawSearch:
 
 
 def find_largest_force(needs: Sequence[float | None]) -> float | None:
-    """Return the largest of some forces in N, at least one; None where any of them is None."""
+    """Return the largest of some forces in N; None where one of them is None.
+
+    At least one force must be given.
+    """
     known = [need for need in needs if need is not None]
     return max(known) if len(known) == len(needs) else None
 
@@ -621,8 +638,10 @@ def is_square(theta: float) -> bool:
 
 
 def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
-    """Return the sort key of a hold: better ones have smaller
-    keys; unfit ones last, then by the query's ranking.
+    """Return the sort key of an examined hold that is a fixture; better holds have smaller keys.
+
+    Unfit holds come last, then holds without full contact, then those beyond the vise's rating; the others
+    are in the query's ranking.
     """
     hold = one.hold
     assert hold is not None
@@ -653,7 +672,7 @@ def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
 def find_fixtures_between_jaws(
     query: Query, progress: Progress | None = None, cancel: Event | None = None
 ) -> Result:
-    """Return every way, or the best, to hold a part between the flat jaws of a query's toolkit."""
+    """Return every way, or only the best ways, to hold a part between the flat jaws of a query's toolkit."""
     search, found, whole = JawSearch(query), list[ExaminedHold](), True
     size, rules, lines = search.size, dict.fromkeys(RULES, 0), Counter[int]()
     for number, one in enumerate(search.examine_all(), 1):
@@ -697,7 +716,9 @@ def make_table(listed: Sequence[ExaminedHold]) -> FixtureTable:
 
 
 def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
-    """Return the number of holds, counting once those that a rotation of the part onto itself makes equal."""
+    """Return the number of holds, where holds that a rotation of the part
+    onto itself makes equal count once.
+    """
     every = workpiece.numbered
     turns = [
         one.angle for one in find_rotations_onto_itself([face.segment for face in every.faces], every.marks)
@@ -711,10 +732,11 @@ def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
 
 
 def explain_no_fixture(rules: dict[str, int], lines: Counter[int], query: Query) -> Note:
-    """Return the note why there is no fixture: the last rule
-    in order that took any way, or the program's worst line.
+    """Return the note why there is no fixture between flat jaws.
 
-    ``rules`` counts ways by the first rule they break, ``lines`` by the program's line.
+    Two cases: (a) a program stands in the way: the note names its worst line; (b) otherwise it names the last
+    rule, in the order of :data:`RULES`, that a combination broke. ``rules`` counts combinations by the first
+    rule they break, ``lines`` by the line of the program.
     """
     wording = query.toolkit.wording
     if lines:

@@ -2,17 +2,19 @@
 
 On a hull edge the part's orientation and height are fixed. A lattice that slides toward the wall leaves two
 unknowns, its place along the wall and its distance. Each pair of pegs gives two equations. The first peg's
-centre lies on the offset curve of the face it touches. It also lies on that of the second peg's face, moved
-back by the difference of their holes. So pairs are the crossings of one curve with the other, moved by a step
-of the lattice. Two lines have one crossing; a line and a circle, or two circles, have two.
+centre lies on the offset curve of the face it touches. It also lies on the offset curve of the second peg's
+face, moved back by the step from the first peg's hole to the second's. So pairs are the crossings of one
+curve with another curve that is moved by a step of the lattice. Two lines have one crossing; a line and a
+circle, or two circles, have two.
 
 Where two curves have a common stretch (parallel lines, equal arcs about one centre) or only graze each other,
-both normals are parallel there. With the wall's they then span no space, so nothing closes (``compute_pair_closure``).
+both normals are parallel there. Then the wrenches of wall and pegs do not span the space, and nothing closes
+(``compute_pair_closure``).
 
 Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians
 (``PartOnWall``). The error of a crossing is ``off`` divided by the sine of the angle between both normals, as
-long as that turns neither normal by more than a tenth of the angle. Otherwise there is no bound, and the pair
-is decided in ball arithmetic.
+long as this error turns neither normal by more than a tenth of the angle. Otherwise there is no bound, and
+the pair is decided in ball arithmetic.
 """
 
 from __future__ import annotations
@@ -70,10 +72,12 @@ class LatticePairs(RowArrays):
     branch : (N,) -1 or 1, which of two crossings it is; 1 for two lines.
     point : (N, 2, 2) centres of both pegs, in mm along the hull edge from its start and above it.
     normal : (N, 2, 2) outward unit normals of the part there.
-    slack : (N,) distance in mm from the end of a feature, the smaller of both pegs, negative beyond it; inf
-        on whole circles.
-    reach, swing : (N,) error bounds of places in mm and of normals in radians; inf where not known.
-    null : (N, 4) forces of the wall's two ends and both pegs, not scaled.
+    slack : (N,) distance in mm from the nearest end of a feature, for the peg where it is smaller; negative
+        beyond the end, inf on whole circles.
+    reach : (N,) error bounds of ``point`` in mm; inf where not known.
+    swing : (N,) error bounds of ``normal`` in radians; inf where not known.
+    null : (N, 4) null vector of the wrenches: forces of the wall's two ends and of both pegs, up to a common
+        factor; 0 where not yet computed.
     """
 
     feature: IntArray
@@ -92,7 +96,7 @@ class LatticePairs(RowArrays):
         return np.zeros((len(self.branch), 4))
 
     def make_candidate(self, number: int, edge: int) -> LatticePair:
-        """Return pair ``number`` on a hull edge in the form that ball arithmetic decides."""
+        """Return pair number ``number``, on hull edge ``edge``, in the form that ball arithmetic decides."""
         features, step = (tuple(values[number].tolist()) for values in (self.feature, self.step))
         return LatticePair(edge, features, step, int(self.branch[number]))
 
@@ -100,15 +104,16 @@ class LatticePairs(RowArrays):
 def find_pairs_on_edge(
     lying: PartOnWall, pitch: tuple[float, float], most: tuple[float, float], margin: float
 ) -> Iterator[LatticePairs]:
-    """Yield, in batches, the pairs of pegs that touch a part on
-    a wall, within error bounds ``margin`` inside their features.
+    """Yield, in batches, the pairs of pegs that touch a part on a wall
+    at least ``margin`` inside their features.
 
-    Only pairs are made whose normals can have opposed parts along the wall.
+    Pairs are left out only where the error bounds exclude them. Also left out are pairs whose normals cannot
+    have opposed components along the wall.
 
     Parameters
     ----------
     pitch : distances in mm between neighbouring columns and rows.
-    most : the most columns and rows from one peg to the other; inf where unbounded.
+    most : largest numbers of columns and of rows from one peg to the other; inf where unbounded.
     margin : smallest distance in mm from the end of a feature.
     """
     rows = lying.rows
@@ -142,8 +147,9 @@ def find_pairs_on_edge(
 
 
 def bound_features(rows: Array) -> tuple[Array, Array]:
-    """Return the least and the largest coordinates (F, 2) in mm
-    of features (F, 12), arcs longer by ``LOOSE`` mm at each end.
+    """Return (1) the least and (2) the largest coordinates in mm of F features, each (F, 2).
+
+    ``rows`` are their kernel rows (F, 12). Arcs are taken ``LOOSE`` mm longer at each end.
     """
     center, axis, is_arc = rows[:, [X, Y]], rows[:, [AXIS_X, AXIS_Y]], rows[:, IS_ARC] != 0.0
     along = np.abs(axis) * rows[:, [HALF_EXTENT]]
@@ -152,7 +158,7 @@ def bound_features(rows: Array) -> tuple[Array, Array]:
     half = rows[:, HALF_EXTENT] + LOOSE / radius
 
     def reach(direction: float) -> Array:
-        """Return how far (F,) in mm arcs reach from their centres in a direction in radians."""
+        """Return how far in mm each arc reaches from its centre in a direction given in radians, (F,)."""
         away = np.abs((middle - direction + np.pi) % (2.0 * np.pi) - np.pi)
         return np.asarray(radius * np.cos(np.clip(away - half, 0.0, np.pi)))
 
@@ -165,11 +171,11 @@ def bound_features(rows: Array) -> tuple[Array, Array]:
 def find_crossings(
     lying: PartOnWall, feature: IntArray, step: IntArray, pitch: Array
 ) -> Iterator[LatticePairs]:
-    """Yield the pegs at which feature one meets feature two
-    shifted back by a lattice step, for pairs (M, 2) of features.
+    """Yield the pairs of pegs for given features and lattice steps, without regard to the ends of features.
 
-    One batch for each combination of lines and arcs. ``step`` (M, 2) is in holes, ``pitch`` (2,) in mm.
-    Crossings beyond the ends of features are included, with negative slack.
+    For each of M pairs of ``feature`` (M, 2) the first peg stands where the first curve meets the second
+    curve moved back by the step. ``step`` (M, 2) is in holes, ``pitch`` (2,) in mm. There is one batch for
+    each combination of lines and arcs. Crossings beyond the ends of features have negative slack.
     """
     rows = lying.rows
     is_arc = rows[feature, IS_ARC] != 0.0
@@ -204,15 +210,15 @@ def find_crossings(
 
 
 def cross_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array]:
-    """Return the indices (K,) of the pairs of lines that are
-    not parallel, branch 1, and the crossings (K, 2) in mm.
+    """Return the crossings of M pairs of infinite lines: indices, branches, places.
 
-    Crossings are relative to the middle of the first line.
+    They are: indices (K,) of the pairs whose lines are not parallel; branches (K,), all 1; places (K, 2) in
+    mm from the middle of the first line.
 
     Parameters
     ----------
     between : (M, 2) from the middle of the first line to that of the second, in mm.
-    axes : (M, 2, 2) unit vectors along both.
+    axes : (M, 2, 2) unit vectors along the first and the second line.
     """
     sine = cross(axes[:, 0], axes[:, 1])
     which = np.flatnonzero(np.abs(sine) > PARALLEL)
@@ -223,34 +229,34 @@ def cross_two_lines(between: Array, axes: Array) -> tuple[IntArray, Array, Array
 def cross_line_and_circle(
     between: Array, axis: Array, radius: Array, off: float
 ) -> tuple[IntArray, Array, Array]:
-    """Return the crossings of M pairs of an infinite line and a circle.
+    """Return the crossings of M pairs of an infinite line and a circle: indices, branches, places.
 
-    They are: indices (K,) of pairs, each twice; branches (K,), -1 and 1 along the line; places (K, 2) in mm
-    from the line's middle.
-
-    The place is from the line's middle.
+    They are: indices (K,) of the pairs that cross, each twice; branches (K,), -1 for the crossing farther
+    back along the line's axis and 1 for the other; places (K, 2) in mm from the line's middle, along its
+    axis.
 
     Parameters
     ----------
     between : (M, 2) from the middle of the line to that of the circle, in mm.
     axis : (M, 2) unit vector along the line.
-    radius : (M,) of the circle.
-    off : by how many mm distances may be off.
+    radius : (M,) radius of the circle, in mm.
+    off : error bound of distances, in mm.
     """
     away, foot = cross(axis, between), (axis * between).sum(axis=1)
     return solve_both_branches((radius - away) * (radius + away), radius, off, foot, axis)
 
 
 def cross_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArray, Array, Array]:
-    """Return the crossings of M pairs of circles.
+    """Return the crossings of M pairs of circles: indices, branches, places.
 
-    They are: indices (K,) of pairs, each twice; branches (K,), -1 and 1; places (K, 2) in mm from the first
-    circle's centre.
+    They are: indices (K,) of the pairs that cross, each twice; branches (K,), -1 for the crossing right of
+    the line from the first centre to the second and 1 for the crossing left of it; places (K, 2) in mm from
+    the first circle's centre.
 
     Parameters
     ----------
-    between : (M, 2) from the centre of the first to that of the second, in mm.
-    radius : (M, 2) of both.
+    between : (M, 2) from the centre of the first circle to that of the second, in mm.
+    radius : (M, 2) radii of the first and the second circle, in mm.
     off : error bound of distances, in mm.
     """
     apart = np.hypot(between[:, 0], between[:, 1])
@@ -267,12 +273,15 @@ def cross_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArr
 def solve_both_branches(
     square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array
 ) -> tuple[IntArray, Array, Array]:
-    """Return both ends of half chords: indices (K,), branches
-    (K,) and places (K, 2) of ``(foot ± half) axis``.
+    """Return the two points ``(foot - half) axis`` and ``(foot + half)
+    axis`` of M chords: indices, branches, places.
 
-    ``square`` (M,) is the squared half chord in mm²; pairs for which it is negative beyond rounding are left
-    out, others taken as at least 0. ``size`` and ``off`` in mm bound its error. Branch -1 comes first for
-    all, then 1.
+    ``square`` (M,) is the square of the half chord in mm². Chords where it is negative beyond rounding are
+    left out; where rounding makes it negative, the half chord is 0. The error of ``square`` is at most about
+    ``off`` times ``size``, both in mm. ``foot`` is in mm along ``axis`` (M, 2).
+
+    The result is: indices (K,) of the chords; branches (K,), -1 for ``foot - half`` and 1 for ``foot +
+    half``; places (K, 2) in mm. All of branch -1 come first.
     """
     met = np.flatnonzero(square > -16.0 * off * size)
     half = np.sqrt(np.maximum(square[met], 0.0))
@@ -285,9 +294,10 @@ def solve_both_branches(
 def make_touching_pairs(
     lying: PartOnWall, feature: IntArray, step: IntArray, branch: Array, point: Array
 ) -> LatticePairs:
-    """Return pairs of pegs at centres (N, 2, 2) on features (N, 2), with normals, slack and error bounds.
+    """Return N pairs of pegs with normals, slack and error bounds; their forces are not yet known (0).
 
-    Forces are not known yet (0). Bounds are inf where both normals are nearly parallel.
+    ``feature`` (N, 2) are the features touched, ``point`` (N, 2, 2) the centres of the pegs. Error bounds are
+    inf where both normals are nearly parallel.
     """
     rows = lying.rows[feature]
     is_arc, radius, half = (rows[:, :, k] for k in (IS_ARC, RADIUS, HALF_EXTENT))
@@ -313,7 +323,7 @@ def make_touching_pairs(
 
 
 def cross(one: Array, other: Array) -> Array:
-    """Return the cross products (...) of vectors (..., 2)."""
+    """Return the cross products of plane vectors: (..., 2) and (..., 2) give (...)."""
     return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])
 
 
@@ -325,13 +335,15 @@ def turn_by_quarter(vectors: Array) -> Array:
 def compute_pair_closure(
     pairs: LatticePairs, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, BoolArray, BoolArray]:
-    """Return pairs with their forces; which (N,) press the
-    part on the wall; and which (N,) doubles leave open.
+    """Return (1) the pairs with their forces, (2) which pairs press
+    the part on the wall, (3) which are undecided.
 
-    Let a, b be the normals of the part at the pegs, and m, M their moments about the start of the hull edge
-    of length l. Let p = -b_u sign a_u, q = |a_u| and t = p m + q M. The null vector of the four wrenches is
-    then (l (p a_v + q b_v) - t, t, p l, q l). Its first two add up to l times the sine of the angle between
-    both normals.
+    The last two are masks (N,) from double arithmetic. The formula, with lengths divided by the
+    characteristic length: a and b are the normals of the part at the first and the second peg, m and M the
+    moments of these normals about the start of the hull edge, l the length of the hull edge. The index u
+    marks components along the edge, v components up from it. Let p = -b_u sign a_u, q = |a_u| and t = p m + q
+    M. The null vector of the four wrenches (both ends of the wall, both pegs) is then (l (p a_v + q b_v) - t,
+    t, p l, q l). Its first two entries add up to l times the sine of the angle between the normals.
     """
     length = problem.wrench_length
     a, b = pairs.normal[:, 0], pairs.normal[:, 1]
@@ -357,10 +369,11 @@ def compute_pair_closure(
 def select_pressed_pairs(
     pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, IntArray, int]:
-    """Return the pairs that press the part on a hull edge, indices
-    of undecided pairs, and how many ball arithmetic looked at.
+    """Return (1) the pairs that press the part, (2) indices of
+    undecided pairs, (3) how many took ball arithmetic.
 
-    Places and forces of pairs whose doubles are too coarse are taken from ball arithmetic.
+    The indices refer to the ``pairs`` given. Places and forces come from ball arithmetic where double
+    arithmetic is too coarse. ``edge`` is the index of the hull edge on the wall.
     """
     pairs, held, open_ = compute_pair_closure(pairs, lying, problem)
     point, null, undecided = pairs.point.copy(), pairs.null.copy(), []

@@ -72,12 +72,14 @@ class LatticeShares:
     searches : one for each direction of a clamp, for contacts that need not close.
     collector : takes the seats.
     whole_turn : for each search, the blocks that cover all orientations.
-    ranges : orientations of each share; the first share has the preferred angles where there is a bound.
-    bound : lower bounds of the ranking keys at other than preferred angles; None where these do not come
-        first.
+    ranges : for each share its ranges (low, high) of orientation in radians. Where there is a ``bound``, the
+        first share has the preferred angles.
+    bound : lower bounds of the ranking keys at all angles but the preferred ones; None where the preferred
+        angles are not searched first.
     pool : executor with ``threads`` threads.
     cancel : when set, the search stops soon.
-    square : the searches of the first share, where the preferred angles have an error limit of their own.
+    square : searches of the first share, where the preferred angles have an error limit of their own; else
+        empty.
     """
 
     searches: Sequence[ToolkitSearch]
@@ -97,10 +99,10 @@ class LatticeShares:
     def open_for_query(
         cls, query: Query, threads: int, cancel: Event | None, limit: ErrorLimit | None = None
     ) -> Iterator[LatticeShares]:
-        """Yield the shares of a query with two clamps, inside a context that owns the threads.
+        """Yield the shares of a query with two clamps; the context owns the threads.
 
-        With a limit, only seats with no larger location error are searched, the square ones first. Without
-        one, raises InputError where the work is too much.
+        With a limit, only seats whose location error is within it are searched, those at preferred angles
+        first. Without a limit, raises InputError where the work is too much.
         """
         if limit is not None:
             first = list_preferred_angles(query)
@@ -136,8 +138,9 @@ class LatticeShares:
     def open_for_contacts(
         cls, searches: Sequence[ToolkitSearch], collector: ClampedSeats, threads: int, cancel: Event | None
     ) -> Iterator[LatticeShares]:
-        """Yield an object without shares, to make seats of contacts
-        that the caller found; the context owns the threads.
+        """Yield an object without shares of its own, which makes seats of contacts that the caller found.
+
+        The context owns the threads.
         """
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, collector, (), (), None, pool, threads, cancel)
@@ -148,10 +151,11 @@ class LatticeShares:
         return len(self.ranges)
 
     def search_share(self, share: int, progress: Progress | None) -> tuple[Iterator[Seats], bool]:
-        """Search one share; return an iterator over its seats, and whether the share was searched to its end.
+        """Search one share; return (1) an iterator over its seats, and
+        (2) whether it was searched to its end.
 
-        The seats come in batches where only the best are asked for. There are none where a bound shows that
-        nothing in the share is among the best.
+        The seats come in one batch, or in several where only the best are asked for. There are none where a
+        bound shows that no fixture of the share is among the best; such a share counts as searched.
         """
         if share > 0 and self.bound is not None and self.collector.ranked.rules_out(self.bound):
             return iter(()), True
@@ -175,8 +179,9 @@ class LatticeShares:
     def make_blocks(
         self, share: int, search: ToolkitSearch, whole_turn: list[SearchBlock]
     ) -> list[SearchBlock]:
-        """Return the blocks of one search that cover a share;
-        ``whole_turn`` are its blocks for all orientations.
+        """Return the blocks of one search that cover a share.
+
+        ``whole_turn`` are the blocks of the same search that cover all orientations.
         """
         if self.shares == 1:
             return whole_turn
@@ -191,10 +196,10 @@ class LatticeShares:
         return blocks_in(within=within)
 
     def iterate_seats(self, records: Sequence[PackedContacts], share: int) -> Iterator[Seats]:
-        """Yield the seats made of the contacts of each direction.
+        """Yield, in batches, the seats that the contacts of a share make.
 
-        Where only the best are asked for, they come in batches, promising ones first; contacts that cannot be
-        among the best are left out.
+        ``records`` has the contacts of each direction of the clamp. Where only the best are asked for,
+        promising seats come first, and contacts that cannot be among the best are left out.
         """
         query, total, within = self.collector.query, sum(map(len, records)), self.ranges[share]
         if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
@@ -211,13 +216,18 @@ class LatticeShares:
             yield self.find_seats(some, within)
 
     def bound_later_errors(self, share: int) -> int:
-        """Return a lower bound, in billionths of a mm, of the location errors in all later shares."""
+        """Return a lower bound, in billionths of a mm, of the location
+        errors in all shares after ``share``.
+        """
         if share == self.shares - 1:
             return MOST_ERROR
         return 0 if self.bound is None or self.bound.error is None else int(self.bound.error.min())
 
     def find_seats(self, records: Sequence[Array], within: Ranges) -> Seats:
-        """Return all seats that contacts (N, 19) of each direction make, with orientations in ``within``."""
+        """Return all seats that some contacts make, with orientations in the ranges ``within`` in radians.
+
+        ``records`` has an array (N, 19) of contacts for each direction of the clamp.
+        """
         problems = [search.problem for search in self.searches]
         parts = [
             make_contacts_of_candidates(self.prove_contacts(some, problem), problem)
@@ -226,10 +236,9 @@ class LatticeShares:
         return make_seats(parts, problems[0], within, self.collector.is_limited)
 
     def prove_contacts(self, records: Array, problem: Problem) -> CandidateFixtures:
-        """Return, of records (N, 19), the proven contacts of
-        three locators and a clamp at allowed angles, each once.
+        """Return the contacts of three locators and a clamp that are proven and at allowed angles, each once.
 
-        What became of all is added to ``accounts``.
+        They are selected from ``records`` (N, 19). The reports on all records are appended to ``accounts``.
         """
         course, blocks = (
             DecidingProgress(len(records), cancel=self.cancel),
@@ -237,7 +246,7 @@ class LatticeShares:
         )
 
         def work(block: Array) -> tuple[CandidateFixtures, SearchReport]:
-            """Return the proven candidates of one block, and the report on its records."""
+            """Return the proven contacts of one block of records, and the report on the block."""
             proven, account = decide_records(block, problem, course)
             candidates = make_canonical(make_candidates(proven, problem), 0)
             return candidates.take(
@@ -253,8 +262,10 @@ class LatticeShares:
         return SearchReport.sum_up(self.accounts)
 
     def describe_work(self, done: int, complete: bool) -> SearchWork:
-        """Return the statistics of the search; it is complete if
-        ``complete`` and no contact is undecided. ``done`` is not used.
+        """Return the statistics of the search.
+
+        The search counts as complete if ``complete`` is True and no contact is undecided. ``done`` is not
+        used.
         """
         searches = [*self.square, *self.searches]
         examined = int(sum(search.totals[CANDIDATES] for search in searches))
@@ -274,10 +285,11 @@ def make_searches(
     near: NearSpots = EVERYWHERE,
     only: Ranges = (),
 ) -> list[ToolkitSearch]:
-    """Return one search for each direction of the clamp, for contacts that need not close.
+    """Return one search for each direction of the clamp, for contacts of three locators and one clamp.
 
-    With a limit only contacts within its error are searched, and those ``near`` some pairs of spots. ``only``
-    are ranges of the part's angle in degrees; empty for all.
+    The contacts need not close. With a limit only contacts within its error are searched, and only those
+    whose locators touch spots that ``near`` allows. ``only`` are ranges of the part's angle in degrees; empty
+    for all angles.
     """
     precision = ANY_ERROR if limit is None else limit.precision
     return [
@@ -289,28 +301,31 @@ def make_searches(
 
 
 def make_problems(query: Query) -> list[Problem]:
-    """Return one problem for each direction of the clamp,
-    with one clamp, for contacts that need not close.
+    """Return one problem for each direction of the clamp, each with
+    one clamp, for contacts that need not close.
     """
     return [Problem.from_query(select_one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
 
 
 def list_search_blocks(search: ToolkitSearch) -> list[SearchBlock]:
-    """Return the blocks that together cover one direction's search."""
+    """Return the blocks that together cover all orientations of one search."""
     return search.make_blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
 
 
 def estimate_ways_at_pitch(query: Query, threads: int, pitch: float) -> float:
-    """Return the estimated work of a query's search with
-    another pitch in mm, as :func:`count_ways` counts it.
+    """Return the estimated work of a query's search in a toolkit with another pitch, given in mm.
+
+    The work is counted as by :func:`count_ways`.
     """
     asked = evolve(query, toolkit=query.toolkit.with_fields({PITCH.name: (pitch, pitch)}))
     return count_ways(map(list_search_blocks, make_searches(asked, threads, None)))
 
 
 def split_whole_turn(whole_turn: Sequence[list[SearchBlock]]) -> list[Ranges]:
-    """Return equal ranges that cover a whole turn, one
-    list per share; their number bounds the work in each.
+    """Return equal ranges of orientation in radians that together cover a whole turn, one list per share.
+
+    The number of shares is chosen so that the work in each is bounded. ``whole_turn`` has the blocks of each
+    search.
     """
     large, many = int(count_ways(whole_turn) / WAYS_TOGETHER), max(map(len, whole_turn))
     count = min(max(many // BLOCKS_TOGETHER, large, 1), MOST_RANGES)
@@ -318,10 +333,10 @@ def split_whole_turn(whole_turn: Sequence[list[SearchBlock]]) -> list[Ranges]:
 
 
 def order_square_ranges_first(ranges: Sequence[Ranges], square: Ranges) -> list[Ranges]:
-    """Return ranges with those at preferred angles, ``square``
-    in degrees, as a new first entry, and cut out of the others.
+    """Return ranges with a new first entry, the preferred angles, which are cut out of all other entries.
 
-    The ranges are in radians and cover a whole turn.
+    ``ranges`` are in radians and cover a whole turn. ``square`` are the preferred angles, as ranges in
+    degrees.
     """
     begin, end = ranges[0][0][0], ranges[-1][-1][1]
     turned = [
@@ -337,12 +352,15 @@ def order_square_ranges_first(ranges: Sequence[Ranges], square: Ranges) -> list[
 
 
 def make_counting_progress(progress: Progress | None, found: int) -> Progress | None:
-    """Return a progress callback that passes on the
-    fraction and reports ``found`` fixtures; None for None.
+    """Return a progress callback that passes the fraction on and always reports ``found`` fixtures.
+
+    None where ``progress`` is None.
     """
     return None if progress is None else lambda fraction, _: progress(fraction, found)
 
 
 def count_ways(blocks: Iterable[Iterable[SearchBlock]]) -> float:
-    """Return the summed cost of all blocks: about how many pairs of chord curves may go together."""
+    """Return the summed cost of all blocks, which is about the number
+    of pairs of chord curves that may go together.
+    """
     return estimate_cost(chain.from_iterable(blocks))

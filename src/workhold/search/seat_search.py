@@ -1,9 +1,9 @@
 """Every seat of three locators on a plate: their holes, the faces they touch, and the pose.
 
-Three locators are two chords that share a peg, which the search for three locators and a clamp finds. Here nothing
-moves, so that it lists them by themselves. Contacts that fix the pose alone, as a simple root, are seats
-(``proof.locator_seats``). Seats are the same up to steps of the lattice, the names of locators and, where it moves
-no hole for a bolt, half a turn of the plate.
+Three locators are two chords that share a peg, which the search for three locators and a clamp finds. Here
+nothing moves, so that it lists them by themselves. Contacts that fix the pose alone, as a simple root, are
+seats (``proof.locator_seats``). Seats are the same up to steps of the lattice, the names of locators and,
+where it moves no hole for a bolt, half a turn of the plate.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ class FoundSeats:
 
     Parameters
     ----------
-    table : of the seats, whose lowest column and row are 0; forces are not known.
-    proof : what became of all that was examined.
-    statistics : how much work the search was.
-    is_complete : whether it came to its end.
+    table : the seats; the lowest column and row of each seat are 0, forces are not known (0).
+    proof : report on all contacts that were examined.
+    statistics : counts by name that show how much work the search was.
+    is_complete : whether the search came to its end.
     """
 
     table: FixtureTable
@@ -73,12 +73,12 @@ class FoundSeats:
 def find_seats(
     query: Query, threads: int = 1, progress: Progress | None = None, cancel: Event | None = None
 ) -> FoundSeats:
-    """All seats of a part on the plate of a query.
+    """Return all seats of a part on the plate of a query.
 
     Raises
     ------
     InputError
-        As ``Problem.of``, and for a part that has more of them than can be looked at.
+        Where ``Problem.from_query`` raises it, and for a part with more seats than can be examined.
     """
     problem = Problem.from_query(make_locating_query(query), pairing=True)
     search = ToolkitSearch.from_problem(problem, threads=threads, cancel=cancel)
@@ -112,7 +112,10 @@ def find_seats(
 
 
 def make_locating_query(query: Query) -> Query:
-    """The query of a plate with a clamp whose locators are those of a query."""
+    """Return a query of a plate with one clamp whose three locators are those of a query's plate.
+
+    The faces to touch are left out of its restrictions.
+    """
     toolkit = query.toolkit
     plate = toolkit.plates[0]
     return Query(
@@ -127,7 +130,9 @@ def make_locating_query(query: Query) -> Query:
 
 
 def make_seat_table(contacts: SeatContacts, problem: Problem, query: Query) -> FixtureTable:
-    """Return the table of contacts that are seats as asked for, each once."""
+    """Return the table of those seats that fit on the plate and keep the
+    query's angles and faces to touch, each once.
+    """
     toolkit, plate = query.toolkit, query.toolkit.plates[0]
     lowest = [numbers.min(axis=1, keepdims=True, initial=0) for numbers in (contacts.column, contacts.row)]
     column, row = contacts.column - lowest[0], contacts.row - lowest[1]
@@ -158,7 +163,11 @@ def make_seat_table(contacts: SeatContacts, problem: Problem, query: Query) -> F
 
 
 def list_seats_once(table: FixtureTable, toolkit: Toolkit, query: Query) -> FixtureTable:
-    """Return seats at angles that are asked for, each once, in the order of angles, holes and faces."""
+    """Return the seats at angles that the query allows, each once, in the order of angle, holes and faces.
+
+    Where half a turn of the plate maps holes to holes, a seat at half a turn or more is turned back by half a
+    turn if the query allows its new angle.
+    """
     angles = query.restrictions.angles
     if toolkit.half_turned is not None:
         # The half below half a turn is kept, or else the one that is asked for.
@@ -187,12 +196,17 @@ def list_seats_once(table: FixtureTable, toolkit: Toolkit, query: Query) -> Fixt
 
 
 def lies_at(theta: Array, angles: tuple[tuple[float, float], ...]) -> NDArray[np.bool_]:
-    """Whether orientations (N,) in radians lie in ranges in degrees; in none all do."""
+    """Return a mask (N,): True for orientations in radians that lie in one of some ranges in degrees.
+
+    Without ranges, True for all.
+    """
     return np.asarray(lie_in_angle_ranges(np.degrees(theta), angles))
 
 
 def turn_seats_by_half(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
-    """Return seats after half a turn of the plate, whose lowest column and row are 0 again."""
+    """Return the seats after half a turn of the plate, moved so that
+    each one's lowest column and row are 0 again.
+    """
     plate = toolkit.plates[0]
     column, row = (
         numbers.max(axis=1, keepdims=True, initial=0) - numbers for numbers in (table.column, table.row)
@@ -212,7 +226,11 @@ def turn_seats_by_half(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
 
 
 def measure_seats(table: FixtureTable, query: Query, problem: Problem) -> Array:
-    """The figures (N, Q) of seats: location error, distances from ends and edges, tilt and the smallest face."""
+    """Return the figures of quality (N, Q) of N seats.
+
+    Filled in are location error, distances from ends and edges, tilt and smallest face; the other columns
+    stay as they are in the table.
+    """
     quality = np.array(table.quality)
     if len(table) == 0:
         return quality

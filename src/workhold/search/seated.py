@@ -54,19 +54,19 @@ class ResultSink(Protocol):
 
         Parameters
         ----------
-        listed : how many fixtures the tables have together; fewer come if the search is cancelled.
+        listed : number of fixtures in all tables together; fewer come if the search is cancelled.
         """
 
 
 @frozen
 class SeatingWork:
-    """A query whose seating is computed, with the means to do so.
+    """A query whose fixtures' seating is to be computed, with threads, progress and cancel.
 
     Parameters
     ----------
-    query : what is asked, with seating.
-    threads : how many share the work.
-    progress : called as ``progress(fraction done, fixtures)``.
+    query : the query; its ``seating`` is how many first fixtures get one.
+    threads : how many threads share the work.
+    progress : called as ``progress(fraction done, number of fixtures)``; None for no reports.
     cancel : when set, no further pattern of pegs is begun.
     """
 
@@ -85,19 +85,19 @@ def answer_with_seating(
     cancel: Event | None = None,
     sink: ResultSink | None = None,
 ) -> Result:
-    """Return the answer to a query, with the seating of the first fixtures if it asks for that.
+    """Return the answer to a query, with the seating of the first fixtures if the query asks for it.
 
     Parameters
     ----------
-    search : answers a query without seating, watched by ``progress`` and ``cancel``; if there is a sink here,
-        a ``sink`` takes its fixtures.
+    search : called as ``search(query, progress=…, cancel=…)`` with a query without seating, and with
+        ``sink=…`` where a sink is given; returns the result.
     threads, progress, cancel : see ``search.design.answer``.
     sink : takes the fixtures; the result that is returned has none then.
 
     Raises
     ------
     InputError
-        As :func:`refuse_unasked`, and what the search raises.
+        Where :func:`refuse_unasked` or the search raises it.
     """
     if query.seating is None:
         return search(query, progress=progress, cancel=cancel)
@@ -116,18 +116,18 @@ def answer_with_seating(
 
 
 def is_put_in_by_hand(query: Query) -> bool:
-    """Return whether the part is pushed against its locators by hand, as with two clamps."""
+    """Return whether the part is pushed against its locators by hand, which is so with two clamps."""
     return not query.toolkit.closes_at_once
 
 
 def refuse_unasked(query: Query) -> None:
-    """Refuse what cannot be asked of seating.
+    """Raise InputError where a query asks for something that seating cannot answer.
 
     Raises
     ------
     InputError
-        With one movement that closes, as ``refuse_unseated`` and ``refuse_own_outlines``; with two clamps, if
-        rules or rankings use figures of seating.
+        Two cases: (a) with one closing movement, where ``refuse_unseated`` or ``refuse_own_outlines`` raises
+        it; (b) with two clamps, if rules or rankings use figures of seating.
     """
     if not is_put_in_by_hand(query):
         refuse_own_outlines(query.workpiece)
@@ -140,19 +140,20 @@ def refuse_unasked(query: Query) -> None:
 
 
 def explain_putting_in_by_hand(result: Result, query: Query) -> Result:
-    """Return a result with two clamps as the answer to the query
-    with seating: same fixtures, and a note on pushing by hand.
+    """Return the result of a query with two clamps as the answer to the same query with seating.
+
+    The fixtures stay the same; a note says that the part is pushed against its locators by hand.
     """
     notes = (*result.reasons, PushedByHand()) if sum(result.found.values()) else result.reasons
     return evolve(result, query=query, notes=notes)
 
 
 def make_rising_progress(progress: Progress) -> Progress:
-    """Return a progress callback whose reported fraction never decreases."""
+    """Return a progress callback that passes reports on, with a fraction that never decreases."""
     highest = 0.0
 
     def report(fraction: float, found: int) -> None:
-        """Report the largest fraction so far."""
+        """Report the largest fraction so far, and the number of fixtures as given."""
         nonlocal highest
         highest = max(highest, fraction)
         progress(highest, found)
@@ -161,10 +162,10 @@ def make_rising_progress(progress: Progress) -> Progress:
 
 
 def add_seatings(result: Result, work: SeatingWork, listed: int | None = None) -> Result:
-    """Return the result of a query without seating as the
-    result of the query with it: seatings added, order anew.
+    """Return a result with the seatings of its first fixtures added, and its fixtures ordered anew by them.
 
-    Fixtures that break rules of seating are left out; with such rules, so are all without a seating.
+    ``result`` answers the query without seating. Fixtures that break rules of seating are left out. If the
+    query has such rules, fixtures whose seating was not computed are left out, too.
 
     Parameters
     ----------
@@ -197,7 +198,10 @@ def add_seatings(result: Result, work: SeatingWork, listed: int | None = None) -
 
 
 def is_as_asked(seating: Seating, query: Query) -> bool:
-    """Return whether a seating keeps the query's opening and foolproof rules."""
+    """Return whether a seating keeps the query's opening and foolproof rules.
+
+    A rule that the query does not have is kept.
+    """
     catches = query.opening is None or seating.is_caught_from(query.opening)
     return catches and (seating.is_foolproof or not query.foolproof)
 
@@ -205,11 +209,12 @@ def is_as_asked(seating: Seating, query: Query) -> bool:
 def order_by_seating(
     table: FixtureTable, seatings: Sequence[Seating], query: Query, least_effective_error: float | None
 ) -> NDArray[np.intp]:
-    """Return the indices (N,) that order fixtures with
-    their seatings best first; equal ones keep their order.
+    """Return the indices (N,) that put fixtures with seatings in
+    order, best first; equal ones keep their order.
 
-    ``least_effective_error`` is that in mm of all fixtures, with a seating or not; steps of the ranking count
-    from it.
+    ``least_effective_error`` is the least effective location error in mm of all fixtures found, also of those
+    without a seating; the ranking counts its steps of error from there. None where the ranking does not use
+    it.
     """
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
     seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
@@ -228,7 +233,9 @@ def order_by_seating(
 
 
 def find_seatings(result: Result, work: SeatingWork) -> list[Seating | None]:
-    """Return the seatings of a result's fixtures in order; None for those not reached before ``cancel``."""
+    """Return the seating of each fixture of a result, in order; None
+    for those not computed before ``cancel``.
+    """
     progress, count = work.progress, sum(result.found.values())
     # Loading it takes longer than many a search.
     from workhold.seating.solver import SeatingSolver
@@ -244,12 +251,12 @@ def find_seatings(result: Result, work: SeatingWork) -> list[Seating | None]:
 
 @frozen
 class SeatedSink:
-    """A sink that adds the seating of the first fixtures to results, and passes them on.
+    """A sink that adds the seating of the first fixtures to a result, and passes the result on.
 
     Parameters
     ----------
     sink : receives the results with seating.
-    work : how the seating is worked out.
+    work : the query, and the means to compute the seating.
     """
 
     sink: ResultSink
@@ -274,7 +281,10 @@ class SeatedSink:
 
 
 def take_tables(tables: Iterator[FixtureTable], count: int) -> Iterator[FixtureTable]:
-    """Yield tables until they have at least ``count`` fixtures together, or there are no more."""
+    """Yield tables until they have at least ``count`` fixtures together, or the iterator ends.
+
+    The iterator then continues behind the tables taken.
+    """
     while count > 0 and (table := next(tables, None)) is not None:
         count -= len(table)
         yield table

@@ -1,4 +1,4 @@
-"""A search in shares, each looked at whole before the next, and the first fixtures while a search runs.
+"""A search in shares, one finished before the next begins, and previews of fixtures while a search runs.
 
 Locators fix the pose in one of two ways. On a lattice of holes they are searched by ranges of orientation
 (``search.lattice_shares``), beside a wall by the hull edges that may lie on it (``search.wall_shares``). In
@@ -66,14 +66,14 @@ ENOUGH = 1_000
 
 @define(eq=False)
 class Previews:
-    """Previews of a running search: results of the fixtures
-    known so far, each with those of the previews before it.
+    """Previews of a running search: results of the fixtures known so far.
 
-    Only what is decided quickly is shown. The results are marked incomplete, and count what they list.
+    Each preview has the fixtures of those before it. Only what is decided quickly is shown. The results are
+    marked incomplete, and count what they list.
 
     Parameters
     ----------
-    problem : what is searched.
+    problem : the problem that is searched.
     show : called with a result from the thread that calls :meth:`add`.
     """
 
@@ -91,9 +91,10 @@ class Previews:
         self.hurry.set()
 
     def add(self, records: NDArray[np.float64]) -> None:
-        """Take new records (N, 19), and show the fixtures known so far if the next preview is due.
+        """Take new records (N, 19) of contacts, and show the fixtures
+        known so far if the next preview is due.
 
-        Only the newest records are decided. Nothing more is shown after :data:`ENOUGH` fixtures.
+        Only the newest records are decided. Nothing more is shown once :data:`ENOUGH` fixtures are.
         """
         if self.shown is not None and len(self.shown.standing) >= ENOUGH:
             return
@@ -124,8 +125,9 @@ MOST_PREVIEWS = 8
 
 
 class Collector(Protocol):
-    """A receiver of the findings of shares that makes a result
-    of them; its length is the number of fixtures so far.
+    """A receiver of the findings of shares, which makes a result of them.
+
+    Its length is the number of fixtures so far.
     """
 
     def __len__(self) -> int: ...
@@ -149,16 +151,19 @@ class ShareSearch(Protocol):
         """Receiver of the findings."""
 
     def search_share(self, share: int, progress: Progress | None) -> tuple[Iterable[Any], bool]:
-        """Search one share; return its findings, and whether it was searched to its end.
+        """Search share number ``share``; return (1) its findings, and (2) whether it was searched to its end.
 
-        The findings are batches for the collector; take each before asking for the next.
+        The findings are batches for the collector. Pass each batch to it before asking for the next one.
         """
 
     def make_account(self) -> SearchReport:
         """Return the report on all contacts decided so far."""
 
     def describe_work(self, done: int, complete: bool) -> SearchWork:
-        """Return the statistics of the search, given how many shares were searched to their end."""
+        """Return the statistics of the search.
+
+        ``done`` is the number of shares searched to their end, ``complete`` whether these are all.
+        """
 
     def explain_no_fixture(self) -> Note:
         """Return the note why a search that came to its end has no fixture."""
@@ -167,9 +172,9 @@ class ShareSearch(Protocol):
 def answer_by_shares(
     locating: ShareSearch, progress: Progress | None, cancel: Event | None, preview: Preview | None = None
 ) -> Result:
-    """Run a search share by share; return its fixtures as a result, with the reason if it has none.
+    """Run a search share by share, and return the result; if it has no fixture, the result has the reason.
 
-    See ``search.design.answer``.
+    Parameters as in ``search.design.answer``.
     """
     kept, done = locating.collector, 0
     for number in range(locating.shares):
@@ -193,7 +198,10 @@ def answer_by_shares(
 
 
 def select_one_clamp(query: Query, way: Toolkit) -> Query:
-    """Return a query with the toolkit of one direction with one clamp, for all types and without ranking."""
+    """Return a query in the toolkit ``way``, which has one clamp in one direction.
+
+    Types, ranking, number of best fixtures and listing go back to their defaults.
+    """
     return evolve(query, toolkit=way, types=None, rank_by=None, best=None, listing=None)
 
 
@@ -222,13 +230,15 @@ def search_best_first(
     cancel: Event | None,
     look: Callable[[Array], None] | None,
 ) -> SearchWork:
-    """Search for the best fixtures, and give what may be among them to ``kept``; return the statistics.
+    """Search for the best fixtures, add every fixture that may be
+    among them to ``kept``, and return statistics.
 
-    Preferred angles come first; others are left out where a bound shows that none can be among the best.
+    Preferred angles come first. The other angles are left out where a bound shows that none of their fixtures
+    can be among the best.
 
     Parameters
     ----------
-    kept : collects the best; also says what further fixtures must reach.
+    kept : collects the best; also has the limits that further fixtures must keep.
     look : called with the records (N, 19) of each block; None for no previews.
     """
     query, problem = search.problem.query, search.problem
@@ -266,10 +276,11 @@ def search_within_error(
     cancel: Event | None,
     look: Callable[[Array], None] | None,
 ) -> SearchWork:
-    """Search for all fixtures within a limit of the location
-    error, add them to ``kept``, and return the statistics.
+    """Search for all fixtures within a limit of the location error,
+    add them to ``kept``, and return statistics.
 
-    Some fixtures beyond the limit may be added, too.
+    Some fixtures beyond the limit may be added, too. ``look`` is called with the records (N, 19) of each
+    block; None for no previews.
     """
     query, works = problem.query, list[SearchWork]()
     first = list_preferred_angles(query)
@@ -296,10 +307,10 @@ def search_within_error(
 
 
 def bound_tilted_keys(query: Query, problem: Problem, cost: float) -> OrderKeys | None:
-    """Return lower bounds of the ranking keys of fixtures at other than preferred angles.
+    """Return lower bounds of the ranking keys of fixtures at all angles but the preferred ones.
 
-    None where preferred angles are not searched first: without ``best``, or at a cost so small that it does
-    not pay.
+    None where preferred angles are not searched first: (a) without ``best``, (b) where the search's ``cost``
+    is so small that it does not pay.
     """
     return bound_keys_when_tilted(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
 
@@ -307,7 +318,9 @@ def bound_tilted_keys(query: Query, problem: Problem, cost: float) -> OrderKeys 
 def summarize_work(
     search: ToolkitSearch, blocks: Sequence[SearchBlock], done: Sequence[SearchBlock]
 ) -> SearchWork:
-    """Return the statistics of a search, complete if as many blocks are done as there are."""
+    """Return the statistics of a search; it is complete if as many
+    blocks are ``done`` as there are ``blocks``.
+    """
     return SearchWork(
         complete=len(done) == len(blocks),
         statistics=search.statistics,

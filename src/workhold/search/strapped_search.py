@@ -1,9 +1,9 @@
 """Seats of three locators with the straps that hold the part down there with the least force.
 
-All seats are listed (``search.seat_search``), the best first: square to the drawing, then by their location error.
-For the first of them a push by hand is sought that presses the part against all three locators and, where there are
-loads, the straps that need the least force (``supports.straps``). These seats stand in the order of that force; seats
-that no push seats are unfit, and come last.
+All seats are listed (``search.seat_search``), the best first: square to the drawing, then by their location
+error. For the first of them a push by hand is sought that presses the part against all three locators and,
+where there are loads, the straps that need the least force (``supports.straps``). These seats stand in the
+order of that force; seats that no push seats are unfit, and come last.
 """
 
 from __future__ import annotations
@@ -61,7 +61,9 @@ NOT_LOADED = (
 def find_strapped_fixtures(
     query: Query, threads: int = 1, progress: Progress | None = None, cancel: Event | None = None
 ) -> Result:
-    """Finds every seat of a part on the plate of a query, and the straps of the best of them."""
+    """Return every seat of a part on the plate of a query, or the
+    best seats, with straps at the first of them.
+    """
     found = find_seats(query, threads, make_stage_progress(progress, 0.0, SEATS), cancel)
     table = place_on_plate(select_within_error(found.table, query), query)
     table = table.take(order_seats(table, query))
@@ -80,7 +82,10 @@ def find_strapped_fixtures(
 
 
 def remarks_on(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
-    """Why seats that nobody looked at come first, where no other is held."""
+    """Return the remark that no seat that was examined is held, with the reason; empty where one is held.
+
+    Also empty without loads. ``holds`` has the straps at each seat.
+    """
     seen = [hold for hold in holds if hold.is_looked_at and not hold.is_unfit]
     if not query.is_loaded or not seen or not all(hold.holds_nothing for hold in seen):
         return []
@@ -92,13 +97,15 @@ def remarks_on(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
 
 
 def select_within_error(table: FixtureTable, query: Query) -> FixtureTable:
-    """The seats with no larger location error than asked."""
+    """Return the seats whose location error is at most that of the
+    query; all seats where the query has no limit.
+    """
     most = query.max_location_error
     return table if most is None else table.take(table.quality[:, LOCATION_ERROR] <= most)
 
 
 def make_result(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
-    """Return the result of seats, without any straps."""
+    """Return the result of a table of seats, with notes but without straps."""
     name = query.toolkit.arrangements[0].name
     notes = list[Note]()
     undecided = len(found.proof.undecided)
@@ -121,7 +128,7 @@ def make_result(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
 
 
 def explain_no_seat(found: FoundSeats, query: Query) -> Note:
-    """Return why there is no seat."""
+    """Return the note why a search found no seat."""
     wording = query.toolkit.wording
     if found.proof.verified:
         return NoPlace(found.proof.verified, wording)
@@ -133,7 +140,9 @@ def explain_no_seat(found: FoundSeats, query: Query) -> Note:
 
 
 def count_sets(table: FixtureTable, query: Query) -> int:
-    """How many seats there are where such that a rotation of the part makes the same count once."""
+    """Return the number of seats, where seats that a rotation of the part
+    onto itself makes equal count once.
+    """
     # Rotations of the part change neither holes nor the place of its centre, only angle and faces.
     from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself
 
@@ -173,7 +182,11 @@ def count_sets(table: FixtureTable, query: Query) -> int:
 
 
 def place_on_plate(table: FixtureTable, query: Query) -> FixtureTable:
-    """Return seats in the holes of a plate with ends: those in which the part's middle is nearest to the plate's."""
+    """Return the seats in holes of the plate, with the part's middle
+    as near to the plate's middle as possible.
+
+    Along an axis in which the plate has no ends, the seats are not moved.
+    """
     plate = query.toolkit.plates[0]
     cx, cy = query.workpiece.center
     middle = table.position + np.stack(rotate_vectors(cx, cy, table.theta), axis=1)
@@ -188,7 +201,7 @@ def place_on_plate(table: FixtureTable, query: Query) -> FixtureTable:
 
 
 def move_seats(table: FixtureTable, moves: IntArray, plate: Carrier) -> FixtureTable:
-    """Return seats moved by whole columns and rows (N, 2)."""
+    """Return N seats, each moved by a whole number of columns and rows, ``moves`` (N, 2)."""
     return evolve(
         table,
         column=(table.column + moves[:, :1]).astype(np.int32),
@@ -198,13 +211,17 @@ def move_seats(table: FixtureTable, moves: IntArray, plate: Carrier) -> FixtureT
 
 
 def order_seats(table: FixtureTable, query: Query) -> IntArray:
-    """Return the order of seats by their own figures, best first; equal ones by angle, holes and faces."""
+    """Return the indices (N,) that put seats in order by the query's
+    ranking of their own figures, best first.
+
+    Equally good seats keep their order. Figures of straps are not used.
+    """
     keys = [one for name in query.rank_by if name in COLUMNS for one in [compute_seat_key(table, name)]]
     return np.asarray(np.lexsort([np.arange(len(table)), *keys[::-1]]), np.int64)
 
 
 def compute_seat_key(table: FixtureTable, name: str) -> Array:
-    """Return the keys (N,) of seats by a figure: smaller comes first."""
+    """Return the sort keys (N,) of seats by one figure, given by name; better seats have smaller keys."""
     values = table.quality[:, COLUMNS[name]]
     if name == "square":
         return np.asarray(values >= SQUARE_TILT, np.float64)
@@ -215,9 +232,10 @@ def compute_seat_key(table: FixtureTable, name: str) -> Array:
 def find_strapped_holds(
     result: Result, progress: Progress | None, cancel: Event | None
 ) -> tuple[list[StrappedHold], bool]:
-    """Return the straps at each seat; seats after the first are marked as not looked at.
+    """Return (1) a hold by straps for each seat, and (2) whether the search came to its end.
 
-    The second is whether all that are to be looked at were.
+    Seats are examined in order until as many as the query asks for can be seated by a push by hand; the
+    others are marked as not looked at.
     """
     query = result.query
     straps = query.toolkit.strap_set
@@ -240,9 +258,14 @@ def find_strapped_holds(
 
 
 def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query) -> list[int]:
-    """Return the places of seats in the order of the list, given them in the order of their own figures."""
+    """Return the indices of seats in the order of the list.
+
+    Held seats come first, by the query's ranking; then seats not looked at, then seats that straps do not
+    hold, then seats that no push by hand seats. Equally good seats keep their order.
+    """
 
     def key(place: int) -> tuple[float, ...]:
+        """Return the sort key of one seat."""
         hold = holds[place]
         if hold.is_unfit:
             return (3.0,)
@@ -266,7 +289,10 @@ def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query)
 def move_into_view(
     table: FixtureTable, holds: Sequence[StrappedHold], query: Query
 ) -> tuple[FixtureTable, list[StrappedHold]]:
-    """Return seats and straps moved by whole columns and rows so that none is below 0 on a plate without ends."""
+    """Return seats and straps moved by whole columns and rows so that none has a negative column or row.
+
+    They are moved only along axes in which the plate has no ends.
+    """
     plate, straps = query.toolkit.plates[0], query.toolkit.strap_set
     assert straps is not None
     ratio = np.round(np.array(plate.pitch) / np.array(straps.bolts.pitch)).astype(np.int64)
@@ -289,7 +315,11 @@ def move_into_view(
 
 
 def move_hold(hold: StrappedHold, pegs: IntArray, plate: Carrier, holes: IntArray) -> StrappedHold:
-    """Straps, supports and the push moved by holes (2,) of the plate, which are so many holes (2,) for bolts."""
+    """Return a hold with its straps, supports and push moved.
+
+    The move is ``pegs`` (2,) columns and rows of the plate's holes for pegs, which is ``holes`` (2,) columns
+    and rows of the holes for bolts.
+    """
     dx, dy = (pegs * np.array(plate.pitch)).tolist()
     straps = tuple(
         Strap(

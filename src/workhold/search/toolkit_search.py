@@ -91,10 +91,11 @@ ANY_ERROR = Precision(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), np.zeros(
 
 
 def list_lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSteps:
-    """Return the differences between two holes of one carrier, up to ``longest`` mm, both directions of each.
+    """Return the differences between two holes of one carrier, up to
+    ``longest`` mm, in both directions, shortest first.
 
-    The carriers have one pitch; a difference counts if one of them has it. Left out are differences at which
-    pegs' bodies overlap, and those that no two unblocked holes have. They are ordered by length.
+    All carriers have the same pitch. A difference is listed if it occurs on at least one of them. Left out
+    are differences at which the pegs' bodies overlap, and those that no two unblocked holes have.
     """
     pitch_x, pitch_y = carriers[0].pitch
     most_columns = min(max(carrier.column_count for carrier in carriers) - 1, int(longest / pitch_x))
@@ -122,9 +123,10 @@ def list_lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSt
 
 
 def is_between_free_holes(carrier: Carrier, steps: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return which differences (S, 2) of columns and rows exist between two unblocked holes of a carrier.
+    """Return a mask (S,): True for differences that exist between two unblocked holes of a carrier.
 
-    Where rows are unlimited, only wholly blocked columns count.
+    ``steps`` (S, 2) has the differences in columns and rows. Where the carrier's rows are unlimited, only
+    wholly blocked columns count as blocked.
     """
     rows = 1 if carrier.rows is None else carrier.rows
     free = np.ones((carrier.column_count, rows), np.bool_)
@@ -149,9 +151,10 @@ def make_curve_tables(
     near: NearSpots = EVERYWHERE,
     within: Array = ANY_TURN,
 ) -> CurveTable:
-    """Return the chord curves of a problem's loose features (F, 10).
+    """Return the chord curves of a problem's features, whose ends are moved out a little: ``loose`` (F, 10).
 
     If standing and moving pegs touch the same features, both carriers share curves; else each has its own.
+    ``within`` limits the curves to ranges of psi in radians, ``near`` to some spots of the locators.
     """
     share = partial(make_curve_table, threads=threads, cancel=cancel, near=near, within=within)
     longest, (standing, moving) = problem.diameter + 1e-6, problem.frame.carriers
@@ -171,12 +174,11 @@ def make_curve_tables(
 def may_lie_at(
     edges: Array, angles: Collection[Sequence[float]], half_turns: int, turned: float = 0.0
 ) -> NDArray[np.bool_]:
-    """Return which cells (K,) between edges (K + 1,) of psi
-    in radians hold part angles in some ranges of degrees.
+    """Return a mask (K,): True for cells of orientation that hold an angle of the part in one of some ranges.
 
-    All cells where there are no ranges. The part's angle is -psi, plus ``turned`` degrees by which the
-    toolkit's frame is turned against that of the search. With ``half_turns`` 1 an angle stands for its
-    opposite as well.
+    ``edges`` (K + 1,) are the edges of the cells, psi in radians; ``angles`` are ranges in degrees; without
+    ranges all cells are True. The part's angle is -psi plus ``turned``, the degrees by which the toolkit's
+    frame is turned against that of the search. With ``half_turns`` 1, psi and psi + pi count as equal.
     """
     wanted = np.full(len(edges) - 1, not angles)
     low, turn = turned - np.degrees(edges[1:]), 180.0 * half_turns
@@ -188,17 +190,20 @@ def may_lie_at(
 
 
 def count_half_turn_cells(problem: Problem) -> int:
-    """Return how many cells a half turn of orientations is divided into.
+    """Return the number of cells that a half turn of orientations is divided into.
 
-    In a cell heights should change by no more than part of a pitch, so that most pairs of pieces cannot
-    cross.
+    Within a cell, the curves move across the lattice by only a part of a pitch, so that most pairs of pieces
+    cannot cross.
     """
     most = CELLS_PER_PITCH * problem.wrench_length / problem.frame.lattice.pitch_y
     return int(min(max(most, FEWEST_CELLS), MOST_CELLS))
 
 
 def iterate_cell_runs(wanted: NDArray[np.bool_], together: int) -> Iterator[tuple[int, int]]:
-    """Yield (first, past-the-last) indices of runs of wanted cells, none longer than ``together``."""
+    """Yield (first index, index past the last) of runs of adjacent True entries of ``wanted``.
+
+    No run is longer than ``together``.
+    """
     first = 0
     while first < len(wanted):
         if not wanted[first]:
@@ -212,12 +217,12 @@ def iterate_cell_runs(wanted: NDArray[np.bool_], together: int) -> Iterator[tupl
 
 
 def limit_precision(precision: Precision, most: float) -> Precision:
-    """Return the precision with ``most`` mm as the largest effective location error of interest."""
+    """Return the precision with ``most`` mm as the largest effective location error that is searched."""
     return precision._replace(most=most, most_aslant=most / ASLANT)
 
 
 def sample_numbers(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
-    """Return which numbers (N,) a fixed hash chooses, about one in ``many``."""
+    """Return a mask (N,): True for the numbers that a fixed hash chooses, about one in ``many``."""
     mixed = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     return np.asarray((mixed >> np.uint64(33)) % np.uint64(many) == 0)
 
@@ -234,11 +239,12 @@ class ToolkitSearch:
 
     Parameters
     ----------
-    problem : what is searched.
-    loose : (F, 10) rows of the features with their ends moved out a little.
+    problem : the problem that is searched.
+    loose : (F, 10) kernel rows of F features, with their ends moved out a little.
     table : chord curves and sliding pairs between the loose features.
-    precision, near : which location errors, and which spots of locators, are of interest.
-    counting : count all simultaneous contacts instead of looking for fixtures only.
+    precision : bounds of the location error, with the largest one that is searched.
+    near : which spots of features locators may touch together.
+    counting : whether to count all simultaneous contacts instead of looking for fixtures only.
     most_listed : how many contacts each block lists regardless of the rules, when counting.
     every : only one in ``every`` chord curves is used, for an estimate.
     stats : (5,) statistics for each block; blocks do not share them, as they run in different threads.
@@ -269,9 +275,9 @@ class ToolkitSearch:
     ) -> ToolkitSearch:
         """Return the search of a problem with its chord curves; only some of these once ``cancel`` is set.
 
-        ``counting`` sets the contact margin to 0. What ``near`` and ``precision`` rule out has no curves.
-        ``only`` are ranges of the part's angle in degrees to make curves for; empty for all. Blocks may then
-        be asked for only with these ranges as ``first``.
+        ``counting`` sets the contact margin to 0. Contacts that ``near`` and ``precision`` rule out get no
+        curves. ``only`` are ranges of the part's angle in degrees to make curves for; empty for all. With
+        ``only``, call :meth:`make_blocks` with the same ranges as ``first``.
         """
         if counting:
             problem = Problem.from_query(evolve(problem.query, contact_margin=0.0), problem.pairing)
@@ -286,12 +292,12 @@ class ToolkitSearch:
 
     @property
     def frame(self) -> SearchFrame:
-        """Toolkit in the frame of the search."""
+        """The toolkit in the frame of the search."""
         return self.problem.frame
 
     @property
     def features(self) -> Features:
-        """Features as the kernels take them."""
+        """The features in the form that kernels take."""
         problem = self.problem
         return Features(self.loose, problem.rows, problem.standing, problem.moving, self.precision, self.near)
 
@@ -327,15 +333,16 @@ class ToolkitSearch:
         first: Collection[tuple[float, float]] = (),
         rest: bool = False,
     ) -> list[SearchBlock]:
-        """Return blocks of work that together find all fixtures of the arrangements with given names.
+        """Return blocks of work that together find all fixtures of the arrangements named in ``types``.
 
         Parameters
         ----------
-        least : smallest number of blocks in a half turn, about.
-        within : ranges of the part's angle in degrees; the blocks find all fixtures in these and some beside.
-            Empty for all.
-        first : ranges to search first; the blocks find all fixtures in these, or with ``rest`` all others.
-            Empty for no split.
+        least : about the smallest number of blocks in a half turn.
+        within : ranges of the part's angle in degrees. The blocks find all fixtures at these angles, and some
+            at other angles. Empty for all angles.
+        first : ranges of the part's angle in degrees that are searched before all others. Empty for no split.
+        rest : False for the blocks that find the fixtures at the angles of ``first``, True for those that
+            find all others.
         """
         # All lines of action pass a round part's centre, so nothing keeps it from turning.
         is_idle = not self.counting and is_round(self.problem)
@@ -377,8 +384,9 @@ class ToolkitSearch:
 
     @property
     def vague_sliding_pairs(self) -> NDArray[np.bool_]:
-        """Mask (P,) of sliding pairs whose orientation is known
-        too roughly, see ``sliding_pairs.bound_orientation_error``.
+        """Mask (P,) of the sliding pairs whose orientation is known too roughly.
+
+        See ``sliding_pairs.bound_orientation_error``.
         """
         whole, reals = self.table.sliding_pairs
         tail, head = self.loose[whole[:, TAIL]], self.loose[whole[:, HEAD]]
@@ -389,9 +397,11 @@ class ToolkitSearch:
         return np.asarray(off > VAGUE * d * along)
 
     def sort_sliding_pairs_into_cells(self, half_turns: int, edges: Array) -> list[NDArray[np.int64]]:
-        """Return, for each cell, the indices of the sliding pairs whose orientation is in it.
+        """Return, for each cell of orientation, the indices of the
+        sliding pairs whose orientation lies in it.
 
-        Orientations in the table are reduced to one turn in place. Pairs outside all cells are left out.
+        Orientations in the search's table are reduced to one turn in place. Sliding pairs outside all cells
+        are left out.
         """
         reals = self.table.sliding_pairs.reals
         psi = reals[:, ORIENTATION]
@@ -404,9 +414,9 @@ class ToolkitSearch:
         return [order[first:last] for first, last in pairwise(starts)]
 
     def make_crossing_block(self, arrangement: Arrangement, edges: Array, members: int) -> SearchBlock:
-        """Return the block that searches crossings of curves in neighbouring cells with these edges.
+        """Return the block that searches crossings of curves in adjacent cells, whose edges are given.
 
-        ``members`` is about the number of curves there, for the cost.
+        ``members`` is about the number of curves that exist there; the block's cost follows from it.
         """
         kernel, weight = KERNELS[arrangement.pegs]
         work = partial(
@@ -421,8 +431,9 @@ class ToolkitSearch:
     def make_sliding_pair_block(
         self, arrangement: Arrangement, edges: Array, cells: list[int], sliding_pairs: list[NDArray[np.int64]]
     ) -> SearchBlock:
-        """Return the block that searches the sliding pairs of
-        some cells; ``sliding_pairs`` are those of every cell.
+        """Return the block that searches the sliding pairs of some cells, given by index.
+
+        ``edges`` and ``sliding_pairs`` are those of all cells.
         """
         standing, stats = arrangement.pegs[0], self.add_statistics_row()
         parts = [
@@ -463,9 +474,10 @@ class ToolkitSearch:
         stats: NDArray[np.int64],
         needed: InterestLimits,
     ) -> Array:
-        """Run a kernel on the curves between two orientations in radians; return its records (N, 19).
+        """Run a kernel on the curves between two orientations psi in radians; return its records (N, 19).
 
-        ``needed`` is what fixtures must reach to be of interest, ``stats`` the row that the kernel adds to.
+        ``needed`` are the limits that fixtures must keep to be of interest, ``stats`` the row that the kernel
+        adds to.
         """
         most = min(self.precision.most, needed.error)
         features = self.features
@@ -481,11 +493,11 @@ class ToolkitSearch:
         )
 
     def make_limits(self, margin: float, most: float) -> Limits:
-        """Return the kernels' limits with a least closure
-        margin, given the largest effective error ``most`` in mm.
+        """Return the kernels' limits for a least closure margin, and a
+        largest effective error ``most`` in mm.
 
-        With a finite error limit the margin is at least that of a weak closure, as nothing with a warning is
-        of interest.
+        With a finite error the margin is at least that of a weak closure, since then no fixture with a
+        warning is of interest.
         """
         if most < inf:
             margin = max(margin, WEAK_CLOSURE - MARGIN_SLACK)
@@ -493,15 +505,15 @@ class ToolkitSearch:
 
 
 def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | None = None) -> int:
-    """Return how many sets of four pegs of the two jaws touch a
-    workpiece at the same time, each contact inside its feature.
+    """Return how many sets of four pegs touch a workpiece at the same time, each contact inside its feature.
 
-    Gap, closure and clamping are not asked. Sets that rest on a chord of parallel faces and right pegs on
-    faces square to the jaws' motion count only where they can be distinguished.
+    Gap, closure and clamping are not tested. Two special kinds of set count only where they can be
+    distinguished: those with a chord between parallel faces, and those whose moving pegs touch faces square
+    to the motion.
 
     Parameters
     ----------
-    workpiece, toolkit : what is held, and in what.
+    workpiece, toolkit : the part, and the toolkit that holds it.
     threads : how many threads share the work; None for one on each processor.
 
     Raises
@@ -513,8 +525,8 @@ def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | Non
 
 
 def count_problem_contacts(problem: Problem, threads: int | None, cancel: Event | None = None) -> int:
-    """Return the number of simultaneous contacts of a
-    problem, see :func:`count_contacts`; fewer once cancelled.
+    """Return the number of simultaneous contacts of a problem, see
+    :func:`count_contacts`; fewer once cancelled.
     """
     workers = choose_thread_count(threads)
     search = ToolkitSearch.from_problem(problem, counting=True, threads=workers, cancel=cancel)

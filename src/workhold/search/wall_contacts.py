@@ -5,11 +5,11 @@ along it from its start, v up from it. The lines are rows, of one v each, or col
 meets a straight feature in one point at most and an arc in two. A locator and a clamp press the part against
 the wall where the null vector of the four wrenches, in doubles, says so.
 
-Bounds of the error. Everything is exact but for two roundings. The tangent of the hull edge is off by
+Bounds of the error. Two roundings count; everything else is exact. The tangent of the hull edge is off by
 ``turn`` radians; sums and products of lengths up to ``size`` mm are off by ``off`` mm together. A contact is
 then off by ``off`` over the sine of the angle at which its line meets the feature. Its normal is off by
 ``turn`` and, on an arc, by the contact's error over the radius; the factors below are generous. Where a line
-only grazes an arc there is no bound, and the contact is decided in balls.
+only grazes an arc there is no bound, and the contact is decided in ball arithmetic (midpoint and radius).
 """
 
 from __future__ import annotations
@@ -74,8 +74,10 @@ class PinContacts(RowArrays):
     point : (M, 2) centre of the peg, u and v in mm.
     normal : (M, 2) outward unit normal of the part there.
     slack : (M,) distance in mm to the nearer end of the feature, negative beyond it; inf on a whole circle.
-    reach, swing : (M,) error bounds of the place in mm and of the normal in radians.
-    branch : (M,) -1 or 1 for the lower or the upper of the two points on an arc; 1 on a straight feature.
+    reach : (M,) error bound of ``point``, in mm.
+    swing : (M,) error bound of ``normal``, in radians.
+    branch : (M,) which of the two points on an arc: -1 for the one with the smaller coordinate along the
+        line, 1 for the other; 1 on a straight feature.
     """
 
     line: IntArray
@@ -92,14 +94,16 @@ def find_pin_contacts(
     lying: PartOnWall, chosen: tuple[int, int], levels: Array, upright: bool, margin: float
 ) -> PinContacts:
     """Return the contacts of pegs on parallel lines with some
-    features, within error bounds ``margin`` inside their ends.
+    features, at least ``margin`` mm inside their ends.
 
-    At a tangent joint there is a contact with either feature.
+    Contacts are left out only where the error bounds exclude them. At a tangent joint there is a contact with
+    each of the two features.
 
     Parameters
     ----------
-    chosen : first and past-the-last index of the features.
-    levels : (K,) v of rows, or u of columns if ``upright``, in mm.
+    chosen : first index, and index past the last, of the features.
+    levels : (K,) coordinates of the lines in mm: v of rows, or u of columns if ``upright``.
+    upright : whether the lines are columns; else they are rows.
     margin : smallest distance in mm from the end of a feature.
     """
     first, last = chosen
@@ -120,18 +124,18 @@ def find_pin_contacts(
 
 
 def list_shared_columns(places: PinContacts) -> tuple[Array, ...]:
-    """Return all columns of contacts except ``line`` and ``feature``, in order."""
+    """Return all fields of contacts except ``line`` and ``feature``, in the order of their declaration."""
     return tuple(getattr(places, one.name) for one in fields(PinContacts))[2:]
 
 
 def find_line_contacts(
     lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
 ) -> PinContacts:
-    """Return the contacts of lines at ``levels`` with straight
-    features; features parallel to the lines have none.
+    """Return the contacts of pegs on lines with straight features; features parallel to the lines have none.
 
-    ``along`` and ``across`` are the columns (of position, of axis) for the coordinate along the lines first,
-    then across them.
+    ``levels`` (K,) has the coordinate of each line in mm: v of a row, u of a column. ``rows`` (F, 12) are the
+    kernel rows of the features. ``along`` are the two columns of ``rows`` with a position's coordinate along
+    the lines and across them, ``across`` those with an axis's component along the lines and across them.
     """
     straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
     some = rows[straight]
@@ -155,9 +159,9 @@ def find_line_contacts(
 def find_arc_contacts(
     lying: PartOnWall, rows: Array, levels: Array, along: tuple[int, int], across: tuple[int, int]
 ) -> PinContacts:
-    """Return the contacts of lines at ``levels`` with arcs, up to two for each line and arc.
+    """Return the contacts of pegs on lines with arcs, up to two for each line and arc.
 
-    Those beyond the ends of arcs are left out where that is sure.
+    Parameters as in :func:`find_line_contacts`. Contacts surely beyond the ends of arcs are left out.
     """
     round_ = np.flatnonzero(rows[:, IS_ARC] != 0.0)
     some = rows[round_]
@@ -202,29 +206,32 @@ def find_arc_contacts(
 
 
 def compute_half_angles(rows: Array) -> Array:
-    """Return half angles (F,) in radians of arcs (F, 12),
-    enlarged by a little past their ends, at most pi.
+    """Return the half angles (F,) in radians of arcs, enlarged so that
+    they reach a little past the ends; at most pi.
+
+    ``rows`` (F, 12) are the kernel rows of the arcs.
     """
     past = np.maximum(rows[:, HIGH_SLACK], rows[:, LOW_SLACK]) + PAST_END
     return np.asarray(np.minimum(rows[:, HALF_EXTENT] + past / rows[:, RADIUS] + PAST_END, np.pi))
 
 
 def compute_least_ahead(rows: Array) -> Array:
-    """Return (F,) the smallest coordinate in mm along an arc's
-    axis, from its centre, of contacts not far past its ends.
+    """Return the smallest coordinate in mm that a contact can have
+    along the arc's axis, from its centre, (F,).
 
-    -inf for whole circles.
+    Contacts a little past the arc's ends are included; -inf for whole circles. ``rows`` (F, 12) are the
+    kernel rows of the arcs.
     """
     angle = compute_half_angles(rows)
     return np.asarray(np.where(angle >= np.pi, -np.inf, rows[:, RADIUS] * np.cos(angle)))
 
 
 def bound_heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
-    """Return the least and the largest coordinate (F,) in mm,
-    from the centre, of contacts not far past the ends of arcs.
+    """Return (1) the least and (2) the largest coordinate across the lines of contacts with arcs, each (F,).
 
-    The range is wider by ``spare`` (F,) mm on both sides. ``across`` are the two columns of ``rows`` (F, 12)
-    with the axis's component along the lines and across them; the coordinate is that across.
+    Coordinates are in mm from the arcs' centres; contacts a little past the ends are included. ``rows`` (F,
+    12) are the kernel rows of the arcs. ``across`` are the two columns of ``rows`` with the axis's component
+    along the lines and across them. The range is wider by ``spare`` (F,) mm on both sides.
     """
     turn, half = np.arctan2(np.abs(rows[:, across[0]]), rows[:, across[1]]), compute_half_angles(rows)
     low = -np.cos(np.maximum(np.pi - turn - half, 0.0))
@@ -236,13 +243,14 @@ BoolArray = NDArray[np.bool_]
 
 @frozen(eq=False)
 class ContactPairs:
-    """M pairs of a contact of a clamp and one of the locator.
+    """M pairs of a clamp's contact and the locator's contact.
 
     Parameters
     ----------
-    places : contacts of the clamp's tip; their ``line`` is a row, or a column relative to the locator's.
+    places : contacts of the clamp's tip; their ``line`` is a row, or a column counted from the locator's
+        column.
     which : (M,) index of the tip's contact in ``places``.
-    locator : (M,) index of the locator's contact.
+    locator : (M,) index of the locator's contact among the contacts of locators.
     """
 
     places: PinContacts
@@ -258,9 +266,10 @@ class ContactPairs:
 
 
 def may_oppose(lying: PartOnWall, one: PinContacts, clamps: ContactPairs, problem: Problem) -> BoolArray:
-    """Return a mask (M,) that is False only for pairs that :func:`closure` is sure to reject.
+    """Return a mask (M,) that is False only for pairs that :func:`judge_closure` surely rejects.
 
-    The locator and the clamp must push against each other along the wall. ``one`` are the locator's contacts.
+    Rejected are pairs whose locator and clamp do not push against each other along the wall. ``one`` are the
+    contacts of locators.
     """
     length, two = problem.wrench_length, clamps.places
     reach, swing = (
@@ -280,13 +289,13 @@ def judge_seating(
     push: tuple[float, float],
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return null vectors, pushes, verdicts and doubts of pairs
-    with one of two clamps: wall and locator must fix the part.
+    """Return (null, pushes, held, open) of M pairs of a locator and one of two clamps.
 
-    As :func:`closure`, except that the three locating contacts need not press; the clamp must push. The null
-    vectors (M, 4) are the forces of the wall's two ends and the locator, divided by that at the clamp's face.
-    With the notation of :func:`closure` the locator's force is -b_u / a_u, and the determinant of the three
-    wrenches is |a_u| l.
+    A pair is held if wall and locator fix the part, and the clamp pushes on it; the locator and the wall need
+    not be pressed. The parameters, ``pushes``, ``held`` and ``open`` are those of :func:`judge_closure`.
+    ``null`` (M, 4) are the forces of the wall's two ends, the locator and the clamp, divided by the clamp's.
+    With the letters of :func:`judge_closure` the locator's force is -b_u / a_u, and the determinant of the
+    three locating wrenches is |a_u| l.
     """
     length = problem.wrench_length
     a, b = one.normal[locator], two.normal
@@ -319,16 +328,18 @@ def judge_closure(
     push: tuple[float, float],
     problem: Problem,
 ) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return (null, pushes, held, open) of pairs of a locator's and a clamp's contact.
+    """Return (null, pushes, held, open) of M pairs of a contact of a locator and one of a clamp.
 
-    ``null`` (M, 4) are unscaled forces of the wall's two ends, locator and clamp; ``pushes`` (M,) the share
-    of the clamp's force along its direction ``push`` that its face passes on; ``held`` (M,) whether the pair
-    surely presses the part; ``open`` (M,) whether doubles leave that undecided. ``locator`` (M,) indexes
-    ``one``.
+    ``null`` (M, 4) are the forces of the wall's two ends, the locator and the clamp, up to a common factor.
+    ``pushes`` (M,) is the cosine of the angle between the clamp's direction ``push`` and the force of its tip
+    on the part. ``held`` (M,) is True where the pair surely presses the part, ``open`` (M,) where double
+    arithmetic leaves that undecided. ``one`` are the contacts of locators, and ``locator`` (M,) has each
+    pair's index in it; ``two`` are the M contacts of the clamp.
 
-    Let a, b be the normals and m, M the moments of locator and clamp about the start of the hull edge of
-    length l, lengths in parts of L. With p = -b_u sign a_u, q = |a_u| and t = p m + q M, the null vector is
-    (l (p a_v + q b_v) - t, t, p l, q l).
+    The formula: a and b are the normals of the part at locator and clamp, m and M the moments of these
+    normals about the start of the hull edge, l the length of the hull edge; lengths are divided by the
+    characteristic length L. The index u marks components along the edge, v components up from it. With p =
+    -b_u sign a_u, q = |a_u| and t = p m + q M, the null vector is (l (p a_v + q b_v) - t, t, p l, q l).
     """
     length = problem.wrench_length
     a, b = one.normal[locator], two.normal

@@ -63,8 +63,8 @@ TOGETHER = 1 << 17
 
 @define(eq=False)
 class WallSearch(FlushSearch):
-    """The search for pairs of locator and clamp that press
-    a part against a wall, for one direction of the clamp.
+    """The search for pairs of locator and clamp that press a part
+    against a wall, for one direction of the clamp.
     """
 
     @property
@@ -90,7 +90,7 @@ class WallSearch(FlushSearch):
 
     @property
     def can_touch(self) -> bool:
-        """Whether the locator can touch the part on an edge searched so far."""
+        """Whether a locator can touch the part on one of the hull edges searched so far."""
         return self.locators > 0
 
     def iterate_fixtures(self, edge: int) -> Iterator[WallFixtures]:
@@ -98,16 +98,19 @@ class WallSearch(FlushSearch):
         return (part for _, part in find_fixtures_on_edge([self], edge))
 
     def place_fixtures(self, parts: list[WallFixtures], edge: int) -> FixtureTable:
-        """Return the table of those pairs whose clamps have a place, each once."""
+        """Return the table of those pairs whose clamps have a place, each pair once.
+
+        ``edge`` is not used.
+        """
         return place_on_wall(WallFixtures.concatenate(parts), self.problem)
 
     def find_contacts_on_rows(
         self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array
     ) -> PinContacts:
-        """Return contacts of pegs in rows of holes at ``rows`` (K,) v
-        in mm, with features from ``chosen[0]`` to before ``chosen[1]``.
+        """Return the contacts of pegs in rows of holes with the features ``chosen[0]`` to ``chosen[1] - 1``.
 
-        Contacts of rows that graze an arc are computed in ball arithmetic, and left out where there is none.
+        ``rows`` (K,) are the rows' coordinates v in mm. Contacts of rows that graze an arc are computed in
+        ball arithmetic, and left out where it finds none. ``edge`` is the index of the hull edge on the wall.
         """
         problem = self.problem
         places = find_pin_contacts(lying, chosen, rows, False, problem.contact_margin)
@@ -123,7 +126,11 @@ class WallSearch(FlushSearch):
         return places.take(kept)
 
     def list_row_heights(self, lying: PartOnWall, chosen: tuple[int, int]) -> Array:
-        """Return v (K,) in mm of the rows of holes, from the first row up, as far as some features reach."""
+        """Return the coordinates v (K,) in mm of the rows of holes that
+        may meet some features, from the first row up.
+
+        The features are ``chosen[0]`` to ``chosen[1] - 1``.
+        """
         first, pitch = self.plate.offset[1], self.plate.pitch[1]
         _, high = bound_reach(lying.rows[slice(*chosen)], upward=True)
         count = max(floor((high - first) / pitch + 1e-9) + 1, 0)
@@ -131,7 +138,11 @@ class WallSearch(FlushSearch):
         return np.asarray(first + pitch * rows)
 
     def pair_contacts_on_rows(self, places: PinContacts, locators: PinContacts) -> Iterator[ContactPairs]:
-        """Yield, in batches, every pair of a pushing clamp contact in ``places`` and a locator contact."""
+        """Yield, in batches, every pair of a clamp contact and a locator contact.
+
+        Clamp contacts are taken from ``places``, which are on rows of holes; those that cannot push the part
+        are left out.
+        """
         chosen = np.flatnonzero(self.find_pressing_tips(places))
         together = max(TOGETHER // max(len(chosen), 1), 1)
         for start in range(0, len(locators), together):
@@ -139,8 +150,8 @@ class WallSearch(FlushSearch):
             yield ContactPairs(places, np.tile(chosen, len(numbers)), np.repeat(numbers, len(chosen)))
 
     def pair_contacts_on_columns(self, lying: PartOnWall, locators: PinContacts) -> Iterator[ContactPairs]:
-        """Yield, in batches, pairs of a locator contact and
-        a clamp contact a whole number of columns from it.
+        """Yield, in batches, every pair of a locator contact and a clamp
+        contact a whole number of columns from it.
 
         The clamp's tip moves along a column of holes.
         """
@@ -166,7 +177,9 @@ class WallSearch(FlushSearch):
             yield ContactPairs(evolve(places, line=steps[step], reach=grown), np.arange(len(places)), locator)
 
     def find_pressing_tips(self, places: PinContacts) -> BoolArray:
-        """Return which contacts (M,) of the clamp's tip are clear of the wall and may push the part."""
+        """Return a mask (M,): True for contacts of the clamp's tip that
+        are clear of the wall and may push the part.
+        """
         x, y = self.push
         push = -(places.normal[:, 0] * x + places.normal[:, 1] * y)
         above = places.point[:, 1] >= self.clamp.peg_radius - GAP_SLACK
@@ -175,10 +188,11 @@ class WallSearch(FlushSearch):
     def find_closing_pairs(
         self, edge: int, lying: PartOnWall, one: PinContacts, clamps: ContactPairs
     ) -> WallFixtures:
-        """Return the pairs that press the part against the
-        wall, with ball arithmetic where doubles do not decide.
+        """Return the pairs that press the part against the wall, decided in
+        ball arithmetic where doubles are too coarse.
 
-        ``one`` are the locator's contacts. Updates the counts, and with ``explains`` the nearest pair.
+        ``one`` are the contacts of locators, ``clamps`` the pairs to test. Updates the counts, and with
+        ``explains`` the nearest pair.
         """
         self.examined += len(clamps)
         pairing = self.problem.pairing
@@ -212,8 +226,8 @@ class WallSearch(FlushSearch):
             )
 
         def alone(chosen: IntArray) -> FixtureTable:
-            """Return the table of the pairs with these indices,
-            in the toolkit whose clamp is its tip alone.
+            """Return the table of the pairs with these indices, in the
+            toolkit whose clamp is its tip alone.
             """
             query = evolve(self.problem.query, toolkit=self.pair_toolkit)
             return make_wall_table(pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query))
@@ -235,11 +249,10 @@ class WallSearch(FlushSearch):
         two: PinContacts,
         locator: IntArray,
     ) -> WallFixtures:
-        """Return pairs with places, and with two clamps forces,
-        computed in ball arithmetic where doubles are too coarse.
+        """Return pairs whose places come from ball arithmetic where doubles are too coarse.
 
-        With two clamps the error bounds of the forces are added (``doubt``). ``two`` and ``locator`` are
-        matched to the pairs.
+        With two clamps their forces are sharpened as well, and get error bounds (``doubt``). ``two`` (the
+        clamp's contacts) and ``locator`` (indices in ``one``) have one entry for each pair of ``pressed``.
         """
         places = self.sharpen_places(pressed, edge, one, two, locator)
         if not self.problem.pairing:
@@ -258,10 +271,10 @@ class WallSearch(FlushSearch):
     def sharpen_places(
         self, pressed: WallFixtures, edge: int, one: PinContacts, two: PinContacts, locator: IntArray
     ) -> WallFixtures:
-        """Return pairs with contacts, and with one clamp forces,
-        from ball arithmetic where doubles are too coarse.
+        """Return pairs whose contacts come from ball arithmetic where doubles are too coarse.
 
-        Such contacts are near a row or a column that grazes an arc.
+        That is so near a row or a column that grazes an arc. With one clamp the forces come from there, too.
+        Parameters as in :meth:`sharpen_pairs`.
         """
         far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
         places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
@@ -277,7 +290,11 @@ class WallSearch(FlushSearch):
     def make_candidate(
         self, edge: int, one: PinContacts, two: PinContacts, locator: IntArray, k: int
     ) -> WallCandidate:
-        """Return pair ``k`` in the form that ball arithmetic decides."""
+        """Return pair ``k`` in the form that ball arithmetic decides.
+
+        ``two`` and ``locator`` have one entry for each pair; ``one`` are the contacts that ``locator``
+        indexes.
+        """
         behind = int(locator[k])
         return WallCandidate(
             edge=edge,
@@ -312,8 +329,10 @@ def bound_reaction_errors(
     locator: IntArray,
     problem: Problem,
 ) -> Array:
-    """Return error bounds (M,) of the forces of wall and
-    locator, from those of places and normals; inf where unknown.
+    """Return error bounds (M,) of the forces of wall and locator of M pairs; inf where unknown.
+
+    They follow from the error bounds of places and normals. Parameters as in
+    :meth:`WallSearch.sharpen_pairs`.
     """
     reach = np.maximum(one.reach[locator], two.reach)
     swing = np.maximum(one.swing[locator], two.swing)
@@ -326,9 +345,9 @@ def bound_reaction_errors(
 
 
 def make_searches(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
-    """Return one search for each direction of the clamp; ``ways`` differ in that direction alone.
+    """Return one search for each toolkit of ``ways``, which differ in the direction of the clamp alone.
 
-    With ``pairing`` contacts need not close, as for two clamps.
+    ``pairing`` says that there are two clamps, so that contacts with one clamp need not close.
     """
     one, *others = (evolve(query, toolkit=way) for way in ways)
     problem = Problem.from_query(one, pairing=pairing)
@@ -338,10 +357,10 @@ def make_searches(query: Query, ways: Sequence[Toolkit], pairing: bool = False) 
 def find_fixtures_on_edge(
     searches: Sequence[WallSearch], edge: int
 ) -> Iterator[tuple[WallSearch, WallFixtures]]:
-    """Yield (search, pairs) in batches: the pairs that press the part as it lies on a hull edge.
+    """Yield (search, pairs) in batches: the pairs that press the part as it lies on hull edge ``edge``.
 
-    The lie of the part, locator contacts, and contacts on rows and columns are computed once for all
-    searches, which come from :func:`make_searches`.
+    ``searches`` come from :func:`make_searches`. The lie of the part, locator contacts, and contacts on rows
+    and columns are computed once for all searches.
     """
     one = searches[0]
     problem = one.problem
@@ -372,8 +391,9 @@ def find_fixtures_on_edge(
 
 
 def bound_reach(rows: Array, upward: bool) -> tuple[float, float]:
-    """Return the least and the largest v (``upward``) or u in
-    mm of features (F, 12); of arcs those of the whole circle.
+    """Return (1) the least and (2) the largest coordinate in mm that features reach: v if ``upward``, else u.
+
+    ``rows`` (F, 12) are the kernel rows; an arc counts as its whole circle.
     """
     place = rows[:, 2 if upward else 1]
     extent = np.where(

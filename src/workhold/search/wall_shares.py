@@ -55,20 +55,22 @@ class LatticePairSearch(FlushSearch):
 
     @property
     def pair_toolkit(self) -> Toolkit:
-        """Toolkit with a wall without ends."""
+        """The toolkit, with a wall that has no ends."""
         toolkit = self.problem.toolkit
         return toolkit.without_limits([limit for limit in toolkit.limits if limit.bounds == "reach"])
 
     @property
     def can_touch(self) -> bool:
-        """Whether two pegs can touch the part; also True where all
-        faces are square, since then closure is what is missing.
+        """Whether two pegs can touch the part.
+
+        Also True where all faces met are square to the wall or parallel to it, since then closure is what is
+        missing.
         """
         return self.is_square or self.examined > 0
 
     @property
     def lattice(self) -> Carrier:
-        """Sliding lattice."""
+        """The sliding lattice."""
         return self.problem.toolkit.moving
 
     def iterate_fixtures(self, edge: int) -> Iterator[LatticePairs]:
@@ -87,8 +89,9 @@ class LatticePairSearch(FlushSearch):
             yield good
 
     def keep_nearest_of(self, pairs: LatticePairs, edge: int) -> None:
-        """Keep the nearest of pairs on a hull edge, given with
-        their forces, see :meth:`FlushSearch.keep_nearest`.
+        """Keep that of some pairs on hull edge ``edge`` which comes nearest to pressing the part.
+
+        The pairs must have their forces. See :meth:`FlushSearch.keep_nearest`.
         """
         # Forces are given per unit of the lattice's, which there has to be.
         is_none = np.abs(pairs.null[:, :2].sum(axis=1)) < LEAST_SPAN
@@ -100,7 +103,8 @@ class LatticePairSearch(FlushSearch):
     def place_fixtures(self, parts: list[LatticePairs], edge: int) -> FixtureTable:
         """Return the table of the pairs that the lattice can hold within its travel and rows, each once.
 
-        The lower peg is in row 0, or in a later row where the lattice cannot open so wide.
+        The lower peg of a pair is in row 0, or in a later row where the lattice cannot open so wide.
+        ``parts`` are batches of pairs on hull edge ``edge``.
         """
         pairs = list_pairs_once(LatticePairs.concatenate(parts))
         travel, rows = self.lattice.travel, find_last_holes(self.lattice)[1]
@@ -124,12 +128,13 @@ class LatticePairSearch(FlushSearch):
     def choose_jaw_columns(
         self, pairs: LatticePairs, edge: int, reach: tuple[float, float]
     ) -> tuple[NDArray[np.int64], LatticePairs]:
-        """Return the column (N,) of each pair's first peg in
-        which a wall with ends holds the part best, and the pairs.
+        """Return (1) the column of each pair's first peg at which a wall with
+        ends holds the part best, (N,); (2) the pairs.
 
-        -1 where no column holds it: the point where the wall's force acts must be inside the common stretch
-        of wall and part. The best column has the longest common stretch, nearest to the wall's middle. The
-        pairs get the forces at the ends of that stretch. ``reach`` is from where to where the wall is, in mm.
+        -1 where no column holds the part: the point where the wall's force acts must lie inside the common
+        stretch of wall and part. The best column has the longest common stretch; among equal ones, that with
+        the stretch nearest to the wall's middle. The returned pairs have the forces at the ends of that
+        stretch. ``reach`` is (begin, end) of the wall in mm.
         """
         flush, pitch = self.problem.workpiece.flush, self.lattice.pitch[0]
         columns, first = self.lattice.column_count, np.full(len(pairs), -1, np.int64)
@@ -163,10 +168,10 @@ class LatticePairSearch(FlushSearch):
     def make_table(
         self, pairs: LatticePairs, edge: int, back: NDArray[np.int64], first: NDArray[np.int64]
     ) -> FixtureTable:
-        """Return the table of pairs on a hull edge, with lower pegs in
-        rows ``back`` (N,) and first pegs in columns ``first`` (N,).
+        """Return the table of N pairs on hull edge ``edge``.
 
-        Of the figures of quality only the closure margin is known, the others are NaN.
+        Lower pegs stand in rows ``back`` (N,), first pegs in columns ``first`` (N,). Of the figures of
+        quality only the closure margin is known, the others are NaN.
         """
         flush, problem, count = self.problem.workpiece.flush, self.problem, len(pairs)
         column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
@@ -191,7 +196,7 @@ class LatticePairSearch(FlushSearch):
         )
 
     def make_undecided(self, pairs: LatticePairs, number: int, edge: int) -> UndecidedCandidate:
-        """Return the entry of the search report for undecided pair ``number``."""
+        """Return the entry of the search report for pair number ``number``, which is undecided."""
         flush, step = self.problem.workpiece.flush, pairs.step[number].tolist()
         one, other = self.problem.faces[pairs.feature[number]].tolist()
         title, rows = self.problem.toolkit.arrangements[0].title, (0, 0, max(-step[1], 0), max(step[1], 0))
@@ -202,7 +207,10 @@ class LatticePairSearch(FlushSearch):
 
 
 def list_pairs_once(pairs: LatticePairs) -> LatticePairs:
-    """Return the pairs, each once: contacts at a tangent joint are found on both features that meet there."""
+    """Return the pairs, each once.
+
+    Contacts at a tangent joint are found on both features that meet there; one of them is kept.
+    """
     place = pairs.point.reshape(-1, 4) @ np.array([1.0, 0.7548776662, 0.5698402910, 0.4301597090])
     return pairs.take(find_first_of_each((*pairs.step.T,), place, pairs.feature))
 
@@ -213,11 +221,11 @@ class WallShares:
 
     Parameters
     ----------
-    searches : one for each direction of the clamp, or that of a sliding lattice.
-    fixtures : yields, for a hull edge, (search, batch of pairs that press the part).
+    searches : one search for each direction of the clamp, or the single search of a sliding lattice.
+    fixtures : called with the index of a hull edge; yields (search, batch of pairs that press the part).
     collector : takes the fixtures, or with two clamps the seats.
-    cancel : when set, no further pairs of contacts are looked at.
-    edges : numbers of the hull edges.
+    cancel : when set, no further pairs of contacts are examined.
+    edges : indices of the hull edges on which the part may lie.
     """
 
     searches: Sequence[FlushSearch]
@@ -231,7 +239,7 @@ class WallShares:
 
     @classmethod
     def from_query(cls, query: Query, cancel: Event | None) -> WallShares:
-        """Return the shares of a query, with a sliding lattice, with one clamp, or with two."""
+        """Return the shares of a query whose toolkit has a sliding lattice, one clamp, or two clamps."""
         toolkit, pairing = query.toolkit, query.toolkit.travels > 1
         if toolkit.moving.on is None:
             search = LatticePairSearch(Problem.from_query(query))
@@ -251,8 +259,10 @@ class WallShares:
         return len(self.edges)
 
     def search_share(self, share: int, progress: Progress | None) -> tuple[list[FixtureTable | Seats], bool]:
-        """Search one hull edge; return its fixtures as a table for
-        each search, or its seats, and whether it came to its end.
+        """Search one hull edge; return (1) what was found, and (2) whether the search came to its end.
+
+        Two cases: (a) with one closing movement, (1) is a table of fixtures for each search that found any;
+        (b) with two clamps, (1) is the seats.
         """
         edge, is_whole = self.edges[share], True
         found: dict[FlushSearch, list[Any]] = {search: [] for search in self.searches}
@@ -287,12 +297,14 @@ class WallShares:
         )
 
     def sum_statistic(self, name: str) -> int:
-        """Return the sum over all searches of a count, by the name of its attribute."""
+        """Return a count summed over all searches; ``name`` is the attribute that holds the count."""
         return sum(getattr(search, name) for search in self.searches)
 
     def describe_work(self, done: int, complete: bool) -> SearchWork:
-        """Return the statistics of the search after ``done`` hull
-        edges; shared counts are multiplied by the number of directions.
+        """Return the statistics of the search after ``done`` hull edges.
+
+        Counts that all directions of the clamp share are multiplied by the number of directions, except with
+        two clamps.
         """
         times = 1 if self.searches[0].problem.pairing else len(self.searches)
         statistics = {

@@ -1,15 +1,17 @@
 """Pegs that press a part along one line or along parallel lines: equilibria in closed form.
 
-Two pegs are on one line: on a common normal of two pieces, or in pockets. With one at a fixed height above
-the other the jaw separation grows with their distance d on the part. It is counted along the outward normal
-of what moves, and is below 0 where both press from between, as in a hole. So equilibria are the critical
-points of d over the places on both pieces. With curvatures kappa (of convex pieces above 0) the second
-derivatives of d are 1 / d - kappa along each piece, and -1 / d across.
+Two pegs press along one line where it is a common normal of the two boundary pieces that they touch, or where
+they sit in pockets. Let one peg stand at a fixed height above the other, and let d be the distance of their
+places on the part. It is counted along the outward normal at the peg that moves, and is negative where both
+press from between, as in a hole. The jaw separation grows with d. So equilibria are the critical points of d
+over the places on both pieces. With the pieces' curvatures kappa (positive where convex) the second
+derivatives of d are 1 / d - kappa along each piece, and the mixed one is -1 / d.
 
-Of three parallel forces two are of pegs of one jaw on a line and an arc, and the third is on a parallel line.
-There the chord of the two is a tangency, and its instant centre infinitely far. S depends on the orientation
-alone, because two of the three lie on parallel lines. The orientation has an extremum along the chord's
-curve: so S has one too.
+Three contacts with parallel normals also balance: two pegs of one jaw on a line and an arc, and a third peg
+on a line parallel to the first. There the chord between the two pegs of the jaw is at a tangency, and its
+instant centre is infinitely far. The jaw separation S then depends on the orientation alone, because two of
+the three contacts lie on parallel lines. The orientation has an extremum along the chord's curve, so S has
+one too.
 
 Glossary
 --------
@@ -58,16 +60,17 @@ FLAT = 1e-9
 
 @frozen(slots=False)
 class AntipodalContacts:
-    """Two places on the boundary with opposite normals, each on the other's.
+    """Two places on a part's boundary whose outward normals are opposite and lie on the line through both
+    places.
 
     Parameters
     ----------
-    pieces : for each place the numbers of the pieces that a peg there touches: one piece, or the two of a
-        pocket.
-    one, two : places about the part's centre, in mm.
-    length : distance d from the first place to the second along the second's outward normal in mm, negative
+    pieces : for each of the two places, the numbers of the boundary pieces that a peg there touches: one
+        number, or two in a pocket (a corner where two pieces meet).
+    one, two : the places in mm, relative to the centre of the part's bounding box, in the part's frame.
+    length : distance d in mm from the first place to the second, along the second's outward normal; negative
         where the normals point at each other.
-    curvatures : of the pieces in 1 / mm, positive where convex; None for a pocket.
+    curvatures : curvature of the piece at each place in 1 / mm, positive where convex; None for a pocket.
     """
 
     pieces: tuple[tuple[int, ...], tuple[int, ...]]
@@ -78,9 +81,11 @@ class AntipodalContacts:
 
     @cached_property
     def descent_direction(self) -> tuple[float, float, float]:
-        """The least second derivative of d in 1 / mm, and the components of its direction along both pieces.
+        """The direction in which the distance d falls fastest as the two contacts move along their pieces.
 
-        The derivative is NaN where both principal ones are negative.
+        Three numbers: the least second derivative of d in 1 / mm, and the components of the unit vector that
+        belongs to it, along the first and along the second piece. The derivative is NaN where d falls in all
+        directions, and the result is (0, 0, 0) for two pockets, in which nothing can move.
         """
         d, (one, two) = self.length, self.curvatures
         if one is None or two is None:
@@ -92,15 +97,15 @@ class AntipodalContacts:
 
     @property
     def turned(self) -> AntipodalContacts:
-        """The contacts with the two places exchanged."""
+        """The same contacts with the first and the second place exchanged."""
         return AntipodalContacts(self.pieces[::-1], self.two, self.one, self.length, self.curvatures[::-1])
 
 
 def find_antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
-    """Return all antipodal contacts of a part, the first place for a
-    peg that stands still, the second for one that moves.
+    """Return all antipodal contacts of a part.
 
-    Those on parallel lines and on concentric arcs, which are whole families, are left out.
+    A fixed peg can stand at the first place, and a peg of the jaw or clamp that moves at the second. Two
+    parallel lines and two concentric arcs have infinitely many antipodal contacts; those are left out.
     """
     standing, moving = range(*boundary.parts[0]), range(*boundary.parts[1])
     found = [
@@ -130,7 +135,10 @@ def list_pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ..
 
 
 def holds(pocket: Array, x: float, y: float) -> bool:
-    """Return whether the direction (x, y) lies strictly between the two normals of a pocket, a row (6,)."""
+    """Return whether the direction (x, y) lies strictly between the outward normals of a pocket's two pieces.
+
+    ``pocket`` (6,) is a row of ``ObstacleBoundary.pockets``: place, first normal, second normal.
+    """
     ax, ay, bx, by = pocket[2:6].tolist()
     cross = ax * by - ay * bx
     if abs(cross) < LEAST_SHARE:
@@ -139,13 +147,15 @@ def holds(pocket: Array, x: float, y: float) -> bool:
 
 
 def bend(row: Array) -> float:
-    """Return the curvature of a piece in 1 / mm, positive where it is convex."""
+    """Return the curvature of a piece (10,) in 1 / mm: positive where convex, 0 for a straight piece."""
     return 0.0 if row[IS_ARC] == 0.0 else float(row[SIGN] / row[RADIUS])
 
 
 def find_place_with_normal(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float, float]:
-    """Return the point of a piece's line or circle with outward
-    normal u; on a line it is the foot of the point (x, y).
+    """Return the point (in mm) on the line or circle of a piece at which the outward normal is (ux, uy).
+
+    All points of a line have the same normal: there it is the foot of the perpendicular from (x, y), which is
+    ignored for an arc.
     """
     if row[IS_ARC] != 0.0:
         return row[X] + row[SIGN] * row[RADIUS] * ux, row[Y] + row[SIGN] * row[RADIUS] * uy
@@ -154,7 +164,9 @@ def find_place_with_normal(row: Array, ux: float, uy: float, x: float, y: float)
 
 
 def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts]:
-    """Return the antipodal contacts of the pieces a and b; none for two lines."""
+    """Return the antipodal contacts with the first place on piece a and the second on b; none for two
+    lines.
+    """
     one, two = rows[a], rows[b]
     if one[IS_ARC] == 0.0 and two[IS_ARC] == 0.0:
         return []
@@ -179,8 +191,8 @@ def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts
 
 
 def find_antipodal_in_pocket(boundary: ObstacleBoundary, pocket: int, b: int) -> list[AntipodalContacts]:
-    """Return the antipodal contacts of a pocket and piece b: normals of b that press a peg into the
-    pocket.
+    """Return the antipodal contacts with the first place in a pocket, given by its number, and the second on
+    piece b.
     """
     row, (x, y) = boundary.rows[b], boundary.pockets[pocket, :2].tolist()
     ways = (
@@ -202,17 +214,17 @@ def find_antipodal_in_pocket(boundary: ObstacleBoundary, pocket: int, b: int) ->
 
 
 def list_directions_between(x: float, y: float) -> list[tuple[float, float]]:
-    """Return the unit vectors along (x, y) and against it; an empty list where its length is about 0."""
+    """Return two unit vectors, along (x, y) and opposite; an empty list where (x, y) is about (0, 0)."""
     size = hypot(x, y)
     return [] if size < SHORTEST / 10.0 else [(x / size, y / size), (-x / size, -y / size)]
 
 
 def find_antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
-    """Return candidates (N, 24) of one peg of each jaw on antipodal
-    contacts, with the direction in which S falls.
+    """Return candidates (N, 24) in which one peg of each jaw presses on antipodal contacts.
 
-    Where S falls in two directions, the second derivative is NaN. S is the jaw separation in mm. See
-    ``kernels.seating.columns`` for the layout of candidates.
+    Each has the least second derivative of the jaw separation S (NaN where S falls in two independent
+    directions) and the direction in which S falls. A candidate is a configuration with contacts and forces
+    that may be an equilibrium, see ``kernels.seating.columns``.
     """
     out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in product(range(len(pegs)), repeat=2):
@@ -233,10 +245,11 @@ def find_antipodal_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> A
 def make_pressed_candidate(
     pattern: Pattern, normal: AntipodalContacts, i: int, j: int, omega: float, separation: float
 ) -> Array:
-    """Return the candidate (24,) of pegs i and j on antipodal contacts.
+    """Return the candidate (24,) in which pegs i and j touch the two places of antipodal contacts ``normal``.
 
-    ``omega`` is the angle in radians of the line of contacts in the closing frame, ``separation`` S in mm.
-    See ``kernels.seating.columns`` for the layout of candidates.
+    ``omega`` is the angle in radians of the line through both places in the closing frame, and ``separation``
+    the jaw separation S in mm. A candidate is a configuration with contacts and forces that may be an
+    equilibrium, see ``kernels.seating.columns``.
     """
     (px, py), (qx, qy), d = normal.one, normal.two, normal.length
     theta = omega - atan2((qy - py) / d, (qx - px) / d)
@@ -255,11 +268,12 @@ def make_pressed_candidate(
 
 
 def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given: HeldPart) -> list[Array]:
-    """Return arrays of candidates (N, 24) of two pegs of a jaw on a
-    line and an arc, with a third peg on a parallel line.
+    """Return candidates in which all three contact normals are parallel, as a list of arrays (N, 24).
 
-    There is an array for each ordered pair of pegs with such candidates. The third line may be the first line
-    itself. See ``kernels.seating.columns`` for the layout of candidates.
+    Two pegs of one jaw touch a line and an arc; a third peg touches a line parallel to that line, or the same
+    line. The list has one array for each ordered pair of pegs of a jaw that fits the part. A candidate is a
+    configuration with contacts and forces that may be an equilibrium. A candidate is a configuration with
+    contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in permutations(range(len(pegs)), 2):
@@ -275,9 +289,10 @@ def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given
 
 
 def find_chord_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Array:
-    """Return the tangencies (C, 5) of chords of length d mm, for pegs of a jaw; kept with the boundary.
+    """Return the tangencies (C, 5) of chords of length d mm between two pegs of jaw 0 (fixed) or 1 (moving).
 
-    See ``kernels.seating.parallel_and_concentric`` for the columns.
+    At a tangency a chord from a line to an arc has the same normal at both ends. The table is computed once
+    and kept with the boundary. See ``kernels.seating.parallel_and_concentric`` for the columns.
     """
     known, key = boundary.find_once(make_tangency_cache), (round(d, 9), jaw)
     if key not in known:
@@ -287,5 +302,7 @@ def find_chord_tangencies(boundary: ObstacleBoundary, d: float, jaw: int) -> Arr
 
 
 def make_tangency_cache(_: ObstacleBoundary) -> dict[tuple[float, int], Array]:
-    """Return an empty cache of the tangencies on a part, by length of the chord and jaw."""
+    """Return an empty cache of tangencies on a part; its keys are (chord length in mm, jaw). The argument is
+    ignored.
+    """
     return {}

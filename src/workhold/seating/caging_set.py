@@ -1,12 +1,14 @@
 """How far a part can lie off its seat and still come home: the cage, its extremes, and the placing.
 
-Closing the jaws from a pose decides whether it belongs to the cage. The placing is sought among poses in
-which the part is free with the jaws opened, on a grid of orientations and heights, and known to its step.
-Paths that begin in the seat and in such poses lead to the extremes of the cage.
+A pose belongs to the cage if closing the jaws from it leads into the seat. The placing is how far off its
+seat a part can be put anywhere and still get there. It is found on a grid of orientations and heights, among
+poses in which no peg enters the part while the jaws are opened, and is exact up to the grid's step. The
+extremes of the cage are found by following paths that begin in the seat and in such poses.
 
-In an extreme place something holds the part back: what touches balances a pull that way, perhaps with S at
-its largest. Closing the jaws leads home from such places (``kernels.seating.closing``), so that no extreme
-lies outside the cage. That none is missed is not proven but sampled: ``model.seating.CAGE_SHORT``.
+At an extreme something holds the part back: the contacts balance a pull in that direction, perhaps with the
+jaw separation S at its largest value. Closing the jaws from an extreme leads home
+(``kernels.seating.closing``), so no extreme that is found lies outside the cage. That none is missed is not
+proven but sampled: ``model.seating.CAGE_SHORT``.
 
 Glossary
 --------
@@ -45,16 +47,17 @@ FARTHEST = np.array([pi, 100.0, 100.0, 0.0])
 
 @define(eq=False)
 class PoseExtents:
-    """The extremes of the poses of a cage that were found so far.
+    """The extreme poses found so far in a cage (the set of poses from which closing the jaws leads into one
+    seat).
 
     Parameters
     ----------
-    closing : the jaws about the part.
-    seat : (4,) configuration.
+    closing : the jaws and the part between them.
+    seat : (4,) configuration of the seat: theta, x, y, S.
     most : the largest S in mm.
-    come_home : returns, for configurations (N, 4), whether closing leads home from each.
-    reach : (3, 2) least and largest turn in radians, and shifts in x and y in mm, from the seat.
-    ends : (N, 4) configurations in which paths ended, all in the cage.
+    come_home : returns, for configurations (N, 4), whether closing the jaws from each leads into the seat.
+    reach : (3, 2) least and greatest difference from the seat: turn in radians, shift in x and in y in mm.
+    ends : (N, 4) configurations in the cage at which paths ended.
     """
 
     closing: ClosingMotion
@@ -66,14 +69,17 @@ class PoseExtents:
 
     @property
     def farthest(self) -> Array:
-        """The ends (6, 4) with the least theta, x and y, then with the largest."""
+        """Six of ``ends`` as rows (6, 4): those with the least theta, x and y, then those with the
+        largest.
+        """
         return np.array(
             self.ends[np.append(self.ends[:, :3].argmin(axis=0), self.ends[:, :3].argmax(axis=0))]
         )
 
     def widen(self, starts: Array) -> None:
-        """Follow paths from configurations (N, 4) in the cage along all
-        aims; add their ends, and widen ``reach`` by these.
+        """Follow paths from configurations (N, 4) in the cage to least and largest theta, x and y.
+
+        Append the ends of the paths to ``ends``, and widen ``reach`` so that it holds them.
         """
         configs, aims = np.repeat(starts, len(AIMS), axis=0), np.tile(AIMS, (len(starts), 1))
         longest = LONGEST_STEP * min(self.closing.pattern.radii)
@@ -89,19 +95,21 @@ class PoseExtents:
                 return
 
     def follow_aims(self, configs: Array, aims: Array, longest: float) -> tuple[Array, NDArray[np.bool_]]:
-        """Return, for each path along an aim, the last configuration from which closing leads home.
-
-        S is the jaw separation in mm.
+        """Return the last configuration in the cage on each of N paths, each moving as far as it can along an
+        aim.
 
         Parameters
         ----------
-        configs, aims : (N, 4) starts, and unit vectors of (theta size, x, y, S).
+        configs : (N, 4) configurations at which the paths start.
+        aims : (N, 4) unit vectors in (theta times the part's size, x, y, S): the direction in which a path
+            goes.
         longest : greatest length of a step, in mm.
 
         Returns
         -------
         tuple
-            Configurations (N, 4), and whether each path left the cage (N,).
+            Configurations (N, 4) of theta, x, y and the jaw separation S, and whether each path left the cage
+            after that configuration (N,).
         """
         size = self.closing.size
         far = aims @ (self.seat * [size, 1.0, 1.0, 0.0]) + np.abs(aims) @ (size * FARTHEST)
@@ -132,7 +140,8 @@ CHOSEN, SETTLED = 3, 1e-3
 
 @define(frozen=True, eq=False)
 class CagingSet:
-    """The poses around a seat, with the jaws opened, from which closing leads into it.
+    """The set of poses from which closing the jaws leads into a seat, while the jaws are opened by a given
+    length.
 
     Parameters
     ----------
@@ -152,12 +161,12 @@ class CagingSet:
     arm: float
 
     def list_free_poses(self, half: Array, lean: float, middle: Array | None = None) -> Array:
-        """Return free poses (N, 5) on a grid of half sizes (2,), nearest
-        first: distance in mm, theta, x, y, S.
+        """Return poses on a grid of orientations and heights in which no peg enters the part, nearest first.
 
-        The grid lies about the seat, or about ``middle``, a configuration with the seat's x and S. Its middle
-        height rises by ``lean`` mm per radian. See ``kernels.seating.free_space.write_free_poses`` for the
-        distance. S is the jaw separation in mm.
+        Each row of the (N, 5) array is: distance from the seat in mm, theta, x, y, S (the jaw separation in
+        mm). The grid extends to both sides by ``half`` (2,): radians in theta and mm in y. It lies about the
+        seat, or about ``middle``, a configuration (4,) with the seat's x and S. The middle of its heights
+        rises by ``lean`` mm per radian. See ``kernels.seating.free_space.write_free_poses`` for the distance.
         """
         out = np.empty((12 * CELLS * CELLS, 5))
         work = np.empty((MOST_CROSSINGS, 2)), np.empty((2, MOST_INTERVALS, 2))
@@ -176,7 +185,9 @@ class CagingSet:
         return out[:count][np.argsort(out[:count, 0], kind="stable")]
 
     def find_homecoming(self, configs: Array) -> NDArray[np.bool_]:
-        """Return, for each configuration (N, 4), whether closing the jaws from it ends in the seat."""
+        """Return whether closing the jaws from each configuration (N, 4) ends in the seat, as booleans
+        (N,).
+        """
         ended, how = self.closing.close_from(configs, FIRST_STEP, self.seats)
         near = measure_distances(ended, self.seat, self.closing.size) < AT_SEAT
         return np.asarray(near & (how == AT_REST) & (np.abs(ended[:, 3] - self.seat[3]) < SAME_LEVEL))
@@ -195,10 +206,11 @@ class CagingSet:
         return found
 
     def list_path_starts(self, found: PoseExtents) -> Array:
-        """Return configurations (N, 4) in the cage from which further paths begin.
+        """Return configurations (N, 4) in the cage from which the search for its extremes goes on.
 
-        They are the farthest ones found and, of free poses on a grid about all of them, those with the least
-        and the largest x in each of some cells.
+        They are the farthest configurations in ``found``, and free poses in the cage: the range of turns and
+        heights in ``found`` is divided into cells, and the poses with the least and the largest x in each
+        cell are taken.
         """
         middle, half = found.reach.mean(axis=1), np.ptp(found.reach, axis=1) / 2.0
         turn, up = (found.ends[:, k] - self.seat[k] - middle[k] for k in (0, 2))
@@ -216,9 +228,11 @@ class CagingSet:
 
     @property
     def placing(self) -> float:
-        """The least |shift| + 2 R sin(|turn| / 2) in mm of a free pose from which closing does not lead home.
+        """The distance in mm from the seat to the nearest free pose from which closing does not lead into the
+        seat.
 
-        It is at most that of the pass; computed at each access.
+        A pose that is shifted and turned has the distance |shift| + 2 R sin(|turn| / 2), with R = ``arm``.
+        The result is at most the distance of the pass. It is computed at each access.
         """
         turn = abs((self.to_pass[0] + pi) % tau - pi)
         own = float(np.hypot(*self.to_pass[1:]) + 2.0 * self.arm * np.sin(turn / 2.0))

@@ -1,25 +1,26 @@
 """How a part is clamped: the reading on what moves, the order of tightening, and the sticking friction.
 
-The reading when the part rests in a seat is an opening, a stroke, or where the tip is.
+The reading is the length by which a user sees in which seat the part rests: an opening, a stroke, or the
+place of a tip.
 
 Into two clamps a part is pushed against its locators by hand, then clamped. The locators alone fix the pose,
-and neither clamp holds the part alone. So it is not known from where one of them would bring it home: there
-is no opening, no reading, no cage. The order of tightening is known, and which locators each clamp alone does
-not press the part on.
+and neither clamp holds the part alone. So it is not known from where one clamp would bring the part home:
+there is no opening, no reading and no cage. Known are the order of tightening, and the locators on which each
+clamp alone does not press.
 
-Below some friction a part cannot stick near its seat. In a vise, and under one clamp, that is where three of
-the four contacts balance the jaw inside their cones. Contact i presses with h (-n + s mu t), |s| <= 1. Three
-forces balance where the determinant of their wrenches is zero. Of three unknown ratios the least largest has
-all three equal, or one of the contacts without force. A determinant of signs is a cubic in mu. Where less
-friction does, the jaw's share of the forces vanishes at the least: the three lock whatever its force. Halving
-finds that. Reference: V.-D. Nguyen, "Constructing force-closure grasps", International Journal of Robotics
-Research 7 (1988).
+With little friction a part cannot stick near its seat. For a vise, or one clamp, it can stick from the
+friction mu on at which three of the four contacts balance the jaw with forces in their friction cones.
+Contact i presses with h (-n + s mu t), |s| <= 1. Three forces balance where the determinant of their wrenches
+is zero. At the least mu either all three |s| are 1, or one contact has no force. For given signs of s the
+determinant is a cubic in mu. Where less friction suffices, the jaw's share of the forces vanishes at the
+least mu: the three contacts lock with any force. That mu is found by halving. Reference: V.-D. Nguyen,
+"Constructing force-closure grasps", International Journal of Robotics Research 7 (1988).
 
-Of two clamps the forces are given, in a ratio. Near the pose both tips touch, and a part that is not in it is
-off some locator. So what is sought is the least mu at which contacts without one of the three locators
-balance the clamps inside their cones. As cones grow with mu, halving finds it. Contacts of poses that come
-ever nearer to the fixture's end in its contacts, and forces of sum 1 have a limit. So below that mu there is
-nothing to stick in near the pose.
+Two clamps push with forces in a given ratio. Near the pose both tips touch, and a part that is not in the
+pose is off some locator. So the least mu is sought at which contacts without one of the three locators
+balance the clamps in their friction cones. As cones grow with mu, halving finds it. Contacts of poses that
+approach the fixture's pose approach the fixture's contacts, and forces with the sum 1 have a limit. So below
+that mu the part cannot stick near the pose.
 """
 
 from __future__ import annotations
@@ -66,13 +67,13 @@ __all__ = [
 
 @frozen
 class OpeningWords:
-    """The words for opening and closing a jaw or clamp, as parts of sentences.
+    """Phrases about opening and closing a jaw or clamp, to be put into sentences.
 
     Parameters
     ----------
-    open, close : imperatives: so that the part can be put in, and so that it is held.
-    done, far : that it is open, and how far.
-    hold, whose : that it holds the part, and its possessive.
+    open, close : imperatives, such as "Open the jaws" and "close them".
+    done, far : such as "Opened" and "wide the jaws open".
+    hold, whose : such as "they hold" and "jaws'".
     """
 
     open: str
@@ -95,7 +96,7 @@ VISE = {
 
 @frozen
 class Gauge:
-    """The measure by which a fixture's seats are distinguished.
+    """The length that a user reads on a fixture to tell in which of its seats the part rests.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ class Gauge:
 
     @property
     def setting(self) -> LengthSetting:
-        """The length that is read in the fixture's own pose."""
+        """The length to be read (its name and its value in mm) when the part is in the fixture's own pose."""
         return list_length_settings(self.fixture, self.toolkit)[0]
 
     @property
@@ -123,11 +124,13 @@ class Gauge:
 
     @property
     def grows(self) -> bool:
-        """Whether the reading grows as the jaw or clamp is opened; a stroke becomes smaller."""
+        """Whether the reading grows as the jaw or clamp is opened. An opening grows; a stroke becomes
+        smaller.
+        """
         return self.compute_reading(self.fixture.travel + self.toolkit.clamping) > self.setting.length
 
     def place_pegs(self, travelled: float) -> tuple[Peg, ...]:
-        """Return the fixture's pegs with those that move at another travel.
+        """Return all of the fixture's pegs, with the jaw or clamp that moves put to another travel.
 
         Parameters
         ----------
@@ -142,7 +145,7 @@ class Gauge:
         )
 
     def compute_reading(self, travelled: float) -> float:
-        """Return the reading in mm at a travel of the moving carrier in mm.
+        """Return the length in mm to be read when the jaw or clamp is at the travel ``travelled`` (mm).
 
         Examples
         --------
@@ -167,11 +170,12 @@ PRECISION = 1e-9
 
 
 def find_sticking_friction(points: Array, normals: Array, right: Array) -> float:
-    """Return the least friction coefficient at which two or three of
-    four contacts balance the jaw; inf if there is none.
+    """Return the least friction coefficient at which two or three of four contacts can balance the jaw force.
 
-    Contact points (4, 2) are in mm in the vise frame, normals (4, 2) are outward unit vectors. ``right`` (4,)
-    is 1 for contacts of the right jaw's pegs, 0 for others.
+    With less friction the part slides on. The result is inf where the contacts balance at no coefficient.
+
+    ``points`` (4, 2) are places in mm and ``normals`` (4, 2) unit vectors out of the part, both in the
+    closing frame. ``right`` (4,) is 1 for contacts with pegs of the jaw that moves, else 0.
     """
     size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
     contacts = (
@@ -185,10 +189,11 @@ def find_sticking_friction(points: Array, normals: Array, right: Array) -> float
 
 
 def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """Return the least friction coefficient at which two clamps, in
-    their working ratio, balance without some locator.
+    """Return the least friction coefficient at which a part under two clamps can stick off one of its
+    locators.
 
-    Return inf where they balance at none up to ``MOST_FRICTION``.
+    That is where the two clamps, with forces in their working ratio, balance while one of the locators has no
+    force. The result is inf where they do not at any coefficient up to ``MOST_FRICTION``.
     """
     ratio = compute_clamp_force_ratio(fixture)
     touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
@@ -198,7 +203,7 @@ def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolki
     low, high = 0.0, MOST_FRICTION
 
     def sticks(friction: float) -> bool:
-        """Return whether the clamps balance without some locator at a friction coefficient."""
+        """Return whether both clamps balance without one of the locators at this friction coefficient."""
         edges, share = make_cone_edges(*contacts, friction, touched.length)
         return balances_without_a_locator(edges, share, ratio)
 
@@ -211,13 +216,13 @@ def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolki
 
 
 def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool:
-    """Return whether two clamps that push in a ratio balance without one, any one, of the three locators.
+    """Return whether two clamps can balance on some two of the three locators.
 
-    If there is a solution that is not negative, one has no more entries above zero than there are equations
-    (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of that many entries are tried.
+    If a balance without negative forces exists, there is one with no more forces above zero than equations
+    (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of that many forces are tried.
 
-    ``edges`` and ``share``, see ``statics.loads.make_cone_edges``, are of five pegs, the clamps last.
-    ``ratio`` is the second clamp's force over the first's.
+    ``edges`` and ``share`` are those of ``statics.loads.make_cone_edges`` for five pegs, the two clamps last.
+    ``ratio`` is the second clamp's force divided by the first clamp's.
     """
     count = len(edges) // 2
     clamps = [np.isin(np.arange(2 * count) % count, [k]) * share for k in (LOCATORS, LOCATORS + 1)]
@@ -249,13 +254,14 @@ SMALL = 0.1
 
 @frozen(repr=False)
 class HandLoading:
-    """Instructions to put a part into two clamps by hand, and what is known of it there.
+    """Instructions to put a part into a fixture with two clamps by hand.
 
     Parameters
     ----------
-    fixture, toolkit : what holds the part.
-    sticking_friction : the coefficient below which a part a little off a locator comes home in both clamps at
-        their working ratio. It is inf where the part always does, and None for pegs with a flat.
+    fixture, toolkit : the fixture, and the toolkit that it is made of.
+    sticking_friction : friction coefficient. With less, both clamps at their working ratio push a part that
+        is a little off a locator back to it. It is inf where they do at any friction, and None (not computed)
+        for pegs with a flat.
     """
 
     fixture: Fixture
@@ -278,16 +284,18 @@ class HandLoading:
 
     @property
     def unpressed(self) -> tuple[tuple[Peg, ...], ...]:
-        """For each of the two clamps, the locators and wall ends without force under this clamp alone."""
+        """For each clamp, the locators and wall ends on which the part has no force when only this clamp is
+        tight.
+        """
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
     def to_fields(self, text: Callable[[float], str] = MILLIMETRE.format_length) -> dict[str, Any]:
-        """Return all facts and steps as JSON has them, with clamps and locators by their names.
+        """Return the instructions as a dictionary for JSON, with clamps and locators by their names.
 
         Parameters
         ----------
-        text : writes a length in mm with its unit.
+        text : function that returns a length in mm as text with the unit's abbreviation, such as '12.5 mm'.
         """
         return {
             "clamps": list(name_clamps(self.fixture)),
@@ -303,19 +311,19 @@ class HandLoading:
     def list_steps(
         self, text: Callable[[float], str] = MILLIMETRE.format_length, with_order: bool = True
     ) -> list[str]:
-        """Return the steps at the machine, each a text of some sentences, in order.
+        """Return the steps at the machine in order, each a text of one or more sentences.
 
         Parameters
         ----------
-        text : writes a length in mm with its unit.
-        with_order : whether the order of tightening is among the steps; some sheets have it elsewhere.
+        text : function that returns a length in mm as text with the unit's abbreviation, such as '12.5 mm'.
+        with_order : whether to say in which order the clamps are tightened.
         """
         order = [describe_tightening_order(self.fixture)] if with_order else []
         steps = [self.describe_push(), self.describe_touch(), " ".join([*order, self.describe_hold()])]
         return [*steps, *self.describe_friction(), self.describe_final_check(text)]
 
     def describe_push(self) -> str:
-        """Return the step that puts the part in."""
+        """Return the first step: draw the clamps back and push the part against its locators."""
         locators = [peg.hole for peg in self.fixture.placed[: -self.toolkit.tips]]
         noun = self.toolkit.carriers[0].peg
         in_holes = f"all three {noun}s, " if len(locators) == LOCATORS else f"the {noun} in "
@@ -332,7 +340,7 @@ class HandLoading:
         return self.toolkit.find_arrangement(self.fixture.type, self.fixture.direction).direction_words
 
     def describe_touch(self) -> str:
-        """Return the step that checks with slips of paper that the part lies against all locators."""
+        """Return the step that tests with slips of paper whether the part touches all locators."""
         touched = join_words(
             [f"{peg.touching} at {name_place(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]]
         )
@@ -340,8 +348,9 @@ class HandLoading:
         return f"Pull at a slip of paper at each of these: {touched}. {out}"
 
     def describe_hold(self) -> str:
-        """Return the sentence that says until when to hold the part, and
-        which locators a clamp alone does not press it on.
+        """Return the sentence that tells to hold the part until both clamps are tight.
+
+        It names the locators on which the clamp that is tightened first does not press the part.
         """
         hold = "Hold the part in its place until both clamps are tight"
         first, names = name_first_clamps(self.fixture), name_clamps(self.fixture)
@@ -353,7 +362,9 @@ class HandLoading:
         return f"{hold}: {', and '.join(loose)}." if loose else f"{hold}."
 
     def describe_friction(self) -> list[str]:
-        """Return the sentence about friction in a list, empty where the sticking friction is not known."""
+        """Return a list of one sentence about friction, or an empty list where the sticking friction is
+        None.
+        """
         least, (first, second) = self.sticking_friction, name_clamps(self.fixture)
         if least is None:
             return []
@@ -377,7 +388,10 @@ class HandLoading:
         ]
 
     def describe_final_check(self, text: Callable[[float], str]) -> str:
-        """Return the last step: repeat the paper test, and compare the lengths at the clamps."""
+        """Return the last step: test with paper again, and compare the lengths at the clamps.
+
+        ``text`` is that of :meth:`list_steps`.
+        """
         settings = list_length_settings(self.fixture, self.toolkit)
         names = name_clamps(self.fixture)
         lengths = [
@@ -388,13 +402,15 @@ class HandLoading:
 
 
 def plan_hand_loading(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> HandLoading:
-    """Return the hand loading of a fixture with two clamps."""
+    """Return the instructions for a fixture with two clamps."""
     friction = None if toolkit.has_flats else find_sticking_friction_of_two(fixture, workpiece, toolkit)
     return HandLoading(fixture, toolkit, friction)
 
 
 def name_place(peg: Peg, toolkit: Toolkit) -> str:
-    """Return the words for the place of a locator (its hole) or of an end of the contact with a wall."""
+    """Return the words for the place of a locator: its hole, or, for one end of a wall contact, the wall and
+    the side of the end.
+    """
     carrier = toolkit.find_carrier(peg.carrier)
     if carrier.contact.is_placed:
         return peg.hole
@@ -402,8 +418,8 @@ def name_place(peg: Peg, toolkit: Toolkit) -> str:
 
 
 def name_places(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
-    """Return the words for the places of some locators; both ends of
-    the contact with a wall together are the wall.
+    """Return the words for the places of some pegs; where both ends of a wall contact are among them, the
+    wall once.
     """
     carriers = [toolkit.find_carrier(peg.carrier) for peg in pegs]
     walls = [one.noun for one in carriers if not one.contact.is_placed]

@@ -4,15 +4,16 @@ Without friction the part moves so that the separation falls as fast as the cont
 A. C. Sanderson, "Minimization of energy in quasi-static manipulation", IEEE Transactions on Robotics and
 Automation 5 (1989).
 
-Descent paths are followed once for all patterns with such subsets. In a pattern such a path is one of its own
-as long as no further peg is in the part. From there on it is followed with all pegs.
+The descent paths of a subset of pegs are followed once, for all patterns that contain the subset. Such a path
+is also a descent path of the pattern up to where another peg of the pattern would enter the part. From there
+on it is followed with all pegs.
 
 Glossary
 --------
 descent path : a path off a saddle along which a function falls, here the separation as the jaws close: J.
     Milnor, *Morse Theory* (1963).
-descent cache : descent paths that are kept, as a function's values are: D. Michie, "Memo functions and
-    machine learning", Nature 218 (1968).
+descent cache : a store of descent paths already followed, as of a function's values: D. Michie, "Memo
+    functions and machine learning", Nature 218 (1968).
 """
 
 from __future__ import annotations
@@ -57,10 +58,11 @@ __all__ = [
 
 
 def fill_rows(width: int, room: int, kernel: Callable[..., int], *arguments: Any) -> NDArray[np.float64]:
-    """Return the rows that a kernel writes into its last argument, an array of shape (rows, ``width``).
+    """Return the rows that a kernel writes into a new array (rows, ``width``), which is passed as its last
+    argument.
 
-    Begin with ``room`` rows, and call the kernel again with four times as many as long as it returns a
-    negative number.
+    The kernel is given ``room`` rows and returns how many it wrote, or a negative number where there were too
+    few. Then it is called again with four times as many rows.
     """
     while True:
         out = np.empty((room, width))
@@ -71,8 +73,9 @@ def fill_rows(width: int, room: int, kernel: Callable[..., int], *arguments: Any
 
 
 def ensure_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
-    """Return an array with room for ``more`` rows after its first
-    ``count``: itself, or a larger copy of these.
+    """Return an array with room for ``more`` rows after the first ``count`` rows of ``rows``.
+
+    It is ``rows`` itself where it is long enough, else a longer array with a copy of these ``count`` rows.
     """
     if count + more <= len(rows):
         return rows
@@ -84,10 +87,12 @@ def ensure_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
 def make_candidate(
     config: NDArray[np.float64] | tuple[float, ...], contacts: Sequence[tuple[int, int]]
 ) -> NDArray[np.float64]:
-    """Return a candidate (24,) without forces, with configuration
-    (theta, x, y, S) and (peg, piece) of each contact.
+    """Return a candidate (24,) with a configuration and contacts.
 
-    S is the jaw separation in mm. See ``kernels.seating.columns`` for the layout of candidates.
+    Its forces and all other columns are 0; free places for contacts have the numbers -1. ``config`` is
+    (theta, x, y, S) with the jaw separation S in mm, and ``contacts`` are up to four pairs of numbers (peg,
+    piece). A candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
     """
     row = np.zeros(CANDIDATE_LENGTH)
     row[CONFIG] = config
@@ -107,12 +112,12 @@ USUAL = 128
 
 @define(frozen=True, eq=False, slots=False)
 class ClosingMotion:
-    """The jaws of a pattern about a part.
+    """The jaws of a pattern and a part between them, for following how the part moves.
 
     Parameters
     ----------
-    boundary, pattern : of the part and the pegs.
-    size : of the part in mm; a turn in radians times this is compared with shifts.
+    boundary, pattern : boundary of the part, and pegs.
+    size : the part's size in mm; a turn in radians times ``size`` is compared with shifts.
     """
 
     boundary: ObstacleBoundary
@@ -121,7 +126,7 @@ class ClosingMotion:
 
     @cached_property
     def obstacles(self) -> Obstacles:
-        """The part and the pegs, as kernels take them."""
+        """The part and the pegs, in the form that the kernels take."""
         return self.boundary.make_obstacles(
             self.pattern, self.size, self.pattern.find_least_separation(2.0 * self.size)
         )
@@ -129,17 +134,21 @@ class ClosingMotion:
     def close_from(
         self, configs: Array, first: float | Array, seats: Array = NO_SEATS, level: float | None = None
     ) -> tuple[Array, NDArray[np.int8]]:
-        """Return where closing leads from configurations (N, 4) of theta,
-        x, y and S, and how each path ends (N,).
-
-        How is GAVE_UP, AT_REST or AT_THE_STOP of ``kernels.seating.closing``. S is the jaw separation in mm.
+        """Return where closing the jaws leads from configurations (N, 4) of theta, x, y and the jaw
+        separation S.
 
         Parameters
         ----------
-        first : lengths of the first steps in mm: a number, or (N, 2) for each path: of linear programs, and
-            along both faces.
+        first : greatest length of the first steps in mm: a number, or an array (N, 2) with two lengths per
+            path, for steps found by linear programs and for steps along both faces touched.
         seats : (M, 4) configurations at which closing is known to end.
-        level : S in mm down to which the jaws close; None for the pattern's stop.
+        level : value of S in mm at which closing is stopped; None for the pattern's stop.
+
+        Returns
+        -------
+        tuple
+            Configurations at the ends (N, 4), and how each path ends (N,): GAVE_UP, AT_REST or AT_THE_STOP of
+            ``kernels.seating.closing``.
         """
         obstacles = self.obstacles
         if level is not None:
@@ -152,16 +161,15 @@ class ClosingMotion:
     def trace_paths(
         self, configs: Array, first: Array, seats: Array
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int8]]:
-        """Return the descent paths from configurations (N, 4), with first
-        steps (N, 2) in mm; see :meth:`close_from`.
-
-        See ``kernels.seating.columns`` for the layout of nodes.
+        """Return the whole descent paths from configurations (N, 4), with first steps (N, 2) as in
+        :meth:`close_from`.
 
         Returns
         -------
         tuple
-            Nodes (M, 10), numbers (N + 1,) of the first node of each path and, last, M, and how the paths end
-            (N,).
+            Three arrays: the nodes (M, 10) of all paths, one path after the other, see
+            ``kernels.seating.columns``; the index (N + 1,) of each path's first node, with M at the end; how
+            each path ends (N,).
         """
         room = USUAL * len(configs)
         while True:
@@ -173,11 +181,11 @@ class ClosingMotion:
     def trace_paths_into(
         self, configs: Array, lengths: Array, obstacles: Obstacles, seats: Array, room: int
     ) -> tuple[NDArray[np.int8], NDArray[np.int64], Array]:
-        """Follow descent paths; return how they end (N,), numbers
-        (N + 1,) of their first nodes, and nodes (``room``, 10).
+        """Follow descent paths from ``configs`` (N, 4), which are overwritten with the ends of the paths.
 
-        ``configs`` are replaced by the ends of the paths. Nodes for which there is no room are not written,
-        but counted.
+        Return three arrays: how each path ends (N,); the index of each path's first node (N + 1,), with the
+        number of all nodes at the end; the nodes (``room``, 10). Nodes beyond ``room`` are counted but not
+        written.
         """
         ends, begins, nodes = (
             np.zeros(len(configs), np.int8),
@@ -193,20 +201,19 @@ class ClosingMotion:
     def move_along_aims(
         self, configs: Array, aims: Array, far: Array, first: float, longest: float, most: float
     ) -> tuple[Array, NDArray[np.int64]]:
-        """Return paths from configurations (N, 4) along aims, on which no peg enters the part.
-
-        S is the jaw separation in mm. See ``kernels.seating.columns`` for the layout of nodes.
+        """Return paths from configurations (N, 4), each moving along its aim while no peg enters the part.
 
         Parameters
         ----------
-        aims, far : (N, 4) and (N,), see ``kernels.seating.closing.move_along_aims``.
-        first, longest : greatest length of the first steps and of all steps, in mm.
-        most : the largest S, in mm.
+        aims, far : (N, 4) directions and (N,) how far to go, see ``kernels.seating.closing.move_along_aims``.
+        first, longest : greatest length of the first steps, and of any step, in mm.
+        most : the largest jaw separation S, in mm.
 
         Returns
         -------
         tuple
-            Nodes (M, 10), and numbers (N + 1,) of the first node of each path and, last, M.
+            Two arrays: the nodes (M, 10) of all paths, see ``kernels.seating.columns``; the index (N + 1,) of
+            each path's first node, with M at the end.
         """
         obstacles, begins = self.obstacles._replace(most=most), np.empty(len(configs) + 1, np.int64)
         room = USUAL * len(configs)
@@ -219,18 +226,21 @@ class ClosingMotion:
             room = int(begins[-1])
 
     def find_escaping(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-        """Return, for configurations (N, 4), whether the part can be
-        taken straight away from all pegs while the jaws stand.
+        """Return for each configuration (N, 4) whether the part can be moved straight away from all pegs
+        (N,).
 
-        False for configurations that are not asked for (``asked`` (N,) is False).
+        The jaws stay where they are. ``asked`` (N,) selects configurations; the result is False for all
+        others.
         """
         return ~np.isnan(self.find_escape_directions(configs, asked))
 
     def find_escape_directions(self, configs: Array, asked: NDArray[np.bool_] | None = None) -> Array:
-        """Return directions (N,) in radians in which the pegs move on the
-        part, in its frame, when it is taken away.
+        """Return for each configuration (N, 4) a direction along which the part can be moved straight away
+        from all pegs.
 
-        NaN where there is none, and for configurations that are not asked for (``asked`` (N,) is False).
+        It is the direction in radians (N,) in which the pegs then move relative to the part, in the part's
+        frame; NaN where there is none. ``asked`` (N,) selects configurations; the result is NaN for all
+        others.
         """
         out, obstacles = np.zeros(len(configs)), self.obstacles
         if asked is not None:
@@ -244,11 +254,11 @@ class ClosingMotion:
     def find_leaving_at_stop(
         self, starts: Array, ends: Array, stopped: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """Return, for paths that met the stop, whether the part can be
-        taken away at their ends or at their starts.
+        """Return for each of N paths whether it met the stop and the part can be taken away at its end or its
+        start.
 
-        ``starts`` and ``ends`` are (N, 4), ``stopped`` (N,); False for other paths. A part that can be taken
-        away at first can be, wherever closing the jaws leads.
+        ``starts`` and ``ends`` (N, 4) are configurations, ``stopped`` (N,) is True for paths that met the
+        stop. A part that can be taken away at the start counts as outside, wherever closing leads.
         """
         away = self.find_escaping(ends, stopped)
         return np.asarray(away | self.find_escaping(starts, stopped & ~away))
@@ -260,11 +270,12 @@ ROOM = 65_536
 
 
 def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
-    """Return where descent paths begin, at both sides of each of some
-    passes (N, 24): rows 2 n and 2 n + 1 of pass n.
+    """Return where the two descent paths from each of N passes begin.
 
-    They are configurations (2 N, 4), and lengths of the first steps in mm (2 N, 2). ``size`` is the part's in
-    mm. See ``kernels.seating.columns`` for the layout of candidates.
+    They are configurations (2 N, 4) and first step lengths in mm (2 N, 2): rows 2 n and 2 n + 1 are the two
+    sides of pass n. ``rows`` (N, 24) are the passes as candidates. ``size`` is the part's in mm. A candidate
+    is a configuration with contacts and forces that may be an equilibrium. A candidate is a configuration
+    with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     starts, lengths = np.empty((2 * len(rows), 4)), np.empty((2 * len(rows), 2))
     begin_descents(np.ascontiguousarray(rows), size, starts, lengths)
@@ -273,18 +284,18 @@ def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
 
 @define(eq=False)
 class DescentCache:
-    """The descent paths of all subsets of pegs on a part, as far as they were followed.
+    """The descent paths followed so far, of all subsets of pegs on a part.
 
-    Entries that are written stay where they are: a thread that has read the counts can read the entries while
-    others add to them.
+    Entries never move once written. So a thread that has read ``counts`` can read the entries while another
+    thread adds more.
 
     Parameters
     ----------
-    numbers : (C, 2) numbers of the paths from both sides of each candidate, -1 as long as they are not known.
-    nodes : (M, 10) along all paths: ``kernels.seating.columns``.
-    begins : (W + 1,) number of the first node of each path and, last, of all nodes.
-    how : (W,) how each path ends: ``kernels.seating.closing``.
-    counts : numbers of candidates, nodes and paths; arrays may have more rows.
+    numbers : (C, 2) for each candidate the numbers of its two paths; -1 where they were not followed yet.
+    nodes : (M, 10) nodes of all paths, see ``kernels.seating.columns``.
+    begins : (W + 1,) index of each path's first node, with the number of all nodes at the end.
+    how : (W,) how each path ends, see ``kernels.seating.closing``.
+    counts : how many candidates, nodes and paths there are; the arrays may be longer.
     """
 
     numbers: IntArray = field(factory=lambda: np.zeros((0, 2), np.int64))
@@ -295,7 +306,7 @@ class DescentCache:
     lock: Lock = field(factory=Lock)
 
     def reserve_candidates(self, count: int) -> int:
-        """Make room for ``count`` further candidates, and return the number of the first."""
+        """Make room for ``count`` more candidates, and return the number of the first of them."""
         with self.lock:
             first, nodes, paths = self.counts
             self.numbers = ensure_room(self.numbers, first, count)
@@ -304,8 +315,10 @@ class DescentCache:
         return first
 
     def add_paths(self, candidates: IntArray, nodes: Array, begins: IntArray, how: NDArray[np.int8]) -> None:
-        """Add the paths from both sides of N candidates: their nodes,
-        numbers (2 N + 1,) of first nodes, and how they end.
+        """Add the paths of N candidates (numbers (N,)), two for each.
+
+        ``nodes``, ``begins`` (2 N + 1,) and ``how`` (2 N,) are those that :meth:`ClosingMotion.trace_paths`
+        returns.
         """
         with self.lock:
             every, first, paths = self.counts
@@ -323,14 +336,14 @@ class DescentCache:
 
 @define(eq=False, slots=False)
 class DescentPaths:
-    """The descent paths of a subset of pegs.
+    """The descent paths of one subset of pegs.
 
     Parameters
     ----------
-    closing : the jaws with these pegs alone.
-    candidates : (N, 24) their equilibria.
-    cache : holds the paths that were followed so far.
-    first : number of the first candidate in the cache.
+    closing : these pegs alone, and the part between them.
+    candidates : (N, 24) equilibria of these pegs.
+    cache : the paths followed so far, of this and other subsets.
+    first : number in ``cache`` of the first of ``candidates``.
     """
 
     closing: ClosingMotion
@@ -342,8 +355,8 @@ class DescentPaths:
         self.first = self.cache.reserve_candidates(len(self.candidates))
 
     def follow(self, numbers: IntArray) -> None:
-        """Follow the paths from candidates, given by their numbers in the
-        cache, and add the paths to the cache.
+        """Follow the two descent paths of each candidate in ``numbers`` (its number in the cache), and add
+        them to the cache.
         """
         # Another thread may follow some at the same time: then both are there, and are the same.
         starts, first = find_descent_starts(self.candidates[numbers - self.first], self.closing.size)
@@ -351,7 +364,7 @@ class DescentPaths:
 
     @cached_property
     def seats(self) -> Array:
-        """The configurations (M, 4) of the candidates at which closing certainly ends."""
+        """The configurations (M, 4) of those candidates that are certainly seats, where closing ends."""
         every = self.candidates
         is_seat = (every[:, DOUBT] == 0.0) & ((every[:, SECOND] > 0.0) | (every[:, CONTACTS] == 4.0))
         return np.asarray(every[is_seat][:, CONFIG])

@@ -49,14 +49,14 @@ LEVELS, FAR, HALVINGS, MOST = 60, 0.02, 6, 400
 
 @frozen(eq=False)
 class ClosingSimulation:
-    """The course of a closing and its end.
+    """The motion of a part while the jaws close on it, and how it ends.
 
     Parameters
     ----------
-    poses : of the part, or of the part turned over where that was asked for, one after the other.
-    travels : of the jaw or clamp in mm for each pose, such as the jaw separation.
+    poses : of the part, one after the other; of the part turned over where that was asked for.
+    travels : travel of the jaw or clamp in mm at each pose, such as the jaw separation.
     ending : one of :data:`ENDINGS`.
-    seat : the given seat that it ended in; None where it ended in none of them.
+    seat : the seat in which the part ended, of those given; None for any other end.
     """
 
     poses: tuple[Pose, ...]
@@ -74,20 +74,22 @@ def simulate_closing(
     turned_over: bool = False,
     is_cancelled: Callable[[], bool] = lambda: False,
 ) -> ClosingSimulation:
-    """Return the path of a part while the jaws of a fixture close, from where it was put.
+    """Return the motion of a part while a fixture's jaws close on it, from the pose where it was put.
 
     Parameters
     ----------
-    seats : of the fixture, see :class:`workhold.model.seating.Seating`.
-    pose : of the part, or of the part turned over (x to -x in its own frame) where that is asked for.
-    opening : by how much more than in the fixture the jaws stand open, or the clamp is drawn back, in mm.
-    is_cancelled : asked between steps; when it is true, the path ends where it is.
+    seats : seats of the fixture, see :class:`workhold.model.seating.Seating`.
+    pose : where the part was put. With ``turned_over`` it is the pose of the part turned over (x to -x in its
+        own frame).
+    opening : how much wider than in the fixture the jaws are open at first, or how far the clamp is drawn
+        back, in mm.
+    is_cancelled : called between steps; once it returns True, only the last pose is added.
 
     Raises
     ------
     InputError
-        As ``Pattern.from_fixture``, and for a fixture of another part or toolkit. Also for jaws that meet
-        their stop or are opened beyond their end, and a part that a peg stands in.
+        As ``Pattern.from_fixture``, and for a fixture of another part or toolkit. Also where the jaws meet
+        their stop or are opened beyond their end, and where a peg stands in the part.
     """
     fixture.refuse_others(solver.workpiece, solver.toolkit)
     pattern = Pattern.from_fixture(fixture, solver.toolkit)
@@ -136,22 +138,26 @@ class CenterFrame:
 
     @property
     def own(self) -> tuple[float, float]:
-        """The centre of the box in the coordinates of the part as it lies, turned over or not, in mm."""
+        """The centre of the part's bounding box in mm, in the part's own coordinates; for a part turned over,
+        x is negated.
+        """
         x, y = self.middle
         return (-x, y) if self.turned_over else (x, y)
 
     def make_configuration(self, pose: Pose, travelled: float) -> Array:
-        """Return the configuration (4,) of a pose in the toolkit's frame:
-        theta in radians, x and y of the centre, S in mm.
+        """Return the configuration (4,) that belongs to a pose and a travel (mm) in the toolkit's frame.
 
-        S is the jaw separation in mm.
+        It is in the closing frame: theta in radians, x and y of the centre of the part's box in mm, and the
+        jaw separation S in mm.
         """
         return self.frame.map_from_toolkit(
             np.array([radians(pose.theta_deg), *pose.apply(*self.own), travelled])
         )
 
     def make_pose(self, config: Array) -> Pose:
-        """Return the pose of a configuration in the toolkit's frame, with theta from 0 to 360 degrees."""
+        """Return the pose in the toolkit's frame that belongs to a configuration (4,); its theta is from 0 to
+        360 degrees.
+        """
         left, (x, y) = self.frame.map_to_toolkit(config), self.own
         theta = float(left[0]) % tau
         c, s = cos(theta), sin(theta)
@@ -161,7 +167,7 @@ class CenterFrame:
 def measure_entered_depth(
     solver: SeatingSolver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool
 ) -> float:
-    """Return the depth in mm to which a peg or a wall is inside the part in a configuration; 0 where none is.
+    """Return how deep in mm a peg or a wall is inside the part in a configuration (4,); 0 where none is.
 
     Raises
     ------
@@ -190,10 +196,9 @@ def measure_entered_depth(
 
 
 def follow(closing: ClosingMotion, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
-    """Return the configurations (4,) along the descent path from a
-    configuration, at levels of S, the first included.
+    """Return configurations (4,) along the descent path from ``config``, at evenly spaced values of S.
 
-    S is the jaw separation in mm.
+    The first is ``config``; S is the jaw separation in mm. The path is shorter where it is cancelled.
     """
     path = [config]
     while not is_cancelled() and len(path) < MOST:
@@ -212,10 +217,11 @@ def follow(closing: ClosingMotion, config: Array, is_cancelled: Callable[[], boo
 
 
 def follow_to_level(closing: ClosingMotion, path: list[Array], level: float, halvings: int) -> None:
-    """Extend a path in place down to the level of S, with
-    configurations at levels between where the part moves far.
+    """Follow a descent path on to the value ``level`` of the jaw separation S (mm), and append to ``path`` in
+    place.
 
-    S is the jaw separation in mm.
+    Where the part moves far, the stretch of S is halved, up to ``halvings`` times, so that more
+    configurations are appended.
     """
     before = path[-1]
     if level >= before[3]:
@@ -240,8 +246,11 @@ def classify_ending(
     how: int,
     seats: Sequence[Seat],
 ) -> tuple[str, Seat | None]:
-    """Return one of :data:`ENDINGS` for a path that ended at
-    ``config``, and the given seat that it is in, or None.
+    """Return (1) which of :data:`ENDINGS` a path has, and (2) the seat of ``seats`` in which it ended, or
+    None.
+
+    ``config`` (4,) is its last configuration, and ``how`` the code of ``kernels.seating.closing`` for its
+    end.
     """
     if how == GAVE_UP:
         return "lost", None

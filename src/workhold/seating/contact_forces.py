@@ -1,10 +1,11 @@
 """Forces of the contacts of candidates, how well they balance, how near all else is, and a check of it.
 
-The check is independent of how equilibria are found: contacts touch, and press, and balance. Every pass is
-checked before a capture opening follows from it, with nothing but its pose and contacts.
+The check does not depend on how equilibria are found: it tests that contacts touch, press and balance, from a
+pose and its contacts alone. Every pass is checked before a capture opening is derived from it.
 
-That fixtures are seats is proven. So one that is missing among the seats of its own pegs shows that what
-looks for seats missed it, and perhaps others. It is made a candidate of four contacts.
+It is proven that fixtures are seats. So where a fixture is missing among the seats found for its own pegs,
+the search for seats has missed it, and perhaps others. The fixture is then added as a candidate with four
+contacts.
 
 Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
 and Automation 14 (1998).
@@ -56,19 +57,22 @@ Array = NDArray[np.float64]
 
 
 def complete_with_forces(candidates: Array, given: HeldPart, size: float) -> Array:
-    """Write the forces and clearances of candidates (N, 24) in place, and return the same array.
+    """Write the contact forces and clearances of candidates (N, 24) in place, and return the same array.
 
-    See ``kernels.seating.columns`` for the layout of candidates.
+    ``size`` is the part's in mm, by which moments are divided. A candidate is a configuration with contacts
+    and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     write_forces_and_clearance(candidates, given, size, np.empty((4, 4)), np.empty((4, 5)))
     return candidates
 
 
 def judge_candidates(candidates: Array, slack: float, slack_in_doubt: float) -> NDArray[np.int8]:
-    """Return the verdicts (N,) on candidates (N, 24): NO_BALANCE, IN_BALANCE or DOUBTFUL.
+    """Return for each candidate (N, 24) whether its contact forces balance: NO_BALANCE, IN_BALANCE or
+    DOUBTFUL (N,).
 
-    See ``kernels.seating.candidates.judge_balance``, also for the slacks in mm. See
-    ``kernels.seating.columns`` for the layout of candidates.
+    ``slack`` and ``slack_in_doubt`` are depths in mm to which other pegs may enter the part, see
+    ``kernels.seating.candidates.judge_balance``. A candidate is a configuration with contacts and forces that
+    may be an equilibrium, see ``kernels.seating.columns``.
     """
     out = np.empty(len(candidates), np.int8)
     judge_balance(candidates, slack, slack_in_doubt, out)
@@ -78,10 +82,12 @@ def judge_candidates(candidates: Array, slack: float, slack_in_doubt: float) -> 
 def find_contact_normals(
     boundary: ObstacleBoundary, pattern: Pattern, row: Array
 ) -> tuple[Array, Array, Array]:
-    """Return the n contacts of a candidate in directions of the closing frame.
+    """Return the places and normals of the n contacts of a candidate ``row`` (24,), along the closing frame's
+    axes.
 
-    They are places (n, 2) in mm from the part's place, outward unit normals (n, 2), and 1 where the touching
-    peg moves, else 0, (n,).
+    Three arrays: places (n, 2) in mm relative to the centre of the part's box, unit normals (n, 2) out of the
+    part, and (n,) 1.0 where the touching peg moves, else 0.0. A candidate is a configuration with contacts
+    and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     c, s, count = cos(row[THETA]), sin(row[THETA]), int(row[CONTACTS])
     pegs, right = pattern.place_pegs(row[CONFIG][None])[0].tolist(), pattern.right.tolist()
@@ -107,11 +113,12 @@ def find_contact_normals(
 
 
 def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Pattern, size: float) -> None:
-    """Write the columns FORCE, RESIDUAL and CLEAR of candidates (N, 24) on a wall in place.
+    """Write the columns FORCE, RESIDUAL and CLEAR of candidates (N, 24) of a pattern with a wall, in place.
 
-    RESIDUAL stays inf where contacts do not touch, S is out of reach, or forces are not determined. Without a
-    wall use :func:`complete_with_forces`. S is the jaw separation in mm. See ``kernels.seating.columns`` for the
-    layout of candidates.
+    RESIDUAL is inf where the contacts do not touch, the jaw separation is out of reach, or the forces are not
+    unique. For patterns without a wall use :func:`complete_with_forces`. ``size`` is the part's in mm. A
+    candidate is a configuration with contacts and forces that may be an equilibrium. A candidate is a
+    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     assert pattern.half_plane is not None
     touched = np.empty(1)
@@ -152,10 +159,12 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
 def solve_contact_forces(
     boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: float
 ) -> tuple[Array, float, int]:
-    """Return the forces (n,) of the contacts of a candidate per unit of jaw force, by least squares.
+    """Return the contact forces of a candidate ``row`` (24,), and how well they balance.
 
-    Return also the largest error of the balance (moments divided by ``size`` in mm), and the number of
-    contacts that are independent.
+    Three results: (1) the forces (n,) of the n contacts per unit of jaw force, by least squares; (2) the
+    largest error of the equations of balance, in which moments are divided by ``size`` (mm); (3) the rank of
+    these equations, which is n where the forces are unique. A candidate is a configuration with contacts and
+    forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     places, normals, moves = find_contact_normals(boundary, pattern, row)
     moments = (places[:, 0] * normals[:, 1] - places[:, 1] * normals[:, 0]) / size
@@ -175,9 +184,11 @@ PULLS = 1e-9
 
 
 def is_equilibrium(row: Array, closing: ClosingMotion) -> bool:
-    """Return whether all contacts of a candidate (24,) touch, and two or three of them balance.
+    """Return whether each contact of a candidate (24,) touches the part, and forces at two or three of them
+    balance.
 
-    See ``kernels.seating.columns`` for the layout of candidates.
+    A candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
     """
     pegs = closing.pattern.place_pegs(row[CONFIG][None])[0].tolist()
     for k in range(int(row[CONTACTS])):
@@ -197,8 +208,10 @@ def is_equilibrium(row: Array, closing: ClosingMotion) -> bool:
 
 
 def is_balanced(wrenches: Sequence[Sequence[float]]) -> bool:
-    """Return whether two or three wrenches (4,) of force (2), moment
-    and force on the jaw balance it without pulling.
+    """Return whether forces at two or three contacts that only press can balance a unit of jaw force.
+
+    Each wrench (4,) is that of a unit force at a contact: force in x and y, moment, and force on the moving
+    jaw.
     """
     across, along, moments, on_jaw = zip(*wrenches, strict=True)
     equations = across, along, moments
@@ -216,7 +229,7 @@ def is_balanced(wrenches: Sequence[Sequence[float]]) -> bool:
 
 
 def cross(a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
-    """Return the cross product of two vectors of three."""
+    """Return the cross product of two vectors with three components."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
@@ -226,9 +239,10 @@ def find_largest(vector: Sequence[float]) -> float:
 
 
 def measure_carrier_distance(row: Array, x: float, y: float) -> float:
-    """Return the signed distance in mm of a point from the line or circle of a piece.
+    """Return the signed distance in mm of the point (x, y) from the whole line or circle that a piece is part
+    of.
 
-    It is positive on a line's outward side, and outside an arc's circle, convex or concave.
+    It is positive on the outward side of a line, and outside a circle, whether the arc is convex or concave.
     """
     piece = row.tolist()
     dx, dy = x - piece[X], y - piece[Y]
@@ -250,11 +264,16 @@ OTHERS_MAY_BE = (
 def to_candidate(
     boundary: ObstacleBoundary, pattern: Pattern, config: Array, faces: Sequence[int], size: float
 ) -> Array:
-    """Return the candidate (24,) of a fixture whose pegs touch faces with given numbers.
+    """Return the candidate (24,) of a fixture, whose contacts are known.
 
-    The configuration (4,) is theta, x, y and the jaw separation S in the frame of seating, ``faces`` has a
-    number for each peg, and ``size`` is the part's in mm. See ``kernels.seating.columns`` for the layout of
-    candidates.
+    A candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
+
+    Parameters
+    ----------
+    config : (4,) theta, x, y and the jaw separation S in the closing frame, in radians and mm.
+    faces : number of the face that each peg touches.
+    size : the part's size in mm.
     """
     contacts, away = [], np.empty(1)
     for peg, (at, side) in enumerate(

@@ -1,7 +1,8 @@
 """All equilibria of a pattern of pegs and a part, sorted into seats, passes and what is loose or not settled.
 
-Two or three of a pattern's pegs balance the part, or pegs of one jaw fix it. Such a subset stands alike in
-many patterns of one lattice (``seating.pattern``), so its equilibria are kept with the part.
+In an equilibrium two or three of a pattern's pegs balance the part, or pegs of one jaw fix it. The same
+subset of pegs, up to a shift, occurs in many patterns of one lattice (``seating.pattern``), so its equilibria
+are cached with the part.
 
 Glossary
 --------
@@ -90,15 +91,15 @@ Found = tuple[Array, SelfMotions]
 
 @frozen(eq=False)
 class SubsetEquilibria:
-    """The equilibria of a subset of pegs, in its own frame.
+    """The equilibria of a subset of pegs, in the subset's own frame.
 
     Parameters
     ----------
-    first, end : first and past-the-last number of the subset's candidates among all that are kept. In them
-        two or three contacts balance; for pegs of one jaw, three contacts fix the part, whose place is that
-        at separation 0.
-    motions : self-motions of the part between the pegs.
-    descents : paths from the candidates, as far as they were followed.
+    first, end : the subset's candidates are rows ``first`` to ``end`` - 1 of ``SubsetCache.candidates``. Two
+        or three contacts balance in each. For pegs of one jaw, three contacts fix the part instead, at the
+        place that it has at separation 0.
+    motions : self-motions: how the part can move between these pegs at one separation.
+    descents : descent paths from the candidates, as far as they were followed.
     """
 
     first: int
@@ -109,13 +110,13 @@ class SubsetEquilibria:
 
 @define(eq=False)
 class SubsetCache:
-    """The equilibria of subsets of pegs on a part that were found so far.
+    """Cache of the equilibria of subsets of pegs on a part.
 
     Parameters
     ----------
-    found : those of each subset, by part size and ``PegSubset.key``.
-    descents : their descent paths.
-    candidates : (C, 24) of all subsets; there is room for more. Rows that are written stay where they are.
+    found : the equilibria of each subset, by the part's size and ``PegSubset.key``.
+    descents : the descent paths from these equilibria.
+    candidates : (C, 24) candidates of all subsets; rows from ``count`` on are not used yet. Rows never move.
     count : number of candidates.
     """
 
@@ -126,9 +127,10 @@ class SubsetCache:
     lock: Lock = field(factory=Lock)
 
     def add_candidates(self, rows: Array) -> int:
-        """Append candidates (N, 24), and return the number of the first.
+        """Append candidates (N, 24), and return the index of the first of them in ``candidates``.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        A candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         with self.lock:
             first = self.count
@@ -139,9 +141,9 @@ class SubsetCache:
 
     @classmethod
     def find_for_boundary(cls, boundary: ObstacleBoundary) -> SubsetCache:
-        """Return the cache of a part, or a new empty one if that is full.
+        """Return the cache of a part; where it is full, replace it with an empty one, and return that.
 
-        Callers that hold the full one go on with it.
+        Callers that already hold the full cache can go on using it.
         """
         kept = boundary.find_once(cls.make_empty)
         is_full = len(kept.found) >= MOST_KEPT or kept.descents.counts[1] > MOST_NODES
@@ -149,14 +151,18 @@ class SubsetCache:
 
     @classmethod
     def make_empty(cls, _: ObstacleBoundary) -> SubsetCache:
-        """Return an empty cache."""
+        """Return an empty cache. The argument is ignored."""
         return cls()
 
 
 def find_subset_equilibria(
     kept: SubsetCache, boundary: ObstacleBoundary, subset: PegSubset, size: float
 ) -> SubsetEquilibria:
-    """Return the equilibria of a subset, from the cache or newly found; ``size`` is the part's in mm."""
+    """Return the equilibria of a subset of pegs, from the cache ``kept``; where they are not in it, find and
+    add them.
+
+    ``size`` is the part's in mm.
+    """
     key = size, subset.key
     found = kept.found.get(key)
     if found is None:
@@ -176,7 +182,12 @@ def find_subset_equilibria(
 
 
 def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Return the equilibria of one peg of each jaw: antipodal contacts, and self-motions along one line."""
+    """Return the equilibria of two pegs, one of each jaw: (1) candidates (N, 24), (2) self-motions.
+
+    The candidates are antipodal contacts whose forces balance. In a self-motion the part moves while the
+    separation stays the same: it slides along parallel faces or turns about concentric arcs. A candidate is a
+    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+    """
     pattern, given = subset.pattern, TwoContactCurves.from_one_jaw(boundary, subset).given
     candidates = find_antipodal_candidates(boundary, pattern)
     return balance_candidates(candidates, given, size), ManifoldFinder(boundary, pattern).find_free_motions(
@@ -185,9 +196,11 @@ def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) 
 
 
 def find_triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Return the equilibria of two pegs of a jaw and one of the other: candidates (N, 24) and self-motions.
+    """Return the equilibria of three pegs, two of one jaw and one of the other: (1) candidates (N, 24), (2)
+    self-motions.
 
-    See ``kernels.seating.columns`` for the layout of candidates.
+    A candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
     """
     # The only peg of the other jaw has two contacts in pockets alone.
     pattern, curves = subset.pattern, TwoContactCurves.from_one_jaw(boundary, subset)
@@ -218,10 +231,12 @@ def find_triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: 
 
 
 def find_jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> Found:
-    """Return poses that pegs of one jaw fix by three contacts, as candidates (N, 24), and no self-motions.
+    """Return poses in which pegs of one jaw alone fix the part by three contacts: (1) candidates (N, 24), (2)
+    no motions.
 
-    The contacts are those of three pegs, or of two pegs with one in a pocket. See ``kernels.seating.columns``
-    for the layout of candidates.
+    Three pegs touch once each, or one of two pegs touches twice in a pocket. The last argument is ignored. A
+    candidate is a configuration with contacts and forces that may be an equilibrium. A candidate is a
+    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     curves, stack = TwoContactCurves.from_one_jaw(boundary, subset), np.empty((DEPTH, 2))
     [(known, _, _)] = curves.jaws.values()
@@ -245,10 +260,11 @@ def find_jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float)
 
 
 def balance_candidates(candidates: Array, given: HeldPart, size: float) -> Array:
-    """Return the candidates (N, 24) whose contacts balance, or may,
-    with their forces; clearances do not count.
+    """Return those candidates (N, 24) whose contact forces balance or may balance, with their forces written.
 
-    See ``kernels.seating.columns`` for the layout of candidates.
+    Candidates in which another peg enters the part are kept. The forces are also written into the given
+    array. ``size`` is the part's in mm. A candidate is a configuration with contacts and forces that may be
+    an equilibrium, see ``kernels.seating.columns``.
     """
     return np.asarray(
         candidates[judge_candidates(complete_with_forces(candidates, given, size), inf, inf) != NO_BALANCE]
@@ -256,16 +272,19 @@ def balance_candidates(candidates: Array, given: HeldPart, size: float) -> Array
 
 
 def find_wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
-    """Return the loose sets of a part on a wall with contacts at the wall, as a list of ``Manifolds``."""
+    """Return the loose sets of a part that touches a wall, as a list of ``Manifolds``.
+
+    In a loose set the part rests anywhere along a motion, and nothing locates it there.
+    """
     wall = WallEquilibria(finder.boundary, finder.pattern)
     return find_wall_slides(finder, wall) + find_wall_turns(finder, wall)
 
 
 def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
-    """Return the loose sets with a hull edge on the wall and the tip
-    on a face parallel to it, within the edge's ends.
+    """Return the loose sets in which a part slides along a wall, with a hull edge on the wall.
 
-    There are none where the tip does not push towards the wall.
+    The clamp's tip presses a face parallel to that edge, between the edge's ends. The list is empty where the
+    tip does not push towards the wall.
     """
     if wall.half_plane[0] <= 0.0:
         return []
@@ -299,8 +318,12 @@ def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manif
 
 
 def name_both_edge_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
-    """Write both ends of a hull edge on the wall as contacts into a
-    candidate, in place, which names one or both pieces.
+    """Add contacts to a candidate (24,) in place, so that both ends of a hull edge on the wall are among
+    them.
+
+    The candidate must already have a contact with the wall. Nothing is added where it has four contacts; the
+    contact's piece is set to the start of the edge in any case. A candidate is a configuration with contacts
+    and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     count = int(row[CONTACTS])
     pegs = row[PEG : PEG + count].tolist()
@@ -311,9 +334,10 @@ def name_both_edge_ends(row: Array, wall: WallEquilibria, side: HullSide) -> Non
 
 
 def find_wall_turns(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
-    """Return the loose sets with concentric arcs on the wall and the tip, and on the locator too.
+    """Return the loose sets in which a part on a wall turns about the common centre of concentric arcs.
 
-    Without the locator, only where the tip pushes towards the wall.
+    One arc lies on the wall and one touches the clamp's tip. Two cases: (a) a third arc touches the locator;
+    (b) the locator does not touch, and the tip pushes towards the wall.
     """
     out, (ux, uy, off) = list[Manifolds](), wall.half_plane
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
@@ -366,19 +390,20 @@ SAME, SAME_DOUBT = 1e-5, 0.1
 
 @define(frozen=True, eq=False)
 class Equilibria:
-    """The equilibria of a pattern.
+    """The equilibria of a pattern of pegs and a part. Rows (24,) are candidates, see
+    ``kernels.seating.columns``.
 
     Parameters
     ----------
-    seats : (N, 24) candidates at which the separation has a strict minimum, in ascending order of it.
-    passes : (N, 24) candidates with one direction in which the separation falls, to both sides, in ascending
-        order.
-    loose : equilibrium manifolds, each of one separation.
-    doubtful : (N, 24) candidates that bounds did not prove to exist; of candidates near each other, the one
-        with the largest forces.
-    origins : (N, 2) for each pass the number of the subset that makes it, and of its candidate among all that
-        are kept; -1 where none does.
-    subsets : the subsets of pegs, with their descent paths.
+    seats : (N, 24) equilibria at which the separation has a strict minimum, in ascending order of separation.
+    passes : (N, 24) saddles: there is one direction in which the separation falls, to both sides. In
+        ascending order of separation.
+    loose : sets of equilibria with the same separation, along which the part can move.
+    doubtful : (N, 24) candidates that error bounds neither prove nor exclude; of several near each other, the
+        one with the largest forces.
+    origins : (N, 2) for each pass the index in ``subsets`` of the pegs that touch there, and the candidate's
+        number in the ``DescentCache``; -1 where the pass belongs to no subset.
+    subsets : the subsets of pegs, each with its descent paths.
     """
 
     seats: Array
@@ -390,8 +415,9 @@ class Equilibria:
 
 
 def find_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
-    """Return all equilibria of a pattern and a part; ``size`` is the
-    part's in mm, by which moments are divided.
+    """Return all equilibria of a pattern and a part.
+
+    ``size`` is the part's in mm, by which moments are divided.
     """
     if pattern.half_plane is not None:
         return find_wall_equilibria(boundary, pattern, size)
@@ -421,7 +447,7 @@ def find_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -
 
 
 def find_wall_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: float) -> Equilibria:
-    """Return all equilibria of a pattern with a wall."""
+    """Return all equilibria of a part and a pattern with a wall; ``size`` is the part's in mm."""
     pressed = find_antipodal_candidates(boundary, pattern)
     candidates = np.concatenate([pressed, find_wall_candidates(boundary, pattern)])
     settle_on_wall(candidates, boundary, pattern, size)
@@ -441,9 +467,11 @@ def sort_equilibria(
     origins: NDArray[np.int64],
     subsets: tuple[tuple[PegSubset, DescentPaths], ...] = (),
 ) -> Equilibria:
-    """Return the equilibria among candidates with forces, sorted into seats, passes and doubtful ones.
+    """Return the equilibria among candidates (N, 24), sorted into seats, passes and doubtful ones.
 
-    Other parameters are those of ``Equilibria``, with ``origins`` for all candidates.
+    The candidates have their forces already, and ``origins`` (N, 2) has a row for each. ``loose`` and
+    ``subsets`` are passed on, see ``Equilibria``. A candidate is a configuration with contacts and forces
+    that may be an equilibrium, see ``kernels.seating.columns``.
     """
     balance = judge_candidates(candidates, CLEAR_SLACK, CLEAR_IN_DOUBT)
     sure = balance == IN_BALANCE
@@ -461,11 +489,12 @@ def sort_equilibria(
 
 
 def number_first_of_equals(rows: Array, turn: float, shift: float) -> NDArray[np.int64]:
-    """Return the numbers of candidates (N, 24), in ascending order of
-    separation, without those equal to an earlier one.
+    """Return the indices of candidates (N, 24), without those that are equal to a candidate before them.
 
-    Configurations within ``turn`` radians and ``shift`` mm, with as many contacts, are equal. See
-    ``kernels.seating.columns`` for the layout of candidates.
+    The indices are in ascending order of separation. Two candidates are equal if they have the same number of
+    contacts and their configurations differ by less than ``turn`` radians and ``shift`` mm. A candidate is a
+    configuration with contacts and forces that may be an equilibrium. A candidate is a configuration with
+    contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     kept = np.empty(len(rows), np.int64)
     kept = kept[: write_first_of_equals(rows, turn, shift, kept)]

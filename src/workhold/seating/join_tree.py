@@ -1,8 +1,9 @@
 """The join tree of the separation: which cages join at which pass, where a part gets out, and rest poses.
 
-From a pass both descent paths are followed to what they end in. While the jaws are opened, cages grow, and
-join where the lowest pass between them is reached. So passes are taken in the order of their separation. Rest
-poses, as drawn and turned over, are rows for the seats of all fixtures on the same pegs.
+Both descent paths from each pass are followed to their ends. While the jaws are opened, cages grow, and two
+cages become one where the lowest pass between them is reached. So passes are taken in ascending order of
+their separation. Rest poses of the part as drawn and turned over are computed once for all fixtures on the
+same pegs.
 
 Glossary
 --------
@@ -68,10 +69,11 @@ IntArray = NDArray[np.int64]
 def follow_pass_descents(
     found: Equilibria, closing: ClosingMotion, seats: Array
 ) -> tuple[Array, Array, NDArray[np.int8]]:
-    """Return the starts (2 N, 4) of the descent paths from both sides
-    of all passes, their ends (2 N, 4), and how they end.
+    """Return the two descent paths from each of N passes: starts (2 N, 4), ends (2 N, 4), and how they end (2
+    N,).
 
-    ``seats`` (M, 4) are configurations at which closing is known to end.
+    Rows 2 n and 2 n + 1 belong to pass n. ``seats`` (M, 4) are configurations at which closing is known to
+    end.
     """
     starts, lengths = find_descent_starts(found.passes, closing.size)
     ends, how, left = np.array(starts), np.full(len(starts), AT_REST, np.int8), np.ones(len(starts), np.int8)
@@ -88,17 +90,21 @@ def follow_pass_descents(
 
 
 def compute_subset_shifts(found: Equilibria) -> Array:
-    """Return the shifts (G, 4) by which configurations of each subset become those of the pattern."""
+    """Return the vectors (G, 4) to add to configurations of each of the G subsets to get configurations of
+    the pattern.
+    """
     return np.array([subset.shift for subset, _ in found.subsets])
 
 
 def select_free_paths(
     found: Equilibria, passes: IntArray, closing: ClosingMotion, shifts: Array
 ) -> tuple[IntArray, IntArray, IntArray]:
-    """Return the paths from both sides of N passes, as far as the pattern's other pegs are outside the part.
+    """Return the two kept descent paths of each of N passes, and how far each is free of the pattern's other
+    pegs.
 
-    They are the numbers of the paths in the cache, their subsets, and the last node of each, all (2 N,).
-    ``passes`` are numbers of passes with origins; see :func:`compute_subset_shifts` for the shifts.
+    Three arrays (2 N,): the path's number in the cache; the index of its subset; its last node at which no
+    other peg is inside the part. Paths not yet in the cache are followed and added. ``passes`` are indices of
+    passes with origins; ``shifts`` are those of :func:`compute_subset_shifts`.
     """
     whose, numbers = found.origins[passes, 0], found.origins[passes, 1]
     cache = found.subsets[0][1].cache
@@ -121,13 +127,13 @@ FIRST_STEP = BESIDE / 2.0
 
 @frozen
 class CageJoin:
-    """A pass, and the places whose cages join there.
+    """A pass, and the two places whose cages become one there.
 
     Parameters
     ----------
     separation : S of the pass in mm.
-    candidate : (24,) row of the pass.
-    places : numbers of the places in which its two descent paths end.
+    candidate : (24,) the pass.
+    places : numbers of the places at which its two descent paths end, see ``JoinTree``.
     """
 
     separation: float
@@ -139,18 +145,20 @@ class CageJoin:
 class JoinTree:
     """The places in which closing ends, and the passes at which their cages join.
 
-    Places are numbered: seats, loose sets, what is not settled; -1 is the outside, -2 the stop.
+    Places are numbered: 0 to N - 1 are seats, the next L are loose sets, the next M are doubtful
+    configurations; -1 is the outside (the part gets away), -2 the stop of the jaws.
 
     Parameters
     ----------
-    seats : (N, 24) rows of strict seats, places 0 to N - 1.
-    loose : (L, 24) rows of loose sets from which no path leads down, the next places.
-    slack : (K, 24) rows of loose sets with three contacts or more from which paths lead down: a rest there is
-        not certain.
-    doubtful : (M, 4) configurations of what is not settled, the last places.
-    passes : (J, 24) rows in ascending order of separation.
-    joined : (J, 2) places in which the two descent paths of each pass end.
-    own : (N + L,) each place itself; for a seat that lies on a loose set, the place of the set.
+    seats : (N, 24) seats.
+    loose : (L, 24) loose sets (the part rests anywhere along a motion) from which no path leads down.
+    slack : (K, 24) loose sets with three contacts or more from which a path leads down, so that the part may
+        rest there or not; they are not places.
+    doubtful : (M, 4) configurations in which the part may rest or not: error bounds did not decide.
+    passes : (J, 24) passes in ascending order of separation.
+    joined : (J, 2) numbers of the places at which the two descent paths of each pass end.
+    own : (N + L,) for each seat and loose set its own number; for a seat that lies on a loose set, the number
+        of that set.
     """
 
     seats: Array
@@ -163,8 +171,8 @@ class JoinTree:
 
     @classmethod
     def from_equilibria(cls, found: Equilibria, closing: ClosingMotion) -> JoinTree:
-        """Return the join tree, after following the descent paths from
-        all passes and from the ends of all loose sets.
+        """Return the join tree of equilibria, found by following the descent paths from all passes and loose
+        sets.
         """
         loose, size, configs = found.loose, closing.size, np.ascontiguousarray(found.seats[:, CONFIG])
         # A flat face may lead on from a curved seat: such a seat is a place of its own only where nothing
@@ -190,9 +198,10 @@ class JoinTree:
 
     @cached_property
     def first_joins(self) -> IntArray:
-        """The number (P + 2,) of the first pass at which each place's cage joins another, -1 for none.
+        """The index of the lowest pass at which each place's cage joins another cage, -1 where none does.
 
-        The stop and the outside are the last two entries.
+        The array (N + L + M + 2,) is indexed by the number of the place: its last two entries are the stop
+        (-2) and the outside (-1).
         """
         out = np.full(len(self.own) + len(self.doubtful) + 2, -1)
         leading = np.flatnonzero(self.joined[:, 0] != self.joined[:, 1])[::-1]
@@ -200,23 +209,27 @@ class JoinTree:
         return out
 
     def make_join(self, number: int) -> CageJoin:
-        """Return a pass by its number."""
+        """Return the pass with the index ``number`` in ``passes``."""
         one, two = self.joined[number].tolist()
         return CageJoin(float(self.passes[number, SEPARATION]), self.passes[number], (one, two))
 
     def find_first_join(self, place: int) -> CageJoin | None:
-        """Return the first pass at which the cage of a place joins another; None where it never does."""
+        """Return the lowest pass at which the cage of a seat or loose set joins another cage; None where none
+        does.
+        """
         number = int(self.first_joins[self.own[place]])
         return None if number < 0 else self.make_join(number)
 
     @property
     def tops(self) -> Array:
-        """The separations (N + L,) in mm of the first passes of seats and loose sets, inf for none."""
+        """For each seat and loose set, the separation in mm of the lowest pass out of its cage (N + L,); inf
+        without a pass.
+        """
         return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
 
     def find_escape_separation(self, place: int) -> float | None:
-        """Return the separation in mm at which a part can get from a
-        place to the outside; None where it never can.
+        """Return the least separation in mm at which a part can get from a place to the outside; None where
+        it cannot.
         """
         number = find_pass_to_outside(
             self.joined, int(self.own[place]), np.empty(len(self.first_joins), np.int64)
@@ -226,16 +239,16 @@ class JoinTree:
 
 @frozen(eq=False)
 class ManifoldDescents:
-    """The descent paths from loose sets.
+    """The descent paths from loose sets, in which a part rests anywhere along a motion.
 
     Parameters
     ----------
-    lying : (L,) numbers of sets from which no path leads down.
-    falling : (G,) numbers of the others.
-    slack : numbers of falling sets with three contacts or more, on which a part may stay for a while.
-    dividing : numbers of sets from which paths lead down to both sides.
-    both : starts (2 D, 4) and ends (2 D, 4) of the paths from dividing sets, and how they end (2 D,).
-    one : starts (G, 4) and ends (G, 4) of the first path from each falling set, and how it ends (G,).
+    lying : (L,) indices of sets from which no path leads down.
+    falling : (G,) indices of sets from which a path leads down.
+    slack : indices of those of ``falling`` with three contacts or more, on which a part may still stay.
+    dividing : (D,) indices of sets with two paths that lead down, one to each side.
+    both : for the paths from dividing sets, starts (2 D, 4), ends (2 D, 4) and how they end (2 D,).
+    one : for the first path from each falling set, starts (G, 4), ends (G, 4) and how it ends (G,).
     """
 
     lying: IntArray
@@ -247,8 +260,8 @@ class ManifoldDescents:
 
     @classmethod
     def from_manifolds(cls, loose: Manifolds, closing: ClosingMotion, seats: Array) -> ManifoldDescents:
-        """Return the descent paths from loose sets; ``seats`` (M, 4) are
-        those of ``ClosingMotion.close_from``.
+        """Return the descent paths from loose sets; ``seats`` (M, 4) are configurations at which closing is
+        known to end.
         """
         if not len(loose.rows):
             return NOTHING
@@ -277,8 +290,11 @@ NOTHING = ManifoldDescents(NUMBERS, NUMBERS, NUMBERS, NUMBERS, PATHS, PATHS)
 
 
 def find_loose_sets(configs: Array, loose: Manifolds, asked: IntArray, size: float) -> IntArray:
-    """Return, for each configuration (N, 4), the position in
-    ``asked`` of the first loose set in which it lies, or -1.
+    """Return for each configuration (N, 4) the loose set in which it lies, as an index into ``asked``; -1 for
+    none.
+
+    Only the sets with the indices ``asked`` are tried; the first that fits counts. ``size`` is the part's in
+    mm.
     """
     out = np.empty(len(configs), np.int64)
     write_first_manifolds(configs, loose, asked, size, FALLS, out)
@@ -286,10 +302,10 @@ def find_loose_sets(configs: Array, loose: Manifolds, asked: IntArray, size: flo
 
 
 def measure_distances(configs: Array, others: Array, size: float) -> Array:
-    """Return the distances in mm between configurations (..., 4): of
-    (x, y), plus the turn (mod 2 pi) times ``size``.
+    """Return the distances in mm between configurations (..., 4) and ``others`` (..., 4), broadcast.
 
-    Separations are not compared.
+    A distance is the distance of the places (x, y), plus the turn in radians (at most pi) times ``size``
+    (mm). Separations do not count.
     """
     turn = np.abs((configs[..., 0] - others[..., 0] + pi) % tau - pi)
     return np.asarray(
@@ -309,15 +325,16 @@ ALWAYS = FIXTURE
 
 @frozen(eq=False)
 class RestPoses:
-    """All rest poses that are listed.
+    """The poses in which a part can rest in a pattern, without seats so shallow that they may not exist.
 
     Parameters
     ----------
-    rows : (N, 24) candidates; for those not settled, only the configuration is known.
-    kinds : (N,) numbers of the kinds in ``KINDS``.
-    depths : (N,) by how much in mm the jaws open before the part can get elsewhere; inf where it never can,
-        or where that is not known.
-    turned_over : (N,) whether the part is turned over.
+    rows : (N, 24) candidates; where it is not known whether the part rests, only the configuration is filled
+        in.
+    kinds : (N,) indices into ``KINDS``.
+    depths : (N,) by how much in mm the jaws must open before the part can leave for another place; inf where
+        it never can, and where that is not known.
+    turned_over : (N,) whether it is a pose of the part turned over.
     """
 
     rows: Array
@@ -329,8 +346,10 @@ class RestPoses:
     def from_join_trees(
         cls, trees: tuple[JoinTree, JoinTree], boundary: ObstacleBoundary, pegs: int
     ) -> RestPoses:
-        """Return the rest poses of a part as drawn, then turned over;
-        ``pegs`` is the number of pegs, without a wall.
+        """Return the rest poses from two join trees: first those of the part as drawn, then those of the part
+        turned over.
+
+        ``pegs`` is the number of pegs in the pattern; a wall does not count.
         """
         parts, tops = list[Array](), list[Array]()
         for tree in trees:
@@ -349,10 +368,11 @@ class RestPoses:
 
 
 def classify_seats(rows: Array, boundary: ObstacleBoundary, pegs: int) -> NDArray[np.int64]:
-    """Return the kinds (N,) of strict seats (N, 24), by the number of contacts and by what they touch.
+    """Return the kinds (N,) of seats (N, 24), as indices into ``KINDS``.
 
-    They are CURVED with fewer than four contacts, else POCKET, CORNER or FIXTURE. See
-    ``kernels.seating.columns`` for the layout of candidates.
+    CURVED: fewer than four contacts. With four contacts, POCKET: a peg touches twice; CORNER: no peg touches
+    twice, and a peg touches a corner of the part; FIXTURE: all other seats. ``pegs`` is the number of pegs
+    without a wall.
     """
     who, where = (rows[:, at : at + 4].astype(np.int64) for at in (PEG, PIECE))
     ordered = np.sort(who, axis=1)

@@ -44,17 +44,18 @@ PAST_POCKET = 0.05
 class ObstacleBoundary:
     """The boundary on which the centres of pegs lie while they touch a part.
 
-    Where pegs that move have another radius than those that stand still, it is both boundaries, one after the
-    other.
+    Where the pegs that move have another radius than those that stand still, each kind has its own boundary,
+    and the pieces of both stand one after the other.
 
     Parameters
     ----------
-    rows : (N, 10) pieces about the centre of the part's bounding box, in mm.
-    parts : (2, 2) first and past-the-last number of the pieces of pegs that stand still, and of those that
-        move.
-    touches : the feature that a peg on each piece touches.
-    pockets : (V, 6) place (x, y) of each pocket and the outward normals of its two pieces.
-    pocket_pieces : (V, 2) their numbers.
+    rows : (N, 10) straight and circular pieces in mm, relative to the centre of the part's bounding box.
+    parts : (2, 2) first and past-the-last index of the pieces for pegs that stand still (row 0), and for pegs
+        that move (row 1).
+    touches : for each piece, the face or corner of the part that a peg on it touches.
+    pockets : (V, 6) corners in which a peg touches two pieces at once: place (x, y), and the outward normals
+        of the two pieces.
+    pocket_pieces : (V, 2) indices of these two pieces.
     hull : the features of the part that may touch a wall.
     mirrored : whether the part is turned over.
     contacts, tables : caches of :meth:`make_contacts` and of :meth:`find_chord_curves`.
@@ -74,7 +75,9 @@ class ObstacleBoundary:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece, radii: tuple[float, float]) -> ObstacleBoundary:
-        """Return the boundary for pegs that stand still and for those that move, with radii in mm above 0."""
+        """Return the boundary of a part for pegs with two radii in mm (above 0): those that stand still,
+        those that move.
+        """
         rows, touches, pockets, whose, starts = (
             list[Array](),
             list[TouchedFeature](),
@@ -104,14 +107,14 @@ class ObstacleBoundary:
         )
 
     def can_touch(self, side: int, piece: int) -> bool:
-        """Return whether pegs that stand still (``side`` 0), or that move (1), can touch a piece."""
+        """Return whether a piece belongs to pegs that stand still (``side`` 0) or that move (``side`` 1)."""
         return bool(self.parts[side, 0] <= piece < self.parts[side, 1])
 
     def make_obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
-        """Return the part's pieces and the pegs of a pattern, as kernels take them.
+        """Return the part's pieces and the pegs of a pattern, in the form that the kernels take.
 
-        ``size`` is the part's in mm, by which turns are compared with shifts; ``stop`` is the least S in mm.
-        S is the jaw separation in mm.
+        ``size`` is the part's in mm: a turn in radians times ``size`` is compared with shifts. ``stop`` is
+        the least jaw separation in mm.
         """
         pegs = np.array(pattern.pegs), pattern.right, self.parts
         hull, half_plane = np.zeros((0, 6)), np.zeros(3)
@@ -121,17 +124,17 @@ class ObstacleBoundary:
 
     @cached_property
     def pieces(self) -> Array:
-        """The rows as a writable copy, which kernels take."""
+        """A writable copy of ``rows``, as the kernels need it."""
         return np.array(self.rows)
 
     @cached_property
     def loose(self) -> Array:
-        """The pieces (N, 10) with their ends moved out slightly, as chord curves need them."""
+        """The pieces (N, 10), each slightly longer at both ends, for finding chord curves."""
         return loosen_rows(self.rows)
 
     @cached_property
     def discs(self) -> Array:
-        """Discs (N, 3) that hold the pieces: centre x, y and radius in mm."""
+        """For each piece a disc that contains it: centre x, y and radius in mm (N, 3)."""
         rows, whole = self.loose, self.loose[:, HALF_EXTENT] >= pi / 2.0
         is_arc = rows[:, IS_ARC] != 0.0
         out = np.array(rows[:, [X, Y, HALF_EXTENT]], order="C")
@@ -144,16 +147,17 @@ class ObstacleBoundary:
 
     @cached_property
     def wide_discs(self) -> Array:
-        """The discs (N, 3), widened by how far pieces count past pockets."""
+        """The ``discs`` (N, 3) with radii larger by ``PAST_POCKET``."""
         return np.asarray(self.discs + np.array([0.0, 0.0, PAST_POCKET]))
 
     @cached_property
     def spans(self) -> Array:
-        """The lowest and highest parameter of each piece, slightly past
-        pockets, and the cosines of both: (N, 4).
+        """The range of parameters in which each piece counts, as (N, 4): lowest, highest, and the cosines of
+        both.
 
-        Past a pocket the other piece is nearer, so that both keep a peg off there whichever side of the end
-        it is.
+        Parameters are in mm on a line and in radians on an arc, 0 at the middle. The range is slightly longer
+        than the piece, and longer by ``PAST_POCKET`` mm at a pocket, so that near a pocket both of its pieces
+        keep a peg off.
         """
         rows = self.rows
         hair = np.where(rows[:, IS_ARC] != 0.0, END_SLACK / np.maximum(rows[:, RADIUS], END_SLACK), END_SLACK)
@@ -167,7 +171,7 @@ class ObstacleBoundary:
 
     @cached_property
     def concentric(self) -> list[list[int]]:
-        """The numbers of the arcs, in a list for each centre."""
+        """The indices of all arcs, in one list for each centre."""
         groups: list[list[int]] = []
         for k in np.flatnonzero(self.rows[:, IS_ARC] != 0.0).tolist():
             center = self.rows[k, [X, Y]]
@@ -179,22 +183,22 @@ class ObstacleBoundary:
 
     @cached_property
     def all_touches(self) -> tuple[TouchedFeature, ...]:
-        """The features that a peg on each piece touches and, after those,
-        the features that may touch a wall.
+        """The features of ``touches`` (one for each piece), and after those the features that may touch a
+        wall.
         """
         return self.touches + self.hull.touches
 
     @cached_property
     def corners(self) -> NDArray[np.bool_]:
-        """Whether each of ``all_touches`` is a corner."""
+        """For each of ``all_touches``, whether it is a corner."""
         return np.array([touch.corner for touch in self.all_touches])
 
     @cached_property
     def rings(self) -> list[tuple[list[tuple[int, float]], list[tuple[int, float]]]]:
-        """For each centre, the arcs that pegs that stand still can touch, and those that pegs that move can.
+        """For each centre, two lists of arcs: those for pegs that stand still, and those for pegs that move.
 
-        Each arc is its number and its radius in mm, negative where the arc is concave. Centres with arcs for
-        both are listed.
+        An arc is given by its index and its radius in mm, negative where it is concave. Centres without arcs
+        for both kinds of pegs are left out.
         """
         signed = (self.rows[:, SIGN] * self.rows[:, RADIUS]).tolist()
         both = (
@@ -206,12 +210,12 @@ class ObstacleBoundary:
     def make_contacts(
         self, pegs: NDArray[np.int64], pieces: NDArray[np.int64]
     ) -> list[tuple[SeatContact, ...]]:
-        """Return, for each of N seats, the contacts of a fixture's pegs;
-        seats with the same contacts share one tuple.
+        """Return the contacts of each of N seats; seats with equal contacts share one tuple.
 
         Parameters
         ----------
-        pegs, pieces : (N, 4) numbers of the pegs, -1 for no peg, and of what each touches in ``all_touches``.
+        pegs : (N, 4) number of the touching peg of each contact, -1 where a seat has fewer contacts.
+        pieces : (N, 4) for each contact the index in ``all_touches`` of what the peg touches.
         """
         count = len(self.all_touches)
         codes = np.where(pegs < 0, 0, 1 + pegs * count + pieces)
@@ -230,14 +234,16 @@ class ObstacleBoundary:
 
     @cached_property
     def centers(self) -> dict[int, NDArray[np.int64]]:
-        """The numbers of the pieces' centres as in
-        ``contact.curves.number_centers``, by the first piece of each jaw.
+        """For each of ``parts``, the numbers of the pieces' centres, see ``contact.curves.number_centers``.
+
+        The keys are the indices of the parts' first pieces.
         """
         return {first: number_centers(self.loose[first:end]) for first, end in self.parts.tolist()}
 
     def find_once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
-        """Return ``find(self)``, computed at the first call and kept;
-        with ``anew``, compute and keep it again.
+        """Return ``find(self)``, which is called only once and whose result is kept.
+
+        With ``anew``, call it again and keep the new result.
         """
         if anew or find not in self.found:
             self.found[find] = find(self)
@@ -245,10 +251,12 @@ class ObstacleBoundary:
         return kept
 
     def find_chord_curves(self, length: float, side: int) -> CurveTable:
-        """Return the curves of chords of a length in mm between pegs that
-        stand still (``side`` 0), or that move (1); kept.
+        """Return the curves of a chord of given length in mm between two pegs that both touch the part;
+        cached.
 
-        Tails are on the piece of the lower number, and a chord's direction alpha is its orientation psi.
+        ``side`` is 0 for pegs that stand still, 1 for pegs that move. The tail of a chord is on the piece
+        with the lower index, and the chord's direction in the part's frame (alpha) is used as its orientation
+        (psi).
         """
         first, end = self.parts[side].tolist()
         key = round(length, 9), first
@@ -267,7 +275,7 @@ class ObstacleBoundary:
         return self.tables[key]
 
     def compute_normal(self, number: int, x: float, y: float) -> tuple[float, float]:
-        """Return the outward unit normal (x, y) of a piece at a point on it."""
+        """Return the outward unit normal of the piece with index ``number`` at a point (x, y) on it."""
         row = self.rows[number].tolist()
         if row[IS_ARC] == 0.0:
             return row[AXIS_Y], -row[AXIS_X]
@@ -276,7 +284,7 @@ class ObstacleBoundary:
 
     @cached_property
     def turned_over(self) -> ObstacleBoundary:
-        """The boundary of the part turned over, x to -x in its own frame about the centre."""
+        """The boundary of the part turned over: x becomes -x, relative to the centre of its box."""
         rows = np.array(self.rows)
         is_arc = rows[:, IS_ARC] != 0.0
         rows[:, X] *= -1.0
@@ -297,14 +305,18 @@ class ObstacleBoundary:
 
 
 def contains(row: Array, x: float, y: float) -> bool:
-    """Return whether a point of a piece's line or circle lies on the piece, up to rounding."""
+    """Return whether a point (x, y) on the whole line or circle of a piece (10,) lies on the piece, up to
+    rounding.
+    """
     unit = row[RADIUS] if row[IS_ARC] != 0.0 else 1.0
     whole = row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi
     return bool(whole or abs(compute_parameter(row, x, y)) <= row[HALF_EXTENT] + END_SLACK / unit)
 
 
 def compute_parameter(row: Array, x: float, y: float) -> float:
-    """Return the parameter of a point on a piece, mm on a line and radians on an arc, 0 at its middle."""
+    """Return the parameter of a point (x, y) on a piece (10,): mm on a line, radians on an arc, 0 at the
+    middle.
+    """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         return float(dx * row[AXIS_X] + dy * row[AXIS_Y])

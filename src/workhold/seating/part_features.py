@@ -1,8 +1,8 @@
 """The features of a part that pegs and a straight wall may touch, and whether it covers its place in others.
 
-The boundary of (part + disc of the peg radius) has offset faces, arcs around convex corners, and pockets. A
-wall is touched by corners, arcs and edges of the convex hull. The silhouette distinguishes poses, also turned
-over, in which the part covers the same place.
+The boundary of (part + disc of the peg radius), on which a peg's centre lies, consists of offset faces and
+arcs around convex corners, and has pockets. A wall is touched by corners, arcs and edges of the convex hull.
+The silhouette tells whether the part covers the same area in two poses, also where it is turned over.
 
 Reference: T. Lozano-Perez, "Spatial planning: a configuration space approach", IEEE Transactions on Computers
 C-32 (1983).
@@ -45,12 +45,12 @@ STRAIGHT_ON = 1e-7
 
 @frozen
 class TouchedFeature:
-    """A face or a corner.
+    """A face or a corner of a part that a peg touches.
 
     Parameters
     ----------
-    face : number of the face, or of the face that begins at the corner.
-    corner : whether it is the corner rather than the face.
+    face : number of the face; for a corner, of the face that begins there.
+    corner : True for the corner, False for the face.
     """
 
     face: int
@@ -58,10 +58,10 @@ class TouchedFeature:
 
 
 def list_touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[TouchedFeature, Segment]]:
-    """Return the pieces of the boundary for pegs of a radius in mm,
-    each with the feature that a peg on it touches.
+    """Return the pieces of the boundary for pegs of a radius in mm, each with the feature that a peg there
+    touches.
 
-    Offset faces come first, then arcs around convex corners.
+    The offsets of faces come first, then the arcs around convex corners.
     """
     faces = workpiece.faces
     segments = [face.segment for face in faces]
@@ -75,10 +75,10 @@ def list_touched_pieces(workpiece: Workpiece, radius: float) -> list[tuple[Touch
 
 
 def make_rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Point, Arc]]:
-    """Return the arcs on which a disc's centre runs around convex
-    corners of an outline, each with its corner.
+    """Return the arcs on which the centre of a disc moves around convex corners, as pairs (corner, arc).
 
-    Only the parts where nothing else of the outline is nearer to the centre.
+    Parts of an arc where the disc would enter another segment are cut off; a corner may have several arcs.
+    ``radius`` is the disc's in mm.
     """
     rows, out = make_segment_rows(segments), []
     raw = [piece for piece in (offset_segment(segment, radius) for segment in segments) if piece is not None]
@@ -86,7 +86,7 @@ def make_rolled_corners(segments: list[Segment], radius: float) -> list[tuple[Po
     joints = [segment.start for segment in segments if not is_full(segment)]
 
     def is_clear(points: Array) -> NDArray[np.bool_]:
-        """Return whether points (M, 2) are at least the radius away from the outline."""
+        """Return for each point (M, 2) whether it is at least the radius away from the outline (M,)."""
         return np.asarray(measure_outline_distances(points, rows) >= radius - CLEARANCE)
 
     for segment in segments:
@@ -110,20 +110,24 @@ def is_full(segment: Segment) -> bool:
 
 
 def compute_end_angle(segment: Segment, end: float) -> float:
-    """Return the direction in radians of the outward normal at the end (1) or the start (-1) of a segment."""
+    """Return the direction in radians of a segment's outward normal at its end (``end`` 1) or its start
+    (-1).
+    """
     along = end * segment.half_extent * (segment.sign if isinstance(segment, Arc) else 1.0)
     x, y = segment.compute_normal(along)
     return atan2(y, x)
 
 
 def find_pockets(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Return the pockets, in which two pieces end with different normals.
+    """Return the pockets: points at which two pieces end with different normals.
 
-    ``rows`` are those of the pieces about the part's centre.
+    ``rows`` (N, 10) are the same pieces relative to the centre of the part's box.
 
     Returns
     -------
-    (places and both outward normals (V, 6), numbers of both pieces (V, 2))
+    tuple
+        Places and both outward normals (V, 6) in the coordinates of ``rows``, and the indices of both pieces
+        (V, 2).
     """
     ends = [(k, s) for k, piece in enumerate(pieces) if not is_full(piece) for s in (-1.0, 1.0)]
     if not ends:
@@ -148,12 +152,13 @@ def find_pockets(pieces: list[Segment], rows: Array) -> tuple[Array, NDArray[np.
 
 @frozen
 class HullSide:
-    """A hull edge that lies on a wall.
+    """An edge of a part's convex hull, which can lie flat on a wall.
 
     Parameters
     ----------
-    angle : of its outward normal in the part's frame, in radians.
-    pieces : numbers of the hull pieces at its start and end, traversed with the part on the left.
+    angle : direction of the edge's outward normal in the part's frame, in radians.
+    pieces : indices in ``PartHull.rows`` of the pieces at the edge's start and end, with the part on the
+        left.
     """
 
     angle: float
@@ -162,12 +167,13 @@ class HullSide:
 
 @define(frozen=True, eq=False)
 class PartHull:
-    """The corners and arcs of a part's convex hull.
+    """The corners and arcs of a part's convex hull, on which it can stand against a wall.
 
     Parameters
     ----------
-    rows : (H, 6) see ``kernels.seating.obstacles``.
-    touches : the part's feature that each row is.
+    rows : (H, 6) hull pieces: centre x, y, radius (0 for a corner), middle direction x, y, and the cosine of
+        half the range of normals; see ``kernels.seating.obstacles``.
+    touches : for each hull piece, the part's face or corner.
     """
 
     rows: Array
@@ -175,7 +181,7 @@ class PartHull:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece) -> PartHull:
-        """Return the hull of a part, about the centre of its box."""
+        """Return the convex hull of a part, relative to the centre of its bounding box."""
         outer = workpiece.outer_faces
         pieces = HullPieces.from_segments([face.segment for face in outer], workpiece.outer_face_counts)
         rows = np.concatenate(
@@ -193,31 +199,33 @@ class PartHull:
 
     @property
     def turned_over(self) -> PartHull:
-        """The hull of the part turned over, x to -x."""
+        """The hull of the part turned over: x becomes -x."""
         return PartHull(self.rows * np.array([-1.0, 1.0, 1.0, -1.0, 1.0, 1.0]), self.touches)
 
     @property
     def limits(self) -> Array:
-        """The directions in radians, in [0, 2 pi), at which arcs that are
-        not whole circles cease to support.
+        """The directions in radians, in [0, 2 pi), at which the hull's arcs begin and end; without whole
+        circles.
         """
         arcs = self.rows[(self.rows[:, 2] > 0.0) & (self.rows[:, 5] > -1.0)]
         middle, half = np.arctan2(arcs[:, 4], arcs[:, 3]), np.arccos(arcs[:, 5])
         return np.concatenate([middle - half, middle + half]) % tau
 
     def compute_reach(self, angles: Array) -> Array:
-        """Return how far in mm each piece extends in directions (N,) in
-        radians: (N, H), -inf where it does not support.
+        """Return how far in mm each hull piece extends in each direction: (N, H) for N angles in radians.
+
+        It is -inf where the direction is outside the piece's range of normals.
         """
         normal = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         there = normal @ self.rows[:, 3:5].T >= self.rows[:, 5] - SUPPORTS
         return np.asarray(np.where(there, normal @ self.rows[:, :2].T + self.rows[:, 2], -np.inf))
 
     def compute_wall_clearance(self, configs: Array, wall: tuple[float, float, float]) -> Array:
-        """Return the distances (N,) in mm of the part from a wall in
-        configurations (N, 4), negative where it enters.
+        """Return the distance (N,) in mm of the part from a wall in configurations (N, 4), negative where it
+        enters the wall.
 
-        ``wall`` is ``Pattern.half_plane``.
+        ``wall`` is (x, y, coordinate): the unit vector from the wall to the part, and the wall's coordinate
+        along it in mm.
         """
         ux, uy, off = wall
         reach = self.compute_reach(atan2(-uy, -ux) - configs[:, 0]).max(axis=1)
@@ -256,12 +264,12 @@ POINTS = 9
 
 @define(frozen=True, eq=False, slots=False)
 class Silhouette:
-    """A part's outline about the centre of its box.
+    """A part's outline, relative to the centre of its bounding box.
 
     Parameters
     ----------
-    rows : (S, 10) faces.
-    points : (M, 2) points on the faces, in mm.
+    rows : (S, 10) segments of the outline.
+    points : (M, 2) points on these segments, in mm.
     """
 
     rows: Array
@@ -269,7 +277,13 @@ class Silhouette:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece) -> Silhouette:
-        """Return the silhouette of a part; raise InputError as :func:`refuse_own_outlines`."""
+        """Return the silhouette of a part.
+
+        Raises
+        ------
+        InputError
+            As :func:`refuse_own_outlines`.
+        """
         refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
         rows = move_rows_to_origin(make_segment_rows(segments), workpiece.center)
@@ -280,14 +294,14 @@ class Silhouette:
 
     @cached_property
     def arm(self) -> float:
-        """The largest distance in mm of one of its points from the centre."""
+        """The largest distance in mm of the points from the centre of the box."""
         return float(np.hypot(*self.points.T).max())
 
     def find_same_cover(self, one: Array, others: Array, turned_over: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return, for each configuration (N, 4), whether the part covers
-        the same place in it as in ``one`` (4,).
+        """Return for each configuration in ``others`` (N, 4) whether the part covers the same area there as
+        in ``one`` (4,).
 
-        ``turned_over`` (N,) is True where the part is turned over.
+        ``turned_over`` (N,) is True where the part is turned over in the configuration.
         """
         out = np.empty(len(others), np.int8)
         write_same_cover(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)
@@ -295,7 +309,7 @@ class Silhouette:
 
 
 def refuse_own_outlines(workpiece: Workpiece) -> None:
-    """Raise InputError for a part on which some carriers meet another outline than others."""
+    """Raise InputError for a part that has different outlines at different heights."""
     if workpiece.outlines:
         role, _ = workpiece.outlines[0]
         raise InputError(

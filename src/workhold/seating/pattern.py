@@ -1,12 +1,12 @@
 """Patterns of four pegs in their closing frame, for which seating is solved once for all fixtures on them.
 
-A toolkit is turned by quarters until what moves in it opens along x, and clamps as its separation S falls.
-Where opening clamps, S is the travel with the other sign. So an opening vise is turned by half, and a clamp
-along a column by a quarter.
+A toolkit is turned by quarter turns until what moves in it opens along x, and clamps as its separation S
+falls. Where a toolkit clamps by opening, S is the travel with the other sign. So a vise that clamps by
+opening is turned by half a turn, and a clamp that pushes along a column by a quarter.
 
-Subsets of a pattern's pegs stand to each other in the same way in many patterns of one lattice. With S free
-the equilibria of two or three pegs depend on how the pegs of each jaw stand to each other. They also depend
-on how much higher one jaw's pegs are. The other pegs only decide whether a place is free.
+A subset of two or three pegs has the same places, up to a shift, in many patterns of one lattice. While S is
+free, its equilibria depend only on how the pegs of each jaw stand to each other, and on how much higher one
+jaw's pegs are. The pattern's other pegs only decide whether a pose is free.
 
 Glossary
 --------
@@ -55,12 +55,13 @@ QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 @frozen
 class ClosingFrame:
-    """The change from a toolkit's frame to that of seating, and back.
+    """The change from a toolkit's frame to the closing frame, in which jaws open along x, and back.
 
     Parameters
     ----------
-    quarters : number of quarter turns, counter-clockwise, from the toolkit's frame.
-    sign : 1 where S is the travel, -1 where it is minus the travel.
+    quarters : number of quarter turns counter-clockwise by which vectors are turned from the toolkit's frame
+        to the closing frame.
+    sign : 1 where the separation S is the travel, -1 where S is minus the travel.
     """
 
     quarters: int
@@ -68,33 +69,34 @@ class ClosingFrame:
 
     @classmethod
     def from_toolkit(cls, toolkit: Toolkit, carrier: Carrier) -> ClosingFrame:
-        """Return the closing frame of a toolkit in which ``carrier`` moves."""
+        """Return the closing frame of a toolkit in which ``carrier`` is what moves."""
         assert carrier.travel is not None
         x, y = (toolkit.clamping * part for part in carrier.travel.unit)
         return cls(-QUARTERS.index((round(x) + 0.0, round(y) + 0.0)) % 4, float(toolkit.clamping))
 
     def turn_points(self, points: Array, back: bool = False) -> Array:
-        """Return points or directions (..., 2) of the toolkit's frame as they lie in the frame of seating.
+        """Return points or directions (..., 2) given in the toolkit's frame, in the closing frame.
 
-        With ``back``, return those of the frame of seating as they lie in the toolkit's frame.
+        With ``back``, the other way: from the closing frame to the toolkit's frame.
         """
         cosine, sine = QUARTERS[self.quarters]
         sine = -sine if back else sine
         return np.asarray(points @ np.array([[cosine, sine], [-sine, cosine]]) + 0.0)
 
     def map_from_toolkit(self, config: Array) -> Array:
-        """Return a configuration (4,) in the frame of seating (theta, x,
-        y, jaw separation S), in radians and mm.
+        """Return a configuration (4,) in the closing frame: theta in radians, x, y and the separation S in
+        mm.
 
-        ``config`` is the same in the toolkit's frame: theta, x, y and travel.
+        ``config`` is the configuration in the toolkit's frame: theta, x, y and travel.
         """
         return np.array(
             [config[0] + self.quarters * np.pi / 2, *self.turn_points(config[1:3]), self.sign * config[3]]
         )
 
     def map_to_toolkit(self, configs: Array) -> Array:
-        """Return configurations (..., 4) of theta, x, y and the jaw
-        separation S as theta, x, y and travel in the toolkit's frame.
+        """Return configurations (..., 4) in the toolkit's frame: theta in radians, x, y and travel in mm.
+
+        ``configs`` are the configurations in the closing frame: theta, x, y and the separation S.
         """
         out = np.array(configs)
         out[..., 0] -= self.quarters * np.pi / 2
@@ -105,11 +107,11 @@ class ClosingFrame:
 
 @frozen(eq=False)
 class CommonToPatterns:
-    """The data that patterns of all fixtures share whose pegs stand on the same carriers.
+    """The data that are equal in the patterns of all fixtures whose pegs stand on the same carriers.
 
     Parameters
     ----------
-    travel : of the carrier that moves.
+    travel : range and direction of the carrier that moves.
     frame, right, radii, numbers, half_plane : as in ``Pattern``.
     """
 
@@ -123,8 +125,14 @@ class CommonToPatterns:
     @classmethod
     @lru_cache(maxsize=TOOLKITS)
     def from_toolkit(cls, toolkit: Toolkit, names: tuple[str, ...]) -> CommonToPatterns:
-        """Return the common data of patterns whose pegs stand on carriers
-        with these names, in the order of the pegs.
+        """Return the common data of patterns.
+
+        ``names`` are the names of the carriers on which the pegs stand, one for each peg.
+
+        Raises
+        ------
+        InputError
+            As :func:`refuse_unseated`.
         """
         refuse_unseated(toolkit)
         standing_on = [toolkit.find_carrier(name) for name in names]
@@ -145,13 +153,13 @@ class CommonToPatterns:
 
 
 def refuse_unseated(toolkit: Toolkit) -> None:
-    """Raise InputError for a toolkit whose seats are not computed.
+    """Raise InputError for a toolkit for which seats cannot be computed.
 
     Raises
     ------
     InputError
-        With two clamps, straps or flat jaws, where no peg stands still, for pegs with a flat, and for pegs
-        without a radius.
+        For two clamps, straps or flat jaws; where no peg stands still; for pegs with a flat; for pegs of
+        radius 0.
     """
     words = "the seating is worked out only"
     if toolkit.flat_jaws is not None:
@@ -183,19 +191,20 @@ BEYOND = 1.0
 
 @define(frozen=True, eq=False)
 class Pattern:
-    """A fixture's pegs in their closing frame: four, or two with a wall; in a subset two or three.
+    """A fixture's pegs in the closing frame: four, or two and a wall. The pattern of a subset has two or
+    three.
 
     Parameters
     ----------
-    pegs : (4, 2) their places in mm at separation 0.
-    right : (4,) 1 for those that move, such as pegs of the right jaw, 0 for others.
+    pegs : (K, 2) places of the pegs in mm at separation 0.
+    right : (K,) 1 for pegs that move, such as those of the right jaw, 0 for pegs that stand still.
     radii : in mm, of the pegs that stand still and of those that move.
-    stop, widest : the smallest and the largest separation in mm, -inf and inf where nothing stops what moves.
-    frame : leads to the toolkit's frame and back.
-    numbers : their indices (4,) in the fixture's pegs.
-    half_plane : the side of a wall on which the part is: the unit vector into it, along x or y, and the
-        wall's coordinate along that in mm. None without a wall.
-    gap : least distance in mm along x that pegs of both jaws keep, None where none is asked for.
+    stop, widest : the least and the largest separation in mm; -inf and inf where there is no limit.
+    frame : the change from the toolkit's frame to the closing frame.
+    numbers : for each peg its index among the fixture's pegs.
+    half_plane : (x, y, coordinate) of a wall: the unit vector from the wall to the part, along x or y, and
+        the wall's coordinate along that vector in mm. None without a wall.
+    gap : least distance in mm along x between pegs of the two jaws; None where none is prescribed.
     """
 
     pegs: Array
@@ -235,9 +244,11 @@ class Pattern:
         return evolve(pattern, stop=stop, widest=widest)
 
     def find_gap_limits(self, gap: float) -> tuple[float, float]:
-        """Return the stop and the widest separation in mm that a gap in mm between pegs of both jaws leaves.
+        """Return (1) the least and (2) the largest separation in mm at which pegs of the two jaws keep a gap
+        in mm.
 
-        Jaws that close have a stop (and inf), jaws that clamp by opening a widest separation (and -inf).
+        Jaws that clamp by closing have a least separation only, and the largest is inf. Jaws that clamp by
+        opening have a largest separation only, and the least is -inf.
         """
         left, right = self.along_x
         if self.frame.sign > 0.0:
@@ -245,10 +256,10 @@ class Pattern:
         return -inf, min(left) - max(right) - gap
 
     def find_locator_limits(self, separation: float) -> tuple[float, float]:
-        """Return the nearest separations below and above a given one at
-        which a clamp's tip meets a locator or the wall.
+        """Return the separations below and above ``separation`` (mm) at which a clamp's tip first meets a
+        locator or the wall.
 
-        -inf and inf where it meets none.
+        They are -inf and inf where it meets none.
         """
         stop, widest = -inf, inf
         for tip in self.pegs[self.right == 1]:
@@ -271,28 +282,31 @@ class Pattern:
         return stop, widest
 
     def find_least_separation(self, diameter: float) -> float:
-        """Return the smallest separation in mm to which a descent leads: the stop, if there is one.
+        """Return the smallest separation in mm down to which a descent is followed: the stop, where there is
+        one.
 
-        Without a stop it is so small that no moving peg can touch a part of this diameter together with a
-        standing one.
+        Without a stop it is so small that a part of this diameter (mm) cannot touch a peg that moves and a
+        peg that stands still at once.
         """
         left, right = self.along_x
         return max(self.stop, min(left) - max(right) - diameter - sum(self.radii) - BEYOND)
 
     @property
     def along_x(self) -> tuple[list[float], list[float]]:
-        """The x coordinates in mm of the pegs that stand still, and of those that move at separation 0."""
+        """The x coordinates in mm of (1) the pegs that stand still and (2) the pegs that move, at separation
+        0.
+        """
         left, right = (self.pegs[self.right == side, 0].tolist() for side in (0, 1))
         return left, right
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
-        """The numbers (4,) of the pegs that stand still, then of those that move, each from left to right."""
+        """The indices (K,) of the pegs that stand still, then of those that move, both from left to right."""
         return np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
 
     def make_key(self) -> tuple[object, ...]:
-        """Return a key that patterns share if they differ only by a shift
-        of all pegs and by the pegs' order.
+        """Return a key that is equal for patterns that differ only by a shift of all pegs or by the order of
+        the pegs.
         """
         order, pegs = self.order.tolist(), self.pegs.tolist()
         (x, y), sides = pegs[order[0]], [int(self.right[k]) for k in order]
@@ -309,16 +323,16 @@ class Pattern:
         return (*self.radii, *sides, *steps.tolist())
 
     def is_reachable(self, separation: Any, slack: float = 0.0) -> Any:
-        """Return whether separations, a number or an array, are between
-        the stop and the widest, ``slack`` mm inside both.
+        """Return whether a separation, or each of an array, is more than ``slack`` mm inside the range of
+        separations.
         """
         return (separation > self.stop + slack) & (separation < self.widest - slack)
 
     def place_pegs(self, configs: Array) -> Array:
-        """Return the places (N, K, 2) of the K pegs in the part's frame,
-        in configurations (N, 4) of theta, x, y and S.
+        """Return the places (N, K, 2) of the K pegs in the part's frame in mm, relative to the centre of the
+        part's box.
 
-        S is the jaw separation in mm.
+        ``configs`` (N, 4) are theta in radians, x, y and the jaw separation S in mm.
         """
         x = self.pegs[:, 0] + self.right * configs[:, 3:4] - configs[:, 1:2]
         y = self.pegs[:, 1] - configs[:, 2:3]
@@ -338,16 +352,17 @@ SLACK = 1e-6
 
 @frozen(eq=False, slots=False)
 class PegSubset:
-    """Some pegs of a pattern in a frame of their own: the first at
-    the origin, and the first that moves at x = 0.
+    """Some pegs of a pattern, in a frame of their own.
+
+    In this frame the first peg is at the origin, and the first peg that moves is at x = 0 at separation 0.
 
     Parameters
     ----------
     whole : the pattern.
-    numbers : of the pegs in it.
+    numbers : indices of these pegs in the pattern.
     sides : for each peg 1 if it moves, else 0.
     places : of the pegs in mm.
-    shift : (4,) added to configurations to make them those of the pattern.
+    shift : (4,) is added to configurations of the subset to get those of the pattern.
     """
 
     whole: Pattern
@@ -358,7 +373,7 @@ class PegSubset:
 
     @classmethod
     def from_pattern(cls, pattern: Pattern, numbers: Sequence[int]) -> PegSubset:
-        """Return the subset of a pattern's pegs with these numbers."""
+        """Return the subset of the pegs with the indices ``numbers``, in any order."""
         pegs, right, beside = list_peg_places(pattern)
         # Pegs of each jaw from left to right, those that stand still before those that move.
         start = {right[k]: k for k in reversed(numbers)}
@@ -370,19 +385,19 @@ class PegSubset:
 
     @property
     def is_of_a_jaw(self) -> bool:
-        """Whether all pegs are of one jaw: all move, or none."""
+        """Whether all pegs belong to one jaw: all move, or all stand still."""
         return self.sides[0] == self.sides[-1]
 
     @cached_property
     def key(self) -> tuple[object, ...]:
-        """A key that subsets share if their pegs stand alike; their own patterns then agree."""
+        """A key that is equal for subsets whose pegs have the same places, radii and gap, so that their
+        patterns agree.
+        """
         return self.whole.radii, self.whole.frame.sign, self.whole.gap, self.sides, self.places
 
     @cached_property
     def pattern(self) -> Pattern:
-        """The pattern of these pegs alone, with no other stop than the
-        gap, which patterns of more pegs keep too.
-        """
+        """The pattern of these pegs alone. The gap limits its separations, but no other stop does."""
         whole, alone = self.whole, (np.array(self.places), np.array(self.sides, dtype=np.int64))
         made = Pattern(*alone, whole.radii, -inf, inf, whole.frame, self.numbers, None, whole.gap)
         if whole.gap is None or self.is_of_a_jaw:
@@ -392,7 +407,11 @@ class PegSubset:
 
     @cached_property
     def numbers_and_shift(self) -> tuple[float, ...]:
-        """The columns JAW, NAMES and SHIFT of the subset, see ``kernels.seating.gathering``."""
+        """The columns JAW, NAMES and SHIFT of ``kernels.seating.gathering``.
+
+        These are the jaw (0 or 1, or -1 for pegs of both jaws), the pegs' indices filled up to four with -1,
+        and x, y and S of the shift.
+        """
         jaw = self.sides[0] if self.is_of_a_jaw else -1
         names = *self.numbers, *[-1] * (4 - len(self.numbers))
         return (jaw, *names, *self.shift[1:].tolist())
@@ -400,8 +419,10 @@ class PegSubset:
 
 @lru_cache(maxsize=SIDES)
 def list_peg_places(pattern: Pattern) -> tuple[list[list[float]], list[int], list[list[tuple[float, float]]]]:
-    """Return the places of a pattern's pegs, their sides, and
-    beside[i][j] = (x, y) of peg j from peg i, rounded, in mm.
+    """Return for the pegs of a pattern (1) their places in mm, (2) 1 for each that moves, else 0, (3) their
+    differences.
+
+    The third result is beside[i][j] = (x, y) of peg j minus peg i, rounded to ``DECIMALS``.
     """
     pegs = pattern.pegs.tolist()
     return (
@@ -418,8 +439,10 @@ def round_length(x: float) -> float:
 
 @lru_cache(maxsize=SIDES)
 def list_subsets(pattern: Pattern) -> tuple[PegSubset, ...]:
-    """Return all subsets of three pegs, pairs of pegs of both jaws,
-    and pairs of a jaw that has no third peg; kept.
+    """Return the subsets of a pattern's pegs in which a part can be in balance or fixed; cached.
+
+    These are all pairs of one peg of each jaw, the two pegs of a jaw that has exactly two, and all sets of
+    three pegs.
     """
     right, every = pattern.right.tolist(), range(len(pattern.right))
     two = [(i, j) for i, j in combinations(every, 2) if right[i] != right[j] or right.count(right[i]) == 2]
@@ -428,7 +451,7 @@ def list_subsets(pattern: Pattern) -> tuple[PegSubset, ...]:
 
 @lru_cache(maxsize=SIDES)
 def list_jaw_subsets(pattern: Pattern) -> dict[int, PegSubset]:
-    """Return the subset of all pegs of each jaw, by whether it moves (1) or not (0); kept."""
+    """Return for each jaw (0 stands still, 1 moves) the subset of all its pegs; cached."""
     sides = dict.fromkeys(pattern.right.tolist())
     return {
         side: PegSubset.from_pattern(pattern, np.flatnonzero(pattern.right == side).tolist())

@@ -69,14 +69,16 @@ LEAST_SHARE = 1e-9
 
 @frozen(eq=False)
 class SelfMotion:
-    """Configurations of one separation through which the part can move while some contacts stay.
+    """A motion of the part while the separation stays the same and some contacts last, as a sequence of
+    configurations.
 
     Parameters
     ----------
-    configs : (N, 4) theta, x, y, S along it.
-    contacts : (peg, piece) numbers of the contacts that stay.
-    is_closed : whether the last configuration is beside the first.
-    across : (2,) direction in which the part gives way to both sides, or None where it does not.
+    configs : (N, 4) theta, x, y, S along the motion.
+    contacts : pairs (peg, piece) of the contacts that last.
+    is_closed : whether the motion is a loop: the last configuration is next to the first.
+    across : (2,) direction in x and y in which the part is free to leave the motion to both sides as the
+        separation falls; None where there is none.
     """
 
     configs: Array
@@ -87,15 +89,18 @@ class SelfMotion:
 
 @frozen
 class OpposedLines:
-    """Two parallel straight pieces with opposite normals, for a peg that stands still and one that moves.
+    """Two parallel straight pieces with opposite outward normals.
+
+    The first is for a peg that stands still, the second for a peg that moves.
 
     Parameters
     ----------
-    pieces : their numbers.
-    width : from the first to the second in mm along the second's normal, negative where they face each other.
-    angle : of that normal in radians.
-    low, high : parameters of the first in mm between which both are beside each other; low > high where they
-        nowhere are.
+    pieces : indices of the two pieces.
+    width : distance in mm from the first to the second along the second's normal, negative where the normals
+        point towards each other.
+    angle : direction of the second's normal in radians.
+    low, high : the two lie side by side between these parameters of the first piece, in mm; low > high where
+        they do not.
     """
 
     pieces: tuple[int, int]
@@ -133,17 +138,18 @@ def make_sliding_motion(
     s: float,
     contacts: list[PegOnPiece],
 ) -> list[SelfMotion]:
-    """Return the motion of a part that slides on a peg along a line,
-    as a list of one, empty where it is not possible.
+    """Return the motion of a part that slides along a straight piece on a peg, as a list with one element.
+
+    The list is empty where the slide is too short, or the separation out of the pattern's range.
 
     Parameters
     ----------
-    theta : orientation in radians.
+    theta : orientation of the part in radians.
     start : place of the peg in the closing frame, in mm.
-    line : row of the piece.
-    low, high : parameters in mm between which the peg slides.
+    line : row (10,) of the piece.
+    low, high : parameters on the piece in mm between which the peg slides.
     s : separation in mm.
-    contacts : see ``SelfMotion``.
+    contacts : pairs (peg, piece) of the contacts that last.
     """
     if high - low < SHORTEST or not pattern.is_reachable(s, SAME):
         return []
@@ -159,13 +165,15 @@ def make_sliding_motion(
 def make_turning_motion(
     pattern: Pattern, row: Array, center: Point, s: float, contacts: list[PegOnPiece], across: Point | None
 ) -> list[SelfMotion]:
-    """Return the motion of a part that turns about an arc's centre,
-    as a list of one, empty where S is out of reach.
+    """Return the motion of a part that turns a whole turn about the centre of an arc, as a list with one
+    element.
+
+    The list is empty where the separation is out of the pattern's range.
 
     Parameters
     ----------
-    row : of the arc.
-    center : place of its centre in the closing frame, in mm.
+    row : row (10,) of the arc.
+    center : place of the arc's centre in the closing frame, in mm.
     s : separation in mm.
     contacts, across : see ``SelfMotion``.
     """
@@ -178,7 +186,11 @@ def make_turning_motion(
 
 
 def find_motions_on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
-    """Return self-motions on two pegs that press parallel faces, or arcs of one centre, along one line."""
+    """Return the motions of a part at constant separation between two pegs, one of each jaw, that press along
+    one line.
+
+    The pegs touch parallel faces, along which the part slides, or arcs of one centre, about which it turns.
+    """
     out, pegs, right = list[SelfMotion](), pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in product(range(len(pegs)), repeat=2):
         if not right[i] < right[j]:
@@ -212,9 +224,11 @@ def find_motions_on_one_line(boundary: ObstacleBoundary, pattern: Pattern) -> li
 def find_motions_on_parallel_lines(
     boundary: ObstacleBoundary, pattern: Pattern, slides: Array, given: HeldPart
 ) -> list[SelfMotion]:
-    """Return self-motions on parallel faces: the middle one of three pegs presses against the outer two.
+    """Return the motions of a part at constant separation between three pegs that touch parallel faces, along
+    which it slides.
 
-    ``slides`` (S, 7) are those of the two pegs of one jaw.
+    The middle peg presses against the two outer ones. ``slides`` (S, 7) are pairs of contacts of two pegs of
+    one jaw, see ``kernels.seating.slides``.
     """
     if not len(slides):
         return []
@@ -236,7 +250,11 @@ def find_motions_on_parallel_lines(
 
 
 def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> list[SelfMotion]:
-    """Return self-motions on two pegs of one jaw and one of the other, all on arcs of one centre."""
+    """Return the motions of a part at constant separation between three pegs on arcs of one centre, about
+    which it turns.
+
+    Two pegs belong to one jaw, one to the other.
+    """
     out, pegs, right = list[SelfMotion](), pattern.pegs.tolist(), pattern.right.tolist()
     pairs = [(p, q) for p, q in combinations(range(len(right)), 2) if right[p] == right[q]]
     for ring, (p, q) in product(boundary.rings, pairs):
@@ -266,9 +284,10 @@ def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> 
 
 
 def is_balanced(normals: list[Point], moves: list[int]) -> bool:
-    """Return whether forces at three pegs with concurrent normals balance the jaw force without pulling.
+    """Return whether forces at three pegs that only press can balance the jaw force.
 
-    ``moves`` is 1 for a peg that moves, else 0.
+    ``normals`` are the outward normals of the three contacts, whose lines meet in one point; their lengths do
+    not matter. ``moves`` is 1 for a peg that moves, else 0.
     """
     (ax, ay), (bx, by), (cx, cy) = normals
     # As much of each as the other two span, which leaves nothing over, per unit of what presses along x.
@@ -278,7 +297,11 @@ def is_balanced(normals: list[Point], moves: list[int]) -> bool:
 
 
 def find_circle_crossings(one: Point, r1: float, two: Point, r2: float) -> list[Point]:
-    """Return the points at distance ``r1`` from one place and ``r2`` from another, in mm: two, or none."""
+    """Return the points where a circle around ``one`` with radius r1 meets a circle around ``two`` with
+    radius r2, in mm.
+
+    The list has two points (equal where the circles touch), or none.
+    """
     dx, dy = two[0] - one[0], two[1] - one[1]
     d = hypot(dx, dy)
     along = (d * d + r1 * r1 - r2 * r2) / (2.0 * d)
@@ -294,7 +317,10 @@ NO_MOTIONS = SelfMotions.allocate(0, 0)
 
 
 def find_pattern_motions(found: Sequence[tuple[PegSubset, SelfMotions]]) -> SelfMotions:
-    """Return the self-motions of all subsets with configurations and pegs of their common pattern."""
+    """Return the self-motions of all subsets of a pattern's pegs together.
+
+    Their configurations and peg numbers are changed from those of the subsets to those of the pattern.
+    """
     some = [(subset, motions) for subset, motions in found if len(motions.counts)]
     if not some:
         return NO_MOTIONS
@@ -308,7 +334,7 @@ def find_pattern_motions(found: Sequence[tuple[PegSubset, SelfMotions]]) -> Self
 
 
 def join_manifolds(parts: Sequence[Manifolds]) -> Manifolds:
-    """Return the sets of all parts, in order."""
+    """Return the sets of all ``parts`` in one ``Manifolds``, in the same order."""
     rows, configs, _, closed, across = (
         np.concatenate(same) for same in zip(NO_MANIFOLDS, *parts, strict=True)
     )
@@ -320,11 +346,11 @@ def join_manifolds(parts: Sequence[Manifolds]) -> Manifolds:
 
 @define(frozen=True, eq=False, slots=False)
 class ManifoldFinder:
-    """A finder of the equilibrium manifolds of a pattern on a part.
+    """A finder of loose sets: motions along which a part rests anywhere, for one pattern and one part.
 
     Parameters
     ----------
-    boundary, pattern : of the part and the pegs.
+    boundary, pattern : boundary of the part, and pegs.
     """
 
     boundary: ObstacleBoundary
@@ -337,24 +363,26 @@ class ManifoldFinder:
 
     @cached_property
     def lines(self) -> list[int]:
-        """The numbers of the straight pieces."""
+        """The indices of the straight pieces."""
         return np.flatnonzero(self.rows[:, IS_ARC] == 0.0).tolist()
 
     @cached_property
     def around(self) -> Obstacles:
-        """The part and the pegs as kernels take them, with an arbitrary
-        size and stop, which do not count here.
+        """The part and the pegs in the form that the kernels take; its size and stop are arbitrary and not
+        used.
         """
         return self.boundary.make_obstacles(self.pattern, 1.0, 0.0)
 
     @property
     def obstacles(self) -> int:
-        """The number of pegs and walls."""
+        """The number of pegs, plus 1 for a wall."""
         return len(self.pattern.pegs) + (self.pattern.half_plane is not None)
 
     def find_free_motions(self, motions: Sequence[SelfMotion]) -> SelfMotions:
-        """Return those self-motions along which the part is free
-        somewhere, with the clearances of the pegs along them.
+        """Return those motions on which the part is free in at least one configuration, with the pegs'
+        clearances.
+
+        The part is free where no peg enters it.
         """
         every = SelfMotions.allocate(len(motions), sum(len(motion.configs) for motion in motions))
         if not motions:
@@ -370,7 +398,10 @@ class ManifoldFinder:
         return every.take_first(count)
 
     def cut_into_manifolds(self, motions: SelfMotions) -> Manifolds:
-        """Return the free runs of self-motions, as sets, at separations between the stop and the widest."""
+        """Return the stretches of self-motions on which no peg enters the part, each as one set.
+
+        Motions with a separation outside the pattern's range are left out.
+        """
         if not len(motions.counts):
             return NO_MANIFOLDS
         # At least every second configuration hinders between runs; each has two ends besides.
@@ -384,8 +415,9 @@ class ManifoldFinder:
         )
 
     def drop_contained(self, found: Manifolds) -> Manifolds:
-        """Return the sets without those that lie in a set with as many
-        contacts or more, in descending order of contacts.
+        """Return the sets without those that are part of another set with as many contacts or more.
+
+        They are in descending order of the number of contacts.
         """
         if not len(found.rows):
             return found

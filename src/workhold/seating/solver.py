@@ -59,8 +59,9 @@ NO_PASS = "The pass at which its cage opens could not be settled: from where on 
 
 @define(eq=False)
 class SeatingSolver:
-    """A solver of patterns of pegs on a part, each once, for one
-    fixture (:meth:`solve`) or many (:meth:`solve_all`).
+    """A solver for the seating of one fixture (:meth:`solve`) or many (:meth:`solve_all`) on a part.
+
+    Fixtures whose pegs form the same pattern share the work, as each pattern is solved once.
 
     Parameters
     ----------
@@ -79,17 +80,17 @@ class SeatingSolver:
         self.outline = Silhouette.from_workpiece(self.workpiece)
 
     def make_closing(self, pattern: Pattern, turned_over: bool) -> ClosingMotion:
-        """Return the jaws of a pattern about the part, as drawn or turned over."""
+        """Return the closing motion of a pattern's jaws and the part, as drawn or turned over."""
         if pattern.radii not in self.boundaries:
             self.boundaries[pattern.radii] = ObstacleBoundary.from_workpiece(self.workpiece, pattern.radii)
         boundary = self.boundaries[pattern.radii]
         return ClosingMotion(boundary.turned_over if turned_over else boundary, pattern, self.outline.arm)
 
     def find_join_trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[JoinTree, JoinTree]:
-        """Return the join trees of the part as drawn, with further seats
-        (24,) ``missed``, and of the part turned over.
+        """Return the join trees of a pattern: (1) for the part as drawn, (2) for the part turned over.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        ``missed`` are candidates (24,) that are added to the seats of the first. A candidate is a
+        configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         out = list[JoinTree]()
         for closing in (self.make_closing(pattern, turned_over) for turned_over in (False, True)):
@@ -100,7 +101,7 @@ class SeatingSolver:
         return out[0], out[1]
 
     def solve(self, fixture: Fixture, with_cage: bool = True) -> Seating:
-        """Return the seating of a fixture.
+        """Return from how wide open a fixture catches the part, and where else the part can rest.
 
         Parameters
         ----------
@@ -115,14 +116,14 @@ class SeatingSolver:
         return self.make_seating(fixture, Pattern.from_fixture(fixture, self.toolkit), with_cage)
 
     def make_seating(self, fixture: Fixture, pattern: Pattern, with_cage: bool) -> Seating:
-        """Return the seating of a fixture in its pattern."""
+        """Return the seating of a fixture whose pattern is ``pattern``."""
         return self.place_in_pattern(fixture, pattern).make_seating(with_cage)
 
     def place_in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
-        """Return a fixture in its solved pattern.
+        """Return a fixture with the join trees of its pattern.
 
-        The pattern is solved once; a fixture that is not among its seats is added to them, and the pattern
-        solved again.
+        The pattern is solved the first time. Where the fixture is missing among the seats found, it is added
+        to them, and the pattern is solved again.
         """
         key = pattern.make_key()
         if key not in self.solved:
@@ -137,10 +138,13 @@ class SeatingSolver:
     def solve_all(
         self, fixtures: Iterable[Fixture], with_cage: bool = True, threads: int | None = None
     ) -> list[Seating]:
-        """Return the seatings of many fixtures, in their order; patterns are shared out among threads.
+        """Return the seatings of fixtures, in their order.
 
-        ``threads`` None stands for a thread on each processor; the seatings do not depend on it. For
-        ``with_cage`` see :meth:`solve`.
+        Parameters
+        ----------
+        with_cage : see :meth:`solve`.
+        threads : number of threads, among which the patterns are shared out; None for one on each processor.
+            The result does not depend on it.
 
         Raises
         ------
@@ -161,8 +165,8 @@ class SeatingSolver:
         progress: Callable[[float], None] | None = None,
         cancel: Event | None = None,
     ) -> list[Seating | None]:
-        """Return the seatings of fixtures, in their order; None for
-        fixtures that were left when somebody cancelled.
+        """Return the seatings of fixtures, in their order; None for each one not begun when ``cancel`` was
+        set.
 
         Parameters
         ----------
@@ -182,8 +186,9 @@ class SeatingSolver:
         made: list[Seating | None] = [None] * len(given)
 
         def make(numbers: list[int]) -> int:
-            """Make the seatings of fixtures on one pattern, given by their
-            numbers; return how many were made.
+            """Make the seatings of the fixtures with these numbers, which share one pattern.
+
+            Write them into ``made``, and return how many were made: 0 once ``cancel`` is set.
             """
             if cancel is not None and cancel.is_set():
                 return 0
@@ -210,13 +215,13 @@ class SeatingSolver:
 
 @define(frozen=True, eq=False)
 class FixtureInPattern:
-    """A fixture in a solved pattern, whose pegs may be shifted and in another order.
+    """A fixture and the solved pattern of its pegs, which may be shifted and in another order.
 
     Parameters
     ----------
-    pattern, known : the fixture's pattern, and the one that was solved.
-    trees : the join trees of the part as drawn and turned over.
-    missed : (24,) candidates of fixtures that were not found among the seats, and so were added to them.
+    pattern, known : the fixture's own pattern, and the equal pattern that was solved.
+    trees : join trees of the part as drawn, and turned over.
+    missed : candidates (24,) of fixtures that were missing among the seats found, and were added.
     """
 
     solver: SeatingSolver
@@ -228,7 +233,9 @@ class FixtureInPattern:
 
     @cached_property
     def shift(self) -> Array:
-        """The shift (4,) by which configurations of the solved pattern become the fixture's."""
+        """The vector (4,) to add to configurations of the solved pattern to get those of the fixture's own
+        pattern.
+        """
         # Of the pegs that stand still, and of those that move, the first.
         (still, moving), (there, then) = (
             p.pegs[p.order[[0, -int(p.right.sum())]]] for p in (self.pattern, self.known)
@@ -238,14 +245,14 @@ class FixtureInPattern:
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
-        """The index (K,) of each solved peg among the fixture's pegs."""
+        """For each of the K pegs of the solved pattern, its index among the fixture's pegs (K,)."""
         out = np.empty(len(self.known.pegs), np.int64)
         out[self.known.order] = np.array(self.pattern.numbers)[self.pattern.order]
         return out
 
     @cached_property
     def own(self) -> Array:
-        """The configuration (4,) of the fixture in the frame of seating."""
+        """The configuration (4,) of the part in the fixture, in the closing frame."""
         pose = self.fixture.pose
         x, y = pose.apply(*self.solver.workpiece.center)
         return self.pattern.frame.map_from_toolkit(
@@ -254,14 +261,15 @@ class FixtureInPattern:
 
     @cached_property
     def place(self) -> int | None:
-        """The number of the strict seat that is the fixture; None if none is."""
+        """The index of the seat that is the fixture itself; None where it is not among the seats."""
         return self.find_own_candidate(self.trees[0].seats)
 
     def find_own_candidate(self, rows: Array) -> int | None:
-        """Return the index of the candidate (N, 24) that is the fixture,
-        within ``AGREES`` mm; None if none is.
+        """Return the index of the candidate in ``rows`` (N, 24) that is the fixture itself, within ``AGREES``
+        mm.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        None where no candidate is. A candidate is a configuration with contacts and forces that may be an
+        equilibrium, see ``kernels.seating.columns``.
         """
         configs = rows[:, CONFIG] + self.shift
         away = measure_distances(configs, self.own, self.solver.outline.arm) + np.abs(
@@ -270,19 +278,21 @@ class FixtureInPattern:
         return int(np.argmin(away)) if len(away) and away.min() <= AGREES else None
 
     def make_candidate(self) -> Array:
-        """Return the fixture as a candidate (24,) of the solved pattern.
+        """Return the fixture itself as a candidate (24,) of the solved pattern.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        A candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         closing, faces = self.solver.make_closing(self.known, False), [peg.face for peg in self.fixture.pegs]
         touched = [faces[number] for number in self.order]
         return to_candidate(closing.boundary, self.known, self.own - self.shift, touched, closing.size)
 
     def compute_poses(self, configs: Array, turned_over: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
-        """Return the poses of configurations (N, 4) in the toolkit's
-        frame: theta in degrees (0 to 360), x and y in mm.
+        """Return the poses of N configurations in the toolkit's frame, as arrays (N,): theta in [0, 360)
+        degrees, x, y in mm.
 
-        Where ``turned_over`` (N,) is True, the pose is that of the part turned over.
+        ``configs`` (N, 4) are in the closing frame. Where ``turned_over`` (N,) is True, the pose is that of
+        the part turned over.
         """
         x, y = self.solver.workpiece.center
         across = np.where(turned_over, -x, x)
@@ -292,9 +302,10 @@ class FixtureInPattern:
         return theta * 180.0 / pi, left[:, 1] - (c * across - s * y), left[:, 2] - (s * across + c * y)
 
     def make_contacts(self, rows: Array) -> list[tuple[SeatContact, ...]]:
-        """Return the contacts of each candidate (N, 24), with the fixture's pegs.
+        """Return the contacts of each candidate in ``rows`` (N, 24), by the indices of the fixture's pegs.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        A candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         # Contacts with a wall come after those of the pegs. Turned over, a part has the same pieces.
         numbers = self.order.tolist() + [
@@ -305,7 +316,9 @@ class FixtureInPattern:
         return self.solver.make_closing(self.known, False).boundary.make_contacts(pegs, pieces)
 
     def make_seats(self) -> tuple[Seat, ...]:
-        """Return all seats, as drawn and turned over, in ascending order of separation."""
+        """Return all poses in which the part can rest, as drawn and turned over, in ascending order of
+        separation.
+        """
         rests = RestPoses.from_join_trees(
             self.trees, self.solver.make_closing(self.known, False).boundary, len(self.known.pegs)
         )
@@ -338,8 +351,9 @@ class FixtureInPattern:
         return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
 
     def make_seating(self, with_cage: bool) -> Seating:
-        """Return the seating of the fixture, which must be among the
-        seats; with cage and placing if asked for.
+        """Return the seating of the fixture, with cage and placing where ``with_cage`` is True.
+
+        The fixture must be among the seats (``place`` is not None).
         """
         tree = self.trees[0]
         place = self.place
@@ -379,15 +393,15 @@ class FixtureInPattern:
         ).with_toolkit(self.solver.toolkit)
 
     def make_pass(self, join: CageJoin) -> CagePass:
-        """Return a join as a pass in the toolkit's frame."""
+        """Return the pass of a join in the toolkit's frame."""
         config = join.candidate[CONFIG] + self.shift
         separation = self.pattern.frame.sign * float(config[3])
         pose = Pose(*(float(value[0]) for value in self.compute_poses(config[None], np.zeros(1, np.bool_))))
         return CagePass(pose, separation, self.make_contacts(join.candidate[None])[0])
 
     def make_caging_set(self, seat: Array, join: CageJoin) -> CagingSet:
-        """Return the caging set of the fixture's seat (4,), with the jaws
-        opened by slightly less than to a pass.
+        """Return the caging set of a seat (4,), with the jaws opened by slightly less than up to the pass
+        ``join``.
         """
         closing, top = self.solver.make_closing(self.known, False), join.candidate[CONFIG]
         opening = (top[3] - seat[3]) * (1.0 - LESS)
@@ -397,7 +411,12 @@ class FixtureInPattern:
         return CagingSet(closing, np.array(seat), seats, opening, to_pass, self.solver.outline.arm)
 
     def measure_freedom(self, seat: Array, join: CageJoin) -> tuple[Cage, float]:
-        """Return the cage in the toolkit's frame, in degrees and mm, and the placing in mm."""
+        """Return two results for a seat (4,): the cage in the toolkit's frame (degrees and mm), and the
+        placing in mm.
+
+        The placing is how far off its seat the part can be put anywhere and still come home; see
+        ``CagingSet.placing``.
+        """
         around = self.make_caging_set(seat, join)
         turns, across, along = around.extents.reach
         corners = self.pattern.frame.turn_points(np.array(list(product(across, along))), back=True)
@@ -405,10 +424,11 @@ class FixtureInPattern:
         return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
 
     def find_sticking_friction(self, row: Array) -> float:
-        """Return the least friction coefficient at which the part can
-        stick near the seat ``row`` (24,), inf for none.
+        """Return the least friction coefficient at which the part can stick near a seat; inf where it never
+        can.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        ``row`` (24,) is the seat as a candidate. A candidate is a configuration with contacts and forces that
+        may be an equilibrium, see ``kernels.seating.columns``.
         """
         boundary = self.solver.make_closing(self.known, False).boundary
         places, normals, moves = find_contact_normals(boundary, self.known, row)
@@ -416,10 +436,10 @@ class FixtureInPattern:
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
-    """Return the seatings of fixtures: from which opening each catches the part, and where else it can rest.
+    """Return for each fixture up to which opening it catches the part, and where else the part can rest.
 
-    Each is a ``model.seating.Seating``. With two clamps the part is put in by hand, and each is a
-    ``seating.clamping.HandLoading``, which says how.
+    Each result is a ``model.seating.Seating``. For toolkits with two clamps, into which the part is put by
+    hand, each result is a ``seating.clamping.HandLoading``, which says how.
 
     Parameters
     ----------

@@ -65,15 +65,16 @@ NO_SLIDES = np.zeros((0, SLIDE_LENGTH))
 
 @frozen(eq=False, slots=False)
 class JawCurves:
-    """The two-contact curves of the pegs of one jaw, in the frame of their subset.
+    """The two-contact curves of the pegs of one jaw: all poses in which two contacts with these pegs touch.
 
     Parameters
     ----------
-    rows, curves, reals : ``pairs``, ``curves`` and ``reals`` of ``HeldPart``, with pegs and curves counted
+    rows, curves, reals : ``pairs``, ``curves`` and ``reals`` of ``HeldPart``; pegs and curves are numbered
         from 0.
-    cells, middles : (C, 7) and (C, 19) of all curves, one curve after the other, see
+    cells, middles : (C, 7) and (C, 19) tables of the C cells of all curves, one curve after the other, see
         ``kernels.seating.two_contact_curves``.
-    slides : (S, 7) pairs of contacts at one orientation only, see ``kernels.seating.slides``.
+    slides : (S, 7) pairs of contacts on parallel faces, which are possible at one orientation only, see
+        ``kernels.seating.slides``.
     """
 
     rows: Array
@@ -85,9 +86,9 @@ class JawCurves:
 
     @classmethod
     def from_boundary(cls, boundary: ObstacleBoundary, pegs: Array, right: NDArray[np.int64]) -> JawCurves:
-        """Return the two-contact curves of the pegs (K, 2) of a jaw, the first at the origin.
+        """Return the two-contact curves of K pegs of a jaw at places (K, 2) in mm, the first at the origin.
 
-        ``right`` (K,) is 1 for pegs that move, else 0.
+        ``right`` (K,) is 1 for pegs that move, else 0; it is the same for all pegs.
         """
         made, slides = [make_pocket_rows(boundary, right)], list[tuple[float, ...]]()
         integers, reals, stretches = (
@@ -135,9 +136,9 @@ class JawCurves:
         return cls(rows, *curves, cells, known, np.array(slides).reshape(-1, SLIDE_LENGTH))
 
     def number_rows_by_pegs(self, names: Array) -> tuple[Array, Array]:
-        """Return copies of rows and slides with pegs renumbered: peg k becomes ``names[k]``.
+        """Return copies of (1) ``rows`` and (2) ``slides`` in which peg k has the number ``names[k]``.
 
-        ``names`` (K + 1,) ends with -1, which stands for no peg.
+        ``names`` (K + 1,) has -1 as its last entry, since -1 stands for no peg.
         """
         rows, slid = np.array(self.rows), np.array(self.slides)
         rows[:, FIRST_PEG : SECOND_PEG + 1] = names[self.pegs]
@@ -146,28 +147,31 @@ class JawCurves:
 
     @cached_property
     def after_one(self) -> tuple[Array, Array]:
-        """The rows and slides of two pegs numbered 1 and 2, after the only peg of the other jaw."""
+        """The rows and the slides of two pegs, numbered 1 and 2, where peg 0 is the single peg of the other
+        jaw.
+        """
         return self.number_rows_by_pegs(np.array([1.0, 2.0, -1.0]))
 
     @cached_property
     def pegs(self) -> NDArray[np.int64]:
-        """The pegs (H, 2) of the rows, -1 for none."""
+        """The numbers of both touching pegs of each row (H, 2); the second is -1 for a peg in a pocket."""
         return self.rows[:, FIRST_PEG : SECOND_PEG + 1].astype(np.int64)
 
     @cached_property
     def sliding_pegs(self) -> NDArray[np.int64]:
-        """The pegs (S, 2) of the slides."""
+        """The numbers of both touching pegs of each slide (S, 2)."""
         return self.slides[:, SLIDE_FIRST : SLIDE_SECOND + 1].astype(np.int64)
 
     @cached_property
     def pockets(self) -> int:
-        """The number of rows of a peg in a pocket, which are the first ones."""
+        """How many of the rows are of one peg in a pocket; these come first."""
         return int(self.rows[:, KIND].sum())
 
     @cached_property
     def ordered(self) -> Array:
-        """The cells in ascending order of LOW; those that reach past a whole turn occur again, a turn
-        lower.
+        """The cells in ascending order of LOW, the orientation at which they begin.
+
+        A cell that reaches beyond a whole turn is listed twice, the second time a turn lower.
         """
         again = np.array(self.cells[self.cells[:, HIGH] > tau])
         again[:, [LOW, HIGH]] -= tau
@@ -176,8 +180,8 @@ class JawCurves:
 
     @classmethod
     def find_known(cls, boundary: ObstacleBoundary, subset: PegSubset) -> JawCurves:
-        """Return the curves of a subset of pegs of one jaw, computed once for all subsets that stand
-        alike.
+        """Return the curves of a subset of pegs of one jaw, from a cache kept with the part or newly
+        computed.
         """
         kept = boundary.find_once(make_curve_cache)
         found = kept.get(subset.key)
@@ -190,22 +194,24 @@ class JawCurves:
 
 
 def make_curve_cache(_: ObstacleBoundary) -> dict[tuple[object, ...], JawCurves]:
-    """Return an empty cache of the curves of jaws on a part, by ``PegSubset.key``."""
+    """Return an empty cache of the curves of jaws on a part; its keys are ``PegSubset.key``. The argument is
+    ignored.
+    """
     return {}
 
 
 @define(frozen=True, eq=False)
 class TwoContactCurves:
-    """All two-contact curves of a pattern.
+    """The two-contact curves of both jaws of a pattern.
 
     Parameters
     ----------
-    given : the held part for kernels, with pieces as they are.
-    sought : the held part in which roots are sought: curves run slightly past their ends, and so do its
-        pieces.
-    slides : (S, 7) pairs of contacts at one orientation only, see ``kernels.seating.slides``.
-    jaws : for each jaw, by whether it moves (1) or not (0): its curves, how many rows of other jaws come
-        before its rows, and the height of its first peg in mm.
+    given : the held part in the form that the kernels take.
+    sought : the same with pieces slightly longer at both ends, for finding roots, so that none is missed at
+        an end.
+    slides : (S, 7) pairs of contacts on parallel faces, see ``kernels.seating.slides``.
+    jaws : for each jaw (0 stands still, 1 moves): its curves, the number of rows before its own rows, and the
+        height (y) of its first peg in mm.
     """
 
     given: HeldPart
@@ -232,7 +238,10 @@ class TwoContactCurves:
 
     @classmethod
     def from_one_jaw(cls, boundary: ObstacleBoundary, subset: PegSubset) -> TwoContactCurves:
-        """Return the curves of that jaw of a subset that has two pegs or more; none where neither has."""
+        """Return the curves of one jaw of a subset: that with two or more pegs.
+
+        There are no curves for a subset of one peg of each jaw.
+        """
         if len(subset.sides) == 2 and not subset.is_of_a_jaw:
             return cls(*make_held_parts(boundary, subset.pattern, *NO_CURVES), NO_SLIDES, {})
         side = int(2 * sum(subset.sides) > len(subset.sides))
@@ -247,7 +256,7 @@ class TwoContactCurves:
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
     def make_jaw_cells(self, right: int) -> JawCells:
-        """Return the cells of the jaw that moves (1) or stands still (0), as kernels take them."""
+        """Return the cells of a jaw (``right`` 0 stands still, 1 moves) in the form that the kernels take."""
         known, before, height = self.jaws[right]
         return JawCells(known.ordered, before, height)
 
@@ -255,7 +264,7 @@ class TwoContactCurves:
 def make_held_parts(
     boundary: ObstacleBoundary, pattern: Pattern, rows: Array, curves: NDArray[np.int64], reals: Array
 ) -> tuple[HeldPart, HeldPart]:
-    """Return ``given`` and ``sought`` of ``TwoContactCurves``."""
+    """Return the fields ``given`` and ``sought`` of ``TwoContactCurves``."""
     after = np.array(pattern.pegs), pattern.right, boundary.parts
     return HeldPart(rows, curves, reals, boundary.pieces, *after), HeldPart(
         rows, curves, reals, boundary.loose, *after
@@ -263,8 +272,9 @@ def make_held_parts(
 
 
 def make_pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
-    """Return rows of pairs (H, 7) for each peg in each pocket that it
-    can touch; ``right`` is 1 for pegs that move.
+    """Return a row of ``HeldPart.pairs`` for each peg in each pocket that it can touch (H, 7).
+
+    ``right`` (K,) is 1 for pegs that move, else 0.
     """
     held = [
         (peg, pocket)

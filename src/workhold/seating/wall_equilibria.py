@@ -59,11 +59,11 @@ Contact = tuple[int, int]
 
 @define(frozen=True, eq=False)
 class WallEquilibria:
-    """The equilibria of a part between a wall, a locator and a tip.
+    """The equilibria of a part between a straight wall, a locator and a clamp's tip.
 
     Parameters
     ----------
-    boundary, pattern : of the part and the pegs; the pattern's first peg is the locator, the second the tip.
+    boundary, pattern : boundary of the part, and pegs: the first peg is the locator, the second the tip.
     """
 
     boundary: ObstacleBoundary
@@ -71,13 +71,15 @@ class WallEquilibria:
 
     @property
     def half_plane(self) -> tuple[float, float, float]:
-        """The unit vector from the wall to the part, and the wall's coordinate along it in mm."""
+        """The wall as (x, y, coordinate): the unit vector from the wall to the part, and the wall's
+        coordinate along it in mm.
+        """
         assert self.pattern.half_plane is not None
         return self.pattern.half_plane
 
     @property
     def is_upright(self) -> bool:
-        """Whether the wall is along y, square to the tip's travel."""
+        """Whether the wall runs along y, perpendicular to the tip's travel."""
         return self.half_plane[0] != 0.0
 
     @property
@@ -86,14 +88,15 @@ class WallEquilibria:
         return self.boundary.hull.sides
 
     def compute_outward_direction(self) -> float:
-        """Return the direction in radians of the normal into the wall,
-        which is the part's outward normal there.
-        """
+        """Return the direction in radians from the part into the wall."""
         return atan2(-self.half_plane[1], -self.half_plane[0])
 
     def find_resting_place(self, piece: int, theta: float) -> float:
-        """Return the coordinate in mm, square to the wall, of the place
-        of a part that stands on a hull piece at ``theta``.
+        """Return the coordinate in mm, perpendicular to the wall, of the centre of a part that stands on the
+        wall.
+
+        The part stands on the hull piece with the index ``piece`` and is turned by ``theta`` (radians). The
+        coordinate is x for an upright wall, y for a wall along x.
         """
         ux, uy, off = self.half_plane
         x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
@@ -102,10 +105,12 @@ class WallEquilibria:
 
     @cached_property
     def runs(self) -> list[tuple[int, float, float]]:
-        """The ranges of theta in which the part stands on one hull piece: (piece, first, last), in radians.
+        """The ranges of orientations in which the part stands on one hull piece: (piece, first, last), in
+        radians.
 
-        At the ends of arcs runs overlap, so that no orientation lies between two. At hull edges they leave
-        out orientations so near that the edge's other end touches the wall too, with next to no force.
+        Where the part rolls from one piece to the next, ranges overlap slightly, so that no orientation is
+        missed. Where it stands on a hull edge, ranges end slightly before, because the edge's other end
+        touches there too.
         """
         edges = np.array([side.angle for side in self.sides])
         angles = np.sort(np.concatenate([edges, self.boundary.hull.limits]))
@@ -125,7 +130,7 @@ class WallEquilibria:
 
     @cached_property
     def standing_part(self) -> StandingPart:
-        """The part on the wall, as kernels take it."""
+        """The part on the wall, in the form that the kernels take."""
         boundary, pegs = self.boundary, np.array(self.pattern.pegs)
         runs = np.array(self.runs, dtype=np.float64).reshape(-1, 3)
         return StandingPart(
@@ -139,33 +144,39 @@ class WallEquilibria:
         )
 
     def make_held_part(self, pegs: Array) -> HeldPart:
-        """Return the part and pegs (2, 2) without two-contact curves, as kernels take them."""
+        """Return the part and pegs at places (2, 2), without two-contact curves, in the form that the kernels
+        take.
+        """
         none = np.zeros((0, PAIR_LENGTH)), np.zeros((0, CURVE_INTEGERS), np.int64), np.zeros((0, CURVE_REALS))
         return HeldPart(*none, self.standing_part.rows, pegs, self.pattern.right, self.boundary.parts)
 
     def make_wall_contact(self, piece: int, second: bool = False) -> Contact:
-        """Return the first or second contact with the wall, of a hull
-        piece, as the numbers (peg, piece) of a candidate.
+        """Return the contact of a hull piece with the wall, as numbers (peg, piece) for a candidate.
+
+        A candidate can have two such contacts; ``second`` selects which of the two this is.
         """
         return ON_WALL[second], len(self.boundary.rows) + piece
 
     def add_tip_contacts(self, fixed: Array) -> Array:
-        """Return candidates with a fourth contact: those in ``fixed``
-        (N, 24) with each piece that the tip meets.
+        """Return candidates (M, 24) with four contacts: each in ``fixed`` (N, 24), with each piece that the
+        tip can touch.
 
-        The candidates in ``fixed`` have three contacts that fix the part. See ``kernels.seating.columns`` for
-        the layout of candidates.
+        The three contacts of a candidate in ``fixed`` fix the part's pose; the tip's contact fixes the
+        separation. A candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         return fill_rows(
             CANDIDATE_LENGTH, 64, write_fourths, fixed, 0, self.make_held_part(self.standing_part.pegs)
         )
 
     def add_locator_contacts(self, fixed: Array) -> Array:
-        """Return candidates (M, 24): those in ``fixed`` (N, 24), free to
-        slide along the wall, with each piece the locator meets.
+        """Return candidates (M, 24) with one more contact: each in ``fixed`` (N, 24), with each piece that
+        the locator can touch.
 
-        The locator becomes the first contact, and the separation grows with the place. See
-        ``kernels.seating.columns`` for the layout of candidates.
+        A part in ``fixed`` can slide along the wall, and the locator's contact stops it. This contact is
+        written before the others, and the separation is adjusted. A candidate is a configuration with
+        contacts and forces that may be an equilibrium. A candidate is a configuration with contacts and
+        forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         fixed, pegs = fixed.copy(), self.standing_part.pegs
         if self.is_upright:
@@ -182,10 +193,11 @@ class WallEquilibria:
         return met
 
     def find_flush(self) -> Array:
-        """Return candidates (N, 24) of four contacts: two of a hull edge on
-        the wall, and locator and tip, or the tip in a pocket.
+        """Return candidates (N, 24) with a hull edge flat on the wall, which is two contacts.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        The other two contacts are (a) those of the locator and the tip, or (b) two of the tip in a pocket. A
+        candidate is a configuration with contacts and forces that may be an equilibrium. A candidate is a
+        configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         fixed, out = [], []
         for side in self.sides:
@@ -207,8 +219,10 @@ class WallEquilibria:
         )
 
     def list_tip_pockets(self, theta: float) -> list[tuple[float, float, list[Contact]]]:
-        """Return (x, y, contacts) of the tip in each pocket: the pocket's
-        place relative to the part's at ``theta``, in mm.
+        """Return for each pocket that the tip can touch (x, y, contacts).
+
+        (x, y) is the pocket's place in mm relative to the part's centre, for a part turned by ``theta``
+        (radians); the contacts are two pairs (peg, piece).
         """
         c, s, out = cos(theta), sin(theta), []
         for (x, y), pieces in zip(*self.list_pockets(1), strict=True):
@@ -216,18 +230,21 @@ class WallEquilibria:
         return out
 
     def list_pockets(self, jaw: int) -> tuple[Array, NDArray[np.int64]]:
-        """Return the pockets of the locator (0) or the tip (1): places
-        (V, 2) on the part in mm, and numbers of pieces (V, 2).
+        """Return the pockets that a peg can touch: (1) places (V, 2) on the part in mm, (2) indices of the
+        pieces (V, 2).
+
+        ``jaw`` is 0 for the locator, 1 for the tip.
         """
         first, end = self.boundary.parts[jaw]
         own = (self.boundary.pocket_pieces[:, 0] >= first) & (self.boundary.pocket_pieces[:, 0] < end)
         return np.ascontiguousarray(self.boundary.pockets[own, :2]), self.boundary.pocket_pieces[own]
 
     def find_locator_in_pocket(self) -> Array:
-        """Return candidates (N, 24) of four contacts: two of the locator
-        in a pocket, a hull piece on the wall, and the tip.
+        """Return candidates (N, 24) with the locator in a pocket (two contacts), a hull piece on the wall,
+        and the tip.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        A candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         out = []
         ux, uy, off = self.half_plane
@@ -252,11 +269,12 @@ class WallEquilibria:
         return self.add_tip_contacts(stack_candidates(out))
 
     def find_tip_in_pocket(self) -> Array:
-        """Return candidates (N, 24) of four contacts: two of the tip in a
-        pocket, a hull piece on the wall, and the locator.
+        """Return candidates (N, 24) with the tip in a pocket (two contacts), a hull piece on the wall, and
+        the locator.
 
-        On an upright wall, also of three contacts, without the locator. See ``kernels.seating.columns`` for
-        the layout of candidates.
+        On an upright wall, also candidates with three contacts, without the locator. A candidate is a
+        configuration with contacts and forces that may be an equilibrium. A candidate is a configuration with
+        contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         places, pieces = self.list_pockets(1)
         work = np.empty((DEPTH, 2)), np.empty((MOST_ZEROS, 2))
@@ -284,20 +302,21 @@ class WallEquilibria:
         return np.concatenate([found, stack_candidates(out)])
 
     def find_three_contacts(self) -> Array:
-        """Return candidates (N, 24) of contacts with wall, locator and
-        tip whose normals go through one point.
+        """Return candidates (N, 24) with one contact each of wall, locator and tip, whose normals meet in one
+        point.
 
-        See ``kernels.seating.columns`` for the layout of candidates.
+        A candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         work = np.empty((len(self.boundary.rows), SHAPE_LENGTH)), np.empty((DEPTH, 2))
         return fill_rows(CANDIDATE_LENGTH, 64, write_equilibria, self.standing_part, *work)
 
     def find_tip_against_wall(self) -> Array:
-        """Return candidates (N, 24) of the tip alone against the wall, on
-        a common normal with a hull edge or hull piece.
+        """Return candidates (N, 24) in which the tip alone presses the part against the wall.
 
-        There are none unless the tip pushes towards the wall. See ``kernels.seating.columns`` for the layout
-        of candidates.
+        The tip's normal points into the wall where a hull piece or a hull edge touches it. There are none
+        unless the tip pushes towards the wall. A candidate is a configuration with contacts and forces that
+        may be an equilibrium, see ``kernels.seating.columns``.
         """
         if self.half_plane[0] <= 0.0:
             return stack_candidates([])
@@ -340,7 +359,7 @@ class WallEquilibria:
                     one = make_candidate(
                         (theta, *place, separation), [(TIP, number), self.make_wall_contact(piece)]
                     )
-                    # Over the turn, and the rise of the tip above the piece: see ``curvature``.
+                    # Over the turn, and the rise of the tip above the piece: see ``compute_least_curvature``.
                     second, turn, rise = compute_least_curvature(ahead, signed if is_arc else None)
                     one[SECOND], one[MOTION] = second, turn
                     # The piece stays on the wall.
@@ -351,13 +370,16 @@ class WallEquilibria:
 
 
 def compute_least_curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
-    """Return the least second derivative of S over the part's turn
-    and the tip's rise, and its direction (turn, rise).
+    """Return the least second derivative of the separation S, and its direction (turn, rise), for a tip
+    opposite a wall.
 
-    The rise is the tip's above the piece on the wall; the derivative is NaN where both principal ones are
-    negative. The tip is ahead of the piece's centre by d (``ahead``), on an arc of signed radius r, or on a
-    line (``signed`` None). At a turn f and a rise e it is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r)
-    sin f)^2), or by (d - e sin f) / cos f. S is the jaw separation in mm.
+    The variables are the turn f of the part and the rise e of the tip above the hull piece on the wall. The
+    derivative is NaN where S falls in all directions.
+
+    The tip is ahead of the piece's centre by d = ``ahead`` (mm). Two cases: (a) it touches an arc of signed
+    radius r = ``signed`` (mm, positive where convex), and is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r)
+    sin f)^2) after a turn and a rise; (b) it touches a line (``signed`` None), and is ahead by (d - e sin f)
+    / cos f.
     """
     if signed is None:
         matrix = np.array([[ahead, -1.0], [-1.0, 0.0]])
@@ -371,23 +393,26 @@ def compute_least_curvature(ahead: float, signed: float | None) -> tuple[float, 
 
 
 def add_turns_until_past(low: float, theta: float) -> float:
-    """Return theta shifted by whole turns to the least value that is not below ``low``, in radians."""
+    """Return the smallest angle in radians that is not below ``low`` and differs from ``theta`` by whole
+    turns (2 pi).
+    """
     return theta + tau * ceil((low - theta) / tau)
 
 
 def stack_candidates(candidates: list[Array]) -> Array:
-    """Return a list of candidates as an array (N, 24), also of none.
+    """Return a list of candidates (24,) as an array (N, 24); (0, 24) for an empty list.
 
-    See ``kernels.seating.columns`` for the layout of candidates.
+    A candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
     """
     return np.array(candidates).reshape(-1, CANDIDATE_LENGTH)
 
 
 def find_wall_candidates(boundary: ObstacleBoundary, pattern: Pattern) -> Array:
-    """Return candidates (N, 24) of all equilibria on a wall; the
-    first peg is the locator, the second the tip.
+    """Return candidates (N, 24) of all equilibria in which a part touches the wall.
 
-    See ``kernels.seating.columns`` for the layout of candidates.
+    The pattern's first peg is the locator, the second the tip. A candidate is a configuration with contacts
+    and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     wall = WallEquilibria(boundary, pattern)
     pockets = wall.find_locator_in_pocket(), wall.find_tip_in_pocket()

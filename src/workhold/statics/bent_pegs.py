@@ -1,4 +1,5 @@
-"""How far the pegs of one fixture bend, peg by peg, in figures and in sentences (docs/quality.md, "Pins bend")."""
+"""How far the pegs of one fixture bend, peg by peg, in figures and in sentences (docs/quality.md, "Pins
+bend")."""
 
 from __future__ import annotations
 
@@ -26,14 +27,14 @@ class BentPeg:
 
     Parameters
     ----------
-    hole : name of its hole.
-    peg : what it is, such as "locator".
-    diameter : of the peg.
-    height, top : above the plate, of the middle and of the top of the range of heights at which it can be
-        pressed.
-    force : on the peg.
-    deflection, stress : with the force at the middle.
-    worst_deflection, worst_stress : with the force at the top.
+    hole : name of the peg's hole.
+    peg : kind of peg, such as "locator".
+    diameter : diameter of the peg.
+    height : height above the plate of the middle of the range in which the part can press on the peg.
+    top : height above the plate of the top of this range.
+    force : force on the peg.
+    deflection, stress : deflection and bending stress with the force at ``height``.
+    worst_deflection, worst_stress : the same with the force at ``top``.
     """
 
     hole: str
@@ -54,11 +55,12 @@ class BentPegs:
 
     Parameters
     ----------
-    pegs : those that stand in holes of a plate.
-    movement, worst_movement : largest movement of a point of the part by bending, in mm, with the forces at
-        the middle and at the top.
-    jaw_force : in N; None where not given: figures are then for each kN.
-    stress_limit, movement_limit : of the toolkit, in MPa and mm.
+    pegs : the pegs that stand in holes of a plate.
+    movement : largest movement of a point of the part by bending, in mm, with the forces at the pegs' middle
+        heights.
+    worst_movement : the same with the forces at the tops of the ranges of heights.
+    jaw_force : in N; None where not given: figures are then for a jaw force of 1 kN.
+    stress_limit, movement_limit : limits of the toolkit, in MPa and mm.
     """
 
     pegs: tuple[BentPeg, ...]
@@ -70,12 +72,12 @@ class BentPegs:
 
     @property
     def most(self) -> BentPeg:
-        """Peg with the largest deflection, forces at the middle."""
+        """Peg with the largest deflection, forces at the middle heights."""
         return max(self.pegs, key=lambda peg: peg.deflection)
 
     @property
     def hardest(self) -> BentPeg:
-        """Peg with the largest stress, forces at the middle."""
+        """Peg with the largest stress, forces at the middle heights."""
         return max(self.pegs, key=lambda peg: peg.stress)
 
     @property
@@ -95,7 +97,7 @@ class BentPegs:
     def describe_bending(self, mover: str, unit: Unit, location_error: float | None = None) -> str:
         """Return a sentence on the largest deflection, the largest stress and the movement of the part.
 
-        ``mover`` is what presses, such as "jaw"; ``location_error`` in mm is added if given.
+        ``mover`` is what presses, such as "jaw"; a ``location_error`` in mm is mentioned as well if given.
         """
         most, hardest = self.most, self.hardest
         beside = (
@@ -114,7 +116,7 @@ class BentPegs:
 
     @property
     def worst(self) -> BentPeg:
-        """Peg with the largest deflection, forces at the top."""
+        """Peg with the largest deflection, forces at the tops of the ranges of heights."""
         return max(self.pegs, key=lambda peg: peg.worst_deflection)
 
     def list_cautions(self, mover: str, unit: Unit) -> list[str]:
@@ -157,7 +159,7 @@ def describe_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
 
     Parameters
     ----------
-    jaw_force : in N; None for "for each kN of …".
+    jaw_force : in N; None for the phrase "for each kN of …".
     mover : what presses, such as "jaw".
     """
     if jaw_force is not None:
@@ -181,7 +183,7 @@ def compute_bent_pegs(
     Parameters
     ----------
     pressed_up_to : height in mm up to which pegs press on a prism; not needed for a solid.
-    jaw_force : in N; None for figures for each kN.
+    jaw_force : in N; None for figures at a jaw force of 1 kN.
     lift : height of the part above the plates, in mm.
     """
     if workpiece.solid is None and pressed_up_to is None:

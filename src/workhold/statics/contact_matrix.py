@@ -56,7 +56,7 @@ def compute_outward_normals(rows: Array, points: Array) -> Array:
     Parameters
     ----------
     rows : (..., 10) feature rows, see ``geometry.segment.make_segment_rows``.
-    points : (..., 2) in mm.
+    points : (..., 2) peg centres in mm, each on the feature of its row.
 
     Returns
     -------
@@ -69,12 +69,13 @@ def compute_outward_normals(rows: Array, points: Array) -> Array:
 
 
 def compute_wrenches(points: Array, normals: Array, length: float) -> Array:
-    """Return wrenches (..., 3) of unit contact forces: the normal's x and y, and its moment divided by L.
+    """Return wrenches (..., 3) of unit contact forces: x and y of the
+    normal, and its moment divided by the length L.
 
     Parameters
     ----------
-    points, normals : (..., 2) peg centres about the centre of the part, in mm, and outward unit normals
-        there.
+    points : (..., 2) peg centres relative to the centre of the part, in mm.
+    normals : (..., 2) outward unit normals there.
     length : L in mm.
     """
     moments = (points[..., 0] * normals[..., 1] - points[..., 1] * normals[..., 0]) / length
@@ -94,11 +95,12 @@ class ContactMatrices:
     points : (N, P, 2) peg centres relative to the centre of the part.
     normals : (N, P, 2) outward unit normals.
     ends : (N, P) distances along the contact features to their nearer ends.
-    edges : (N, P) distances to the nearer ends that are no tangent joints; inf where there is none.
-    inverses : (N, 4, P) inverses of the contact matrices, NaN where singular. Rows are movements x, y and L
-        times angle, per error of each contact, and in the last row the pegs' forces per unit of jaw force.
-        With two clamps (P = 5) only the locators move the part, and the last row is for the working ratio of
-        the clamps' forces.
+    edges : (N, P) distances along the contact features to the nearest ends that are no tangent joints; inf
+        where there is none.
+    inverses : (N, 4, P) inverses of the contact matrices, NaN where singular. The first three rows are the
+        part's movements in x, in y, and L times its turn, per unit of error of each contact. The last row is
+        the pegs' forces per unit of jaw force. With two clamps (P = 5) only the locators move the part, and
+        the last row is for the working ratio of the clamps' forces.
     closing : (N, P, M) forces of all pegs per unit of the force of each of M moving things.
     """
 
@@ -111,30 +113,32 @@ class ContactMatrices:
 
 
 def compute_wrench_length(workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """Return the length L in mm that moments are divided by:
-    half the part's diameter plus the largest peg radius.
+    """Return the length L in mm that moments are divided by: half the
+    part's diameter plus the largest peg radius.
     """
     return measure_outline_diameter(workpiece) / 2 + max(carrier.peg_radius for carrier in toolkit.carriers)
 
 
 @define(frozen=True, eq=False)
 class TouchableFeatures:
-    """What pegs of a toolkit can touch of a workpiece; lengths in mm, relative to the centre of the part.
+    """The features of a workpiece that pegs of a toolkit can touch.
+
+    Lengths are in mm, relative to the centre of the part.
 
     Parameters
     ----------
     center : (2,) centre of the part's bounding box, in the part's coordinates.
-    length : L of the wrenches.
+    length : length L that moments are divided by.
     features : (F, 12) rows of the contact features with slacks of their ends, carrier by carrier, by face in
         each; then the hull edges, for a wall.
-    starts : index in ``features`` at which each carrier's features of each face number begin, then each hull
-        edge, then the end.
-    segments : how many face numbers there are.
+    starts : indices in ``features``: where the features of each carrier and face number begin (carrier by
+        carrier, by face number in each), where each hull edge begins, and the end.
+    segments : number of face numbers.
     moving : (C,) 1 for a carrier that moves, 0 for others.
     directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame; zero for one that
         stands still.
     lies_flush : (C,) whether the carrier is a wall that the part lies flush on.
-    flush : how the part lies on a wall.
+    flush : the ways in which the part can lie on a wall.
     """
 
     center: Array
@@ -215,7 +219,7 @@ class TouchableFeatures:
         ----------
         pegs : (N, P, 2) peg centres in the toolkit's frame, in mm; P is 3 under straps, 4, or 5 with two
             clamps.
-        pose : (N, 3) orientation in radians and translation in mm.
+        pose : (N, 3) orientation of the part in radians, and its translation in mm (x, y).
         carriers, faces : (N, P) numbers of the pegs' carriers and of the faces touched.
         """
         on = np.asarray(carriers, np.int64)
@@ -246,7 +250,9 @@ class TouchableFeatures:
     def compute_contacts(
         self, pegs: Array, pose: Array, moves: Array, against: Array, touched: NDArray[np.int64]
     ) -> tuple[Array, Array, Array, Array, Array]:
-        """Return points, normals, ends, edges and inverses of N fixtures, see :class:`ContactMatrices`.
+        """Return (points, normals, ends, edges, inverses) of N fixtures, see :class:`ContactMatrices`.
+
+        ``pegs`` and ``pose`` are as in :meth:`compute_contact_matrices`.
 
         Parameters
         ----------
@@ -278,9 +284,9 @@ class TouchableFeatures:
         return points, normals, ends, edges, inverses
 
     def compute_locators(self, points: Array, faces: NDArray[np.int64]) -> ContactMatrices:
-        """Return the contacts of three locators alone on the first carrier, with inverses of their wrenches.
+        """Return the contacts of three locators alone, on the first carrier.
 
-        ``closing`` is empty.
+        ``inverses`` are those of the matrices of the locators' wrenches, (N, 3, 3); ``closing`` is empty.
 
         Parameters
         ----------
@@ -294,8 +300,8 @@ class TouchableFeatures:
         return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((count, each, 0)))
 
     def compute_push_directions(self, pose: Array, carriers: NDArray[np.integer[Any]]) -> Array:
-        """Return the unit vectors (N, 2, 2) along which the
-        last two contacts' clamps push, in the part's frame.
+        """Return the unit vectors along which the clamps of the last two
+        contacts push, in the part's frame, (N, 2, 2).
         """
         along = self.directions[np.asarray(carriers)[:, -2:]]
         return np.stack(rotate_vectors(along[..., 0], along[..., 1], -pose[:, :1]), axis=-1)
@@ -312,8 +318,8 @@ class TouchableFeatures:
 
 
 def invert_locator_matrices(all_wrenches: Array) -> Array:
-    """Return inverses (N, 3, 3) of the matrices whose
-    rows are the first three wrenches; NaN where singular.
+    """Return the inverses of the matrices whose rows are the first
+    three wrenches, (N, 3, 3); NaN where singular.
     """
     matrix = all_wrenches[:, :LOCATORS]
     usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.abs(np.linalg.det(matrix)) > 0.0)
@@ -323,11 +329,12 @@ def invert_locator_matrices(all_wrenches: Array) -> Array:
 
 
 def pair_reactions(points: Array, normals: Array, pushes: Array, length: float) -> Array:
-    """Return forces (N, 5, 2) of three locators and two clamps per unit of the force of each clamp.
+    """Return the forces of three locators and two clamps per unit of the force of each clamp, (N, 5, 2).
 
     Parameters
     ----------
-    points, normals : (N, 5, 2) relative to the centre of the part, in mm; locators first.
+    points : (N, 5, 2) contact points relative to the centre of the part, in mm; locators first.
+    normals : (N, 5, 2) outward unit normals there.
     pushes : (N, 2, 2) unit vectors along which the clamps push, in the part's frame.
     length : L in mm.
     """

@@ -1,15 +1,16 @@
 """The effective location error: the location error times factors for what a machinist would rather avoid.
 
-The factors are data (``model.choose_first_toolkit``); here it is determined which of them apply to a fixture.
+The factors are data (``FACTORS``); here it is determined which of them apply to a fixture.
 
 Glossary
 --------
-angle class : of the angle as written, 0 at 0 degrees, 1 at 90, 180 and 270 degrees, 2 elsewhere.
-asked for : of holes: every face outside is avoided, or the toolkit clamps by opening, so that it has to work
-    from inside.
-hangs over : of a part on plates of a known number of columns, or rows. Plates reach half a pitch beyond their
-    outermost holes. All may be moved by whole holes where the pegs stay on the plate, and nothing else says
-    where it stands. If at no such place the part lies within the plates along that direction, it hangs over.
+angle class : 0 for a part at 0 degrees, 1 at 90, 180 and 270 degrees, 2 at any other angle. The angle is
+    taken as it is written, rounded.
+asked for : a query asks to work from inside, in holes of the part, if it avoids every outer face or if the
+    toolkit clamps by opening.
+hangs over : a part hangs over plates with a known number of columns or rows if no shift of pegs and part by
+    whole holes that keeps the pegs on the plates brings the part within the plates along that direction.
+    Plates reach half a pitch beyond their outermost holes.
 """
 
 from __future__ import annotations
@@ -41,9 +42,10 @@ TIMES = np.array([factor.times for factor in FACTORS])
 
 
 def classify_angles(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
-    """Return the class (N,) of each angle (N,) in radians: 0 as drawn, 1 another quarter turn, 2 elsewhere.
+    """Return the class of each angle, (N,): 0 as drawn, 1 at another quarter turn, 2 elsewhere.
 
-    An angle within ``beside`` degrees of a quarter turn counts as that.
+    Angles are in radians. An angle within ``beside`` degrees of a multiple of a quarter turn counts as that
+    multiple.
     """
     turns = np.degrees(theta) / 90.0
     whole = np.rint(turns)
@@ -52,9 +54,10 @@ def classify_angles(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
 
 
 def find_unasked_faces(query: Query) -> BoolArray:
-    """Return a mask (S,), by face number, of faces of holes that the query does not ask to work from.
+    """Return a mask (S,) by face number: True for faces of holes where
+    the query does not ask to work from inside.
 
-    They are asked for if the toolkit clamps by opening or every outer face is avoided.
+    All are False if the toolkit clamps by opening, or if every outer face is avoided.
     """
     every = query.workpiece.numbered
     out = np.zeros(len(every.segments), np.bool_)
@@ -66,16 +69,17 @@ def find_unasked_faces(query: Query) -> BoolArray:
 
 @frozen(eq=False)
 class EffectiveErrors:
-    """A calculator of the factors on the location error,
-    and of effective errors, for the fixtures of a query.
+    """What computes the factors on the location error, and the effective errors, of the fixtures of a query.
 
     Parameters
     ----------
-    query : what is asked.
-    unasked : (S,) mask of faces of holes that the query does not ask for.
-    lines : (S, 5) start, direction and length of each straight face, by number; NaN for others.
+    query : the query.
+    unasked : (S,) mask by face number of the faces of holes that the query does not ask to work from.
+    lines : (S, 5) start (x, y), unit direction (x, y) and length of each straight face, by face number; NaN
+        for other faces.
     corners : (C, 2) corners of the convex hull of the outline's joints.
-    arcs : (A, 6) convex arcs of the outline: centre, radius, middle direction, cosine of half the sweep.
+    arcs : (A, 6) convex arcs of the outline: centre (x, y), radius, middle direction (x, y), and cosine of
+        half the sweep.
     """
 
     query: Query
@@ -86,7 +90,7 @@ class EffectiveErrors:
 
     @classmethod
     def from_query(cls, query: Query) -> EffectiveErrors:
-        """Return the calculator for the fixtures of a query."""
+        """Return what computes the effective errors of the fixtures of a query."""
         every = query.workpiece.numbered
         lines = np.full((len(every.segments), 5), np.nan)
         for face in every.faces:
@@ -100,9 +104,7 @@ class EffectiveErrors:
         return np.asarray(table.quality[:, LOCATION_ERROR] * factors)
 
     def find_factors(self, table: FixtureTable) -> BoolArray:
-        """Return a mask (N, F) of the factors that hold of
-        a table's fixtures, in the order of ``FACTORS``.
-        """
+        """Return a mask (N, F): which of the F factors apply to each fixture, in the order of ``FACTORS``."""
         toolkit, angle = self.query.toolkit, classify_angles(table.theta)
         carriers = toolkit.find_peg_carriers(table.arrangement)
         is_clamp = np.array([one.contact is CLAMP_TIP for one in toolkit.carriers])[carriers]
@@ -119,7 +121,11 @@ class EffectiveErrors:
         return np.stack([found[key] for key in KEYS], axis=1)
 
     def find_near_face_ends(self, table: FixtureTable, carriers: NDArray[np.int8]) -> BoolArray:
-        """Return which contacts (N, P) are nearer than their peg's radius to an end of a straight face."""
+        """Return a mask (N, P): True for contacts nearer than their
+        peg's radius to an end of a straight face.
+
+        ``carriers`` (N, P) are the numbers of the pegs' carriers.
+        """
         radius = np.array([one.peg_radius for one in self.query.toolkit.carriers])[carriers]
         x, y = compute_peg_places(table, self.query.toolkit, self.query.workpiece)
         x, y = x - table.position[:, :1], y - table.position[:, 1:]
@@ -128,8 +134,8 @@ class EffectiveErrors:
         return np.asarray(to_ends(points, self.lines[table.face]) < np.round(radius, FIGURE_DECIMALS))
 
     def find_overhanging(self, table: FixtureTable) -> BoolArray:
-        """Return which fixtures (N,) have a part that hangs
-        over the plates wherever the set-up stands on them.
+        """Return a mask (N,): True for fixtures whose part hangs over the
+        plates wherever the set-up stands on them.
         """
         toolkit, out = self.query.toolkit, np.zeros(len(table), np.bool_)
         plates, travel = toolkit.plates, table.jaw_separation
@@ -156,8 +162,10 @@ class EffectiveErrors:
         return out
 
     def compute_extent(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """Return the least and the largest coordinates (N,)
-        in mm of the part along x (0) or y (1) of the toolkit.
+        """Return (1) the least and (2) the largest coordinate in mm of
+        each fixture's part along an axis, each (N,).
+
+        ``axis`` is 0 for x and 1 for y of the toolkit.
         """
         # Direction of the axis in the part's frame.
         turn = (pi / 2) * axis - table.theta
@@ -169,8 +177,10 @@ class EffectiveErrors:
         return low + table.position[:, axis], high + table.position[:, axis]
 
     def count_spare_holes(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """Return by how many holes (N,) the set-up can be moved
-        toward lower, and toward higher numbers, along x (0) or y (1).
+        """Return by how many holes a set-up can be moved (1) toward lower
+        and (2) toward higher numbers, each (N,).
+
+        ``axis`` is 0 for columns (x), 1 for rows (y).
         """
         toolkit, none = self.query.toolkit, np.zeros(len(table))
         slides = [plate for plate in toolkit.plates if plate.travel is not None]
@@ -186,14 +196,15 @@ class EffectiveErrors:
 
 
 def to_ends(points: Array, lines: Array) -> Array:
-    """Return distances (...) of contacts from the nearer ends of straight faces, in mm to nine decimals.
+    """Return the distance of each contact from the nearer end of its
+    straight face, in mm to nine decimals, (...).
 
-    Negative beyond an end; NaN for other faces.
+    Negative beyond an end; NaN for faces that are not straight.
 
     Parameters
     ----------
-    points : (..., 2) centres of what touches, in the part's coordinates.
-    lines : (..., 5) of the faces, see :class:`EffectiveErrors`.
+    points : (..., 2) centres of the pegs, in the part's coordinates.
+    lines : (..., 5) row of the face that each peg touches, see :class:`EffectiveErrors`.
     """
     along = ((points - lines[..., :2]) * lines[..., 2:4]).sum(axis=-1)
     return np.asarray(np.round(np.minimum(along, lines[..., 4] - along), FIGURE_DECIMALS))
@@ -212,7 +223,10 @@ def find_outermost(workpiece: Workpiece) -> tuple[Array, Array]:
 
 
 def compute_reach(along: Array, corners: Array, arcs: Array) -> Array:
-    """Return the largest coordinate (N,) in mm of a part along unit vectors (N, 2)."""
+    """Return the largest coordinate of a part along each of N directions, in mm, (N,).
+
+    ``along`` (N, 2) are unit vectors; ``corners`` and ``arcs`` are as in :class:`EffectiveErrors`.
+    """
     out = np.full(len(along), -np.inf)
     for x, y in corners.tolist():
         np.maximum(out, along[:, 0] * x + along[:, 1] * y, out=out)

@@ -1,17 +1,17 @@
 """The jaw force that loads require, for a part held between two flat jaws by friction.
 
 Both jaws press with affine pressures (``statics.patches``). In each cell of a patch friction acts in any
-direction of the plane, at most the coefficient times the pressure at the cell's centre times its area; the
-circle of directions is replaced by a polygon of 16 sides inside it. Parallels push upward and the work stop
-along the jaws, without friction. A jaw force F holds a load if such forces balance it while the moving jaw
-presses with F. By the lower bound theorem of limit analysis any balancing friction is safe for given
-pressures.
+direction of the plane. It is at most the coefficient of friction times the pressure at the cell's centre
+times the cell's area; the circle of possible friction forces is replaced by an inscribed polygon with 16
+corners. Parallels push upward and the work stop along the jaws, without friction. A jaw force F holds a load
+if such forces balance it while the moving jaw presses with F. By the lower bound theorem of limit analysis
+any balancing friction is safe for given pressures.
 
 The least F is the value of a linear program with six equations of balance; the dual program seeks a motion of
 the part. F is convex in the load, so the worst loads of a range are its corners.
 
-Reference: D. C. Drucker, W. Prager, H. J. Greenberg, *Extended limit design theorems for continuous media*, Quarterly of
-Applied Mathematics 9 (1952).
+Reference: D. C. Drucker, W. Prager, H. J. Greenberg, *Extended limit design theorems for continuous media*,
+Quarterly of Applied Mathematics 9 (1952).
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class FrictionHold:
 
     Parameters
     ----------
-    fixed, moving : what each jaw touches.
+    fixed, moving : patch that each jaw touches.
     opening : distance between the jaws, in mm.
     friction : the coefficient between jaws and part.
     stop_points : (K, 3) points in mm at which the work stop may push; empty without one.
@@ -96,7 +96,9 @@ class FrictionHold:
         stop_points: Sequence[tuple[float, float, float]] = (),
         stop_way: float = 1.0,
     ) -> FrictionHold:
-        """Return the hold by two patches, with perhaps points (x, y, z) in mm on the work stop."""
+        """Return the hold by two patches; ``stop_points`` are points (x, y,
+        z) in mm on the work stop, if there is one.
+        """
         points = np.array(stop_points, np.float64).reshape(-1, 3)
         return cls(PressedPatch(fixed), PressedPatch(moving), opening, friction, points, stop_way)
 
@@ -114,16 +116,19 @@ class FrictionHold:
         return float(max(self.opening, np.ptp(ends), 1.0) / 2)
 
     def compute_wrenches(self, points: Array, forces: Array) -> Array:
-        """Return wrenches (N, 6) of forces (N, 3) in N at points (N,
-        3) in mm; moments about ``centre``, divided by ``length``.
+        """Return wrenches (N, 6) of forces (N, 3) in N at points (N, 3) in mm.
+
+        A wrench is the force, then its moment about ``centre``, divided by ``length``.
         """
         arms = points - self.centre
         return np.hstack([forces, np.cross(arms, forces) / self.length])
 
     @cached_property
     def pressing(self) -> Array:
-        """Wrenches (R, 6) on the part of the unit pressures of both
-        jaws, see ``PressedFace.edges``; the fixed jaw's first.
+        """Wrenches (R, 6) that the R unit pressures of both jaws make
+        on the part, those of the fixed jaw first.
+
+        The unit pressures are ``PressedFace.edges``.
         """
         rows = []
         for patch, y, way in ((self.fixed, 0.0, 1.0), (self.moving, self.opening, -1.0)):
@@ -133,7 +138,9 @@ class FrictionHold:
 
     @cached_property
     def pushing(self) -> Array:
-        """Wrenches (K, 6) of unit forces without friction: of the parallels upward, then of the work stop."""
+        """Wrenches (K, 6) of K unit forces without friction: first of
+        the parallels upward, then of the work stop.
+        """
         points = [
             (x, y, 0.0)
             for patch, y in ((self.fixed, 0.0), (self.moving, self.opening))
@@ -145,7 +152,9 @@ class FrictionHold:
 
     @cached_property
     def rubbing(self) -> Array:
-        """Wrenches (C, 16, 6) of unit friction forces in the cells of both jaws, in each direction."""
+        """Wrenches (C, 16, 6) of unit friction forces: in each of the C
+        cells of both jaws, in 16 directions.
+        """
         turns = 2 * pi / DIRECTIONS * np.arange(DIRECTIONS)
         ways = np.column_stack([np.sin(turns), np.zeros(DIRECTIONS), np.cos(turns)])
         rows = []
@@ -159,7 +168,9 @@ class FrictionHold:
 
     @cached_property
     def bearing(self) -> Array:
-        """Friction force (C, R) that each cell bears per unit of each pressure in ``pressing``."""
+        """Friction (C, R) that each of the C cells bears, per unit of
+        each of the R pressures of ``pressing``.
+        """
         own, other = (
             (self.friction * patch.compute_pressures(patch.cells.centre) * patch.cells.area).T
             for patch in (self.fixed, self.moving)
@@ -171,30 +182,31 @@ class FrictionHold:
 
     @cached_property
     def most_work(self) -> Array:
-        """Jaw force (R,) that a unit of each pressure counts
-        as: 0 for the fixed jaw's, 1 for the moving jaw's.
+        """Jaw force in N, (R,), that a unit of each pressure of ``pressing`` counts as.
+
+        It is 0 for pressures of the fixed jaw, 1 for those of the moving jaw.
         """
         return np.repeat([0.0, 1.0], [len(self.fixed.edges), len(self.moving.edges)])
 
     def compute_forces_needed(self, loads: Array) -> list[float | None]:
-        """Return the least jaw force in N for each of loads (N, 6), wrenches as of :meth:`compute_wrenches`.
+        """Return the least jaw force in N that holds each load; None for a load that no jaw force holds.
 
-        None for a load that no jaw force holds.
+        ``loads`` (N, 6) are wrenches on the part, as :meth:`compute_wrenches` returns them.
         """
         motions = MotionProgram(self)
         return [motions.find_least_force(load) for load in loads]
 
 
 class HeldByFriction(Protocol):
-    """A part that is held by pressures with friction, and by forces without.
+    """A part that is held by pressures with friction, and by pushing forces without friction.
 
     Parameters
     ----------
-    pushing : (K, 6) wrenches of unit forces without friction.
-    pressing : (R, 6) wrenches of unit pressures.
-    rubbing : (C, D, 6) wrenches of unit friction forces in each cell, in each direction.
-    bearing : (C, R) friction force that each cell bears per unit of each pressure.
-    most_work : (R,) clamp force that a unit of each pressure counts as: 1 for what clamps, else 0.
+    pushing : (K, 6) wrenches of K unit forces without friction.
+    pressing : (R, 6) wrenches of R unit pressures.
+    rubbing : (C, D, 6) wrenches of unit friction forces in each of C cells, in D directions.
+    bearing : (C, R) friction force that each cell bears, per unit of each pressure of ``pressing``.
+    most_work : (R,) clamp force that a unit of each pressure counts as: 1 for pressures that clamp, else 0.
     """
 
     @property
@@ -211,22 +223,22 @@ class HeldByFriction(Protocol):
 
 @define(eq=False)
 class MotionProgram:
-    """The linear program of the motion of the part that a load
-    drives hardest, dual to that of the least clamp force.
+    """The linear program for the motion of the part that a load drives
+    hardest, dual to that for the least clamp force.
 
-    The least clamp force is the largest power of the load on a motion (6,) subject to: each pressure that
-    does not clamp, with its friction, and each force without friction do no work against it; each pressure
-    that clamps at most 1 per unit. In each cell friction takes the direction that works most, so each
-    pressure stands for very many linear conditions. Those are added that the last motion breaks, until none
-    is broken; all loads of one grip share them.
+    The least clamp force is the largest power of the load on a motion (6,) under these conditions: (a) each
+    pressure that does not clamp, with its friction, and each force without friction do no work against the
+    motion; (b) each pressure that clamps does at most 1 per unit. In each cell friction takes the direction
+    in which it works most, so each pressure stands for very many linear conditions. Conditions are added as
+    the last motion breaks them, until none is broken; all loads of one grip share them.
 
     Parameters
     ----------
-    grip : of the part.
+    grip : pressures, forces and friction that hold the part.
     conditions : (K, 6) coefficients of the program's rows.
-    answered : forces that suffice for loads, by the bytes of the rounded load.
-    motions : (L, 6) optimal motions of solved loads.
-    inverses : (L, 6, 6) of the six conditions that each of these motions meets.
+    answered : clamp forces that suffice for loads, by the bytes of the rounded load.
+    motions : (L, 6) optimal motions of L solved loads.
+    inverses : (L, 6, 6) for each of these motions the inverse of the matrix of the six conditions it meets.
     """
 
     grip: HeldByFriction
@@ -243,18 +255,19 @@ class MotionProgram:
         self.conditions = free
 
     def find_least_force(self, load: Array, enough: float = -np.inf) -> float | None:
-        """Return the least clamp force in N that balances a load (6,); None where none does.
+        """Return the least clamp force in N that balances a load (6,); None where no force does.
 
-        If the least is at most ``enough``, some force between the least and ``enough`` may be returned
-        instead.
+        If the least force is at most ``enough``, any force between it and ``enough`` may be returned instead.
         """
         return self.find_driven_motion(load, enough)[0]
 
     def find_driven_motion(self, load: Array, enough: float = -np.inf) -> tuple[float | None, Array]:
-        """Return the least clamp force in N that balances a load (6,), and the motion (6,) whose power it is.
+        """Return (1) the least clamp force in N that balances a load (6,),
+        and (2) the motion (6,) that the load drives.
 
-        The force is None where none does; the motion is then one that no clamp force resists. If the least is
-        at most ``enough``, some force between the least and ``enough`` may be returned instead.
+        The force is the power of the load on the motion. It is None where no force balances the load; the
+        motion is then one that no clamp force resists. If the least force is at most ``enough``, any force
+        between it and ``enough`` may be returned instead.
 
         Raises
         ------
@@ -281,15 +294,16 @@ class MotionProgram:
         )
 
     def bound_force(self, loads: Array) -> float:
-        """Return a lower bound in N of the largest clamp force
-        that the loads (N, 6) need, from motions known so far.
+        """Return a lower bound in N of the largest clamp force that loads
+        (N, 6) need, from the motions known so far.
         """
         return max(float((self.motions @ -loads.T).max(initial=0.0)), 0.0)
 
     def find_least_forces(self, loads: Array, most: float = np.inf) -> Array:
-        """Return the least clamp force in N for each load (N, 6), inf where none holds it.
+        """Return the least clamp force in N for each load (N, 6), inf where no force holds it, as (N,).
 
-        Forces up to ``most`` may be larger than the least. Once one is above ``most``, the rest stay NaN.
+        Where the least force is at most ``most``, a larger force up to ``most`` may be returned instead. Once
+        a force is above ``most``, the remaining ones stay NaN.
 
         A motion that meets six conditions is the answer for every load in the cone of these conditions'
         forces, so one linear program answers all loads in that cone.
@@ -312,7 +326,9 @@ class MotionProgram:
         return out
 
     def remember_cone(self, load: Array) -> None:
-        """Store the last motion and its six conditions to answer more loads, where they determine it well."""
+        """Store the last motion and its six conditions for answering more
+        loads; nothing where they do not determine it well.
+        """
         rows = self.program.find_bounding_rows() if load.any() else None
         if rows is None or np.linalg.cond(self.conditions[rows]) > MOST_CONDITION:
             return
@@ -323,14 +339,14 @@ class MotionProgram:
     def answer_in_cones(
         inverses: Array, motions: Array, driven: Array, left: NDArray[np.intp], out: Array
     ) -> NDArray[np.intp]:
-        """Write into ``out`` (N,) the forces of the loads that
-        lie in a known cone; return the indices of the others.
+        """Write into ``out`` (N,) the forces of the loads that lie in a
+        known cone; return the indices of the other loads.
 
         Parameters
         ----------
-        inverses, motions : (K, 6, 6) and (K, 6) of the cones.
+        inverses, motions : (K, 6, 6) and (K, 6), see :class:`MotionProgram`, one of each for K cones.
         driven : (N, 6) the loads, negated.
-        left : indices of the loads to look at.
+        left : indices of the loads to answer.
         """
         if not len(inverses) or not len(left):
             return left
@@ -343,7 +359,7 @@ class MotionProgram:
         return np.asarray(left[~inside])
 
     def cut_off(self, motion: Array) -> bool:
-        """Add to the program the conditions that a motion (6,) breaks; return whether there are any."""
+        """Add to the program the conditions that a motion (6,) breaks; return whether it breaks any."""
         grip = self.grip
         along = grip.rubbing @ motion
         chosen = along.argmax(axis=1)
@@ -360,16 +376,17 @@ class MotionProgram:
 def is_pressed_all_over(fixed: JawPatch, moving: JawPatch) -> bool:
     """Return whether both jaws can press all over what they touch with equal and opposite forces.
 
-    So it is where their kerns, the sets of possible centres of pressure, meet.
+    They can where their kerns meet; a kern is the set of possible centres of pressure.
     """
     one, other = PressedPatch(fixed), PressedPatch(moving)
     return hulls_meet(one.centres, other.centres, KERN_SLACK)
 
 
 def find_least_peak_pressure(fixed: JawPatch, moving: JawPatch, force: float) -> float | None:
-    """Return the smallest possible largest pressure in MPa, at a jaw force in N and without loads.
+    """Return the smallest possible value of the largest pressure in
+    MPa, at a jaw force in N and without loads.
 
-    None where a jaw touches along a line (unbounded pressure), and where it cannot press all over.
+    None where a jaw touches along a line (unbounded pressure), and where a jaw cannot press all over.
     """
     if fixed.is_line or moving.is_line or not is_pressed_all_over(fixed, moving):
         return None
@@ -404,10 +421,10 @@ def find_least_peak_pressure(fixed: JawPatch, moving: JawPatch, force: float) ->
 
 
 def enclose_directions(low: float, high: float, steps: int = 32) -> Array:
-    """Return vectors (N, 2) whose convex hull contains the unit
-    vectors of directions from ``low`` to ``high`` in radians.
+    """Return vectors (N, 2) whose convex hull contains the unit vectors of a range of directions.
 
-    They are at most 0.5 % longer than 1 with 32 ``steps`` per turn. For low = high it is that unit vector.
+    The range is from ``low`` to ``high`` in radians. With 32 ``steps`` per turn the vectors are at most 0.5 %
+    longer than 1. For low = high the result is that single unit vector.
     """
     if high <= low:
         return np.array([[cos(low), sin(low)]])
@@ -422,16 +439,16 @@ def enclose_directions(low: float, high: float, steps: int = 32) -> Array:
 
 
 def list_load_corners(load: Load, theta: float, position: Point, height: float) -> tuple[Array, Array]:
-    """Return points (N, 3) in mm and forces (N, 3) in N, in
-    the jaws' frame, whose hull contains every case of a load.
+    """Return (1) points (N, 3) in mm and (2) forces (N, 3) in N whose
+    convex hull contains every case of a load.
 
-    The load's moment is left out.
+    Both are in the jaws' frame. The load's moment is left out.
 
     Parameters
     ----------
-    theta : the part's orientation in radians.
-    position : of the part's origin, in mm.
-    height : at which the load acts, in mm.
+    theta : orientation of the part in radians.
+    position : place of the part's origin, in mm.
+    height : height at which the load acts, in mm.
     """
     low, high = (radians(angle) + theta for angle in load.directions)
     ways = enclose_directions(low, high) if load.force else np.zeros((1, 2))

@@ -2,14 +2,15 @@
 
 A tool presses at a place of its path with a force in the plane, a force along its axis, and a torque either
 way round. The jaw force is convex in the load (``statics.friction``), and for one force the load is affine in
-the place. So of places in a box and directions in a range the worst are among the corners: those of the box,
-both ends of the range, and the point where the tangents at these meet, which is a little outside. Boxes and
-ranges are halved, the most promising first (branch and bound), until their corners need no more than a single
-straight piece with a narrow range that is known. Arcs are cut into short ones, each inside the triangle of
-its chord and tangents. So no force is understated, and none is overstated by 1 %.
+the place. So for places in a box and directions in a range the worst loads are among finitely many: places at
+the corners of the box; forces at both ends of the range, and at the point where the tangents there meet,
+which is a little outside. Boxes and ranges are halved, the most promising first (branch and bound), until
+their corners need no more force than is already known for a single straight piece with a narrow range. Arcs
+are cut into short ones, each inside the triangle of its chord and tangents. So no force is understated, and
+none is overstated by 1 %.
 
-Reference: A. H. Land, A. G. Doig, *An automatic method of solving discrete programming problems*, Econometrica 28
-(1960).
+Reference: A. H. Land, A. G. Doig, *An automatic method of solving discrete programming problems*,
+Econometrica 28 (1960).
 """
 
 from __future__ import annotations
@@ -57,7 +58,8 @@ class CuttingPieces:
     group : (N,) number of the tool and the kind of cut, ascending.
     start, end : (N, 3) ends of the path of the force's point, x and y in the part's coordinates, z above its
         lower side, in mm.
-    force, torque : (N,) in the plane, in N, and about z, in N mm.
+    force : (N,) size of the force in the plane, in N.
+    torque : (N,) size of the torque about z, in N mm; it may act either way round.
     axial : (N, 2) least and largest force along -z, in N.
     middle, half : (N,) middle and half width of the range of directions of the force, in radians; half at
         most pi.
@@ -75,8 +77,8 @@ class CuttingPieces:
 
     @classmethod
     def from_program(cls, program: Program, thickness: float) -> CuttingPieces:
-        """Return the pieces of a program on a part of this
-        thickness in mm; none where the program has no forces.
+        """Return the pieces of a program on a part of this thickness in
+        mm; none where the program has no forces.
         """
         forces, moves = program.forces, program.moves
         if forces is None:
@@ -115,11 +117,11 @@ class CuttingPieces:
 
 
 def straighten_moves(start: Array, end: Array, bulge: Array) -> tuple[IntArray, Array, Array, Array, Array]:
-    """Return straight pieces of moves with ends (M, 3) and
-    bulges (M,); an arc lies in the hull of its pieces.
+    """Return straight pieces of M moves; the hull of an arc's pieces contains the arc.
 
-    For each piece: index of its move, start and end (N, 3), and middle and half width of the range of
-    directions opposite to the feed, in radians.
+    The result is, for N pieces: index of the move (N,), start (N, 3), end (N, 3), and middle (N,) and half
+    width (N,) of the range of directions opposite to the feed, in radians. The moves have ends ``start`` and
+    ``end`` (M, 3), and bulges (M,): the tangent of a quarter of the arc's sweep, 0 for a straight move.
     """
     chord = end[:, :2] - start[:, :2]
     round_ = (bulge != 0.0) & (chord != 0.0).any(axis=1)
@@ -136,7 +138,7 @@ def straighten_moves(start: Array, end: Array, bulge: Array) -> tuple[IntArray, 
         radius = np.where(round_, size / (2.0 * np.sin(np.abs(turn) / 2)), 0.0)[which]
 
     def after(number: Array) -> Array:
-        """Return the points (N, 3) of the moves after ``number`` (N,) of their steps."""
+        """Return the points (N, 3) at the end of the first ``number`` (N,) steps of the moves."""
         angle = number * step
         far = 2.0 * radius * np.sin(np.abs(angle) / 2)
         along = before + angle / 2
@@ -178,16 +180,16 @@ class GrippedPart(HeldByFriction, Protocol):
 
     @property
     def centre(self) -> Array:
-        """What moments are taken about, in mm."""
+        """Point in mm that moments are taken about."""
         ...
 
     @property
     def length(self) -> float:
-        """What moments are divided by, in mm."""
+        """Length in mm that moments are divided by."""
         ...
 
     def compute_wrenches(self, points: Array, forces: Array) -> Array:
-        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm."""
+        """Return wrenches (N, 6) of forces (N, 3) in N at points (N, 3) in mm."""
         ...
 
 
@@ -197,11 +199,11 @@ class PressedPart:
 
     Parameters
     ----------
-    pieces : in the part's coordinates.
-    grip : of the part between the jaws.
-    motions : the program that finds jaw forces for the grip.
-    theta : by which the part is turned, in radians.
-    position : by which it is then moved, in mm.
+    pieces : pieces of the program's path, in the part's coordinates.
+    grip : pressures, forces and friction that hold the part.
+    motions : the linear program that finds jaw forces for the grip.
+    theta : angle by which the part is turned, in radians.
+    position : vector by which the turned part is then moved, in mm.
     safety : factor on the loads.
     """
 
@@ -214,11 +216,10 @@ class PressedPart:
     still: Array = field(factory=lambda: np.zeros(6))
 
     def make_loads(self, chosen: IntArray, low: float, high: float) -> Array:
-        """Return wrenches (N, 6) whose hull contains the loads of
-        pieces ``chosen`` with directions from ``low`` to ``high``.
+        """Return wrenches (N, 6) whose hull contains the loads of some pieces with a range of directions.
 
-        The directions are in radians, in the part's coordinates; several pieces are replaced by their
-        bounding box.
+        ``chosen`` are indices of pieces; several are replaced by their bounding box. The directions from
+        ``low`` to ``high`` are in radians, in the part's coordinates.
         """
         pieces = self.pieces
         force = pieces.force[chosen]
@@ -255,7 +256,9 @@ class PressedPart:
 
     @cached_property
     def ends(self) -> tuple[Array, Array, Array, Array, Array, Array]:
-        """Both ends of all pieces: places (N, 3), middles and halves of ranges, axial forces, forces, and torques."""
+        """Both ends of all pieces: places (N, 3), middles and half widths
+        of ranges, axial forces, forces, and torques.
+        """
         pieces = self.pieces
         c, s = cos(self.theta), sin(self.theta)
         ends = np.concatenate([pieces.start, pieces.end])
@@ -287,10 +290,11 @@ class PressedPart:
         return row * self.safety + self.still, at % len(pieces)
 
     def climb(self) -> tuple[float, int, Array]:
-        """Return a lower bound in N of the jaw force needed, and
-        the index of the piece that needs it; inf where none holds.
+        """Return (1) a lower bound in N of the jaw force needed, (2) the
+        index of the piece that needs it, (3) its load.
 
-        From each of twelve motions, the hardest load and the motion that it drives are found alternately.
+        The force is inf where no jaw force holds. From each of twelve motions, the hardest load and the
+        motion that this load drives are found alternately.
         """
         best, at, hardest = -inf, 0, np.zeros(6)
         for start in (*np.eye(6), *-np.eye(6)):
@@ -309,10 +313,9 @@ class PressedPart:
         return best, at, hardest
 
     def intersect_range(self, piece: int, low: float, high: float) -> tuple[float, float]:
-        """Return the intersection of the range from ``low`` to
-        ``high``, in radians, with that of a piece's directions.
+        """Return the intersection (low, high) of a range of directions with that of a piece, in radians.
 
-        It is empty, with low > high, where they have nothing in common.
+        It is empty, with low > high, where the two ranges have nothing in common.
         """
         half = float(self.pieces.half[piece])
         if half >= pi:
@@ -322,8 +325,8 @@ class PressedPart:
         return max(low, middle - half), min(high, middle + half)
 
     def select_within(self, chosen: IntArray, low: float, high: float) -> IntArray:
-        """Return those of pieces ``chosen`` whose directions
-        meet the range from ``low`` to ``high``, in radians.
+        """Return those of the pieces ``chosen`` whose directions meet the
+        range from ``low`` to ``high``, in radians.
         """
         half = self.pieces.half[chosen]
         off = np.abs((self.pieces.middle[chosen] - (low + high) / 2 + pi) % (2 * pi) - pi)
@@ -331,10 +334,10 @@ class PressedPart:
         return np.asarray(chosen[reaches])
 
     def halve(self, chosen: IntArray, low: float, high: float) -> list[tuple[IntArray, float, float]]:
-        """Return the pieces and range of directions split in two, as (pieces, low, high) each.
+        """Return the pieces and the range of directions split in two, as (pieces, low, high) each.
 
-        Pieces are split by place, or the range by its middle, whichever is coarser; a half range without
-        pieces is left out.
+        Two cases, whichever is coarser: (a) the pieces are split by place; (b) the range is split in its
+        middle, and a half without pieces is left out.
         """
         pieces = self.pieces
         wide = float(pieces.force[chosen].max()) > 0.0 and high - low > NARROW
@@ -365,18 +368,19 @@ def find_worst_move(
     safety: float,
     still: Array | None = None,
 ) -> ProgramJawForce | None:
-    """Return the largest jaw force that a program needs, and its move; None where no tool presses on the
-    part.
+    """Return the largest jaw force that a program needs, and at which
+    move; None where no tool presses on the part.
 
-    In the returned object the force is None where no jaw force holds. It is never below the true one, and
-    less than 1 % above it.
+    In the returned object the force is None where no jaw force holds. Otherwise the force is never below the
+    true one, and less than 1 % above it.
 
     Parameters
     ----------
-    grip : of the part between the jaws.
-    pieces : of the program.
+    grip : pressures, forces and friction that hold the part.
+    pieces : pieces of the program's path.
     theta, position : turn in radians and shift in mm of the part from its drawing.
     safety : factor on the loads.
+    still : (6,) wrench of a load that always acts, without the factor; None for none.
     """
     if not len(pieces):
         return None

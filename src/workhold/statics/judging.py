@@ -3,11 +3,11 @@
 Glossary
 --------
 warning : a contact near an edge (one for each), a weak closure, a strong peg, a large location error, a peg
-    that lets go under a load. At a jaw force that is known also a peg that is bent too hard, and pegs that give
-    way too far.
-unfit : of a fixture that is none for a workshop, because the part lies anywhere or one peg hardly holds.
-penalty : points against a fixture. One stands for a location error 12 % larger (ISO 3, series R20). Tilt, a
-    strong peg and a small face cost so many points each.
+    that lets go under a load. At a jaw force that is known also a peg that is bent too hard, and pegs that
+    give way too far.
+unfit : a fixture is unfit for a workshop if the part's place is hardly determined or a peg hardly holds.
+penalty : points against a fixture. One point stands for a location error that is 12 % larger (ISO 3, series
+    R20). A tilt, a strong peg and a small face cost a number of points each.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ class JudgingLimits:
     ----------
     off : sum of the tolerances of peg and face, in mm.
     small_face : size in mm below which a face is small.
-    jaw_force : that the vise is closed with, in N; None where not given, and then no peg that lets go or
-        bends is a warning.
+    jaw_force : force that the vise is closed with, in N; None where not given, and then there are no warnings
+        of pegs that let go or bend.
     bending : largest bending stress of a pin in MPa, and largest movement of the part by pins in mm.
     """
 
@@ -88,16 +88,19 @@ class JudgingLimits:
     def from_toolkit(
         cls, length: float, toolkit: Toolkit, tolerance: Tolerance, jaw_force: float | None = None
     ) -> JudgingLimits:
-        """Return the limits for a toolkit, a tolerance, and a jaw force in N if given.
+        """Return the limits for a toolkit, a tolerance, and a jaw force in N (None where not given).
 
-        ``length`` is L of the wrenches in mm: half the part's diameter plus the radius of the largest peg.
+        ``length`` is the length L in mm that moments are divided by: half the part's diameter plus the radius
+        of the largest peg.
         """
         diameter = 2 * (length - max(carrier.peg_radius for carrier in toolkit.carriers))
         return cls(tolerance.peg + tolerance.face, SMALL_FACE * diameter, jaw_force, get_limits(toolkit))
 
     def count_warnings(self, quality: Array, edges: Array) -> Array:
-        """Return numbers of warnings (N,) from figures of quality
-        (N, F) and contacts' distances from edges (N, P) in mm.
+        """Return the number of warnings of each fixture, (N,).
+
+        ``quality`` (N, F) are figures of quality, ``edges`` (N, P) distances of the P contacts from edges, in
+        mm.
         """
         count = is_near_edge(edges).sum(axis=1) + is_weak(quality[:, CLOSURE_MARGIN])
         count = (
@@ -114,7 +117,7 @@ class JudgingLimits:
         return np.asarray(count, np.float64)
 
     def compute_penalty(self, quality: Array) -> Array:
-        """Return penalty points (N,) from figures of quality (N, F); NaN where the location error is."""
+        """Return penalty points (N,) from figures of quality (N, F); NaN where the location error is NaN."""
         error = quality[:, LOCATION_ERROR]
         points = np.zeros(len(error))
         if self.off > 0.0:
@@ -130,52 +133,53 @@ class JudgingLimits:
 
 
 def is_near_edge(distance: Any) -> Any:
-    """Return whether a contact is near an edge, from its distance in mm, a number or an array."""
+    """Return whether a contact is near an edge; ``distance`` in mm is a number or an array."""
     return np.round(distance, FIGURE_DECIMALS) < NEAR_EDGE
 
 
 def is_weak(margin: Any) -> Any:
-    """Return whether a closure is weak, from its margin, a number or an array."""
+    """Return whether a closure is weak; the closure margin is a number or an array."""
     return np.round(margin, FIGURE_DECIMALS) < WEAK_CLOSURE
 
 
 def is_strong(force: Any) -> Any:
-    """Return whether a peg carries much force, from its force per unit of jaw force, a number or an array."""
+    """Return whether a peg carries much force; ``force`` per unit of jaw force is a number or an array."""
     return np.round(force, FIGURE_DECIMALS) > STRONG_PEG
 
 
 def is_astray(error: Any, off: float) -> Any:
-    """Return whether a location error in mm, a number or an
-    array, is large; ``off`` is the sum of the tolerances in mm.
+    """Return whether a location error is large; ``error`` in mm is a number or an array.
+
+    ``off`` is the sum of the tolerances of peg and face in mm.
     """
     return np.round(error, FIGURE_DECIMALS) > LARGE_LOCATION_ERROR * off
 
 
 def lets_go(needed: Any, jaw_force: float) -> Any:
-    """Return whether a peg lets go at a jaw force, from
-    the jaw force needed, a number or an array; all in N.
+    """Return whether a peg lets go at a jaw force; ``needed``, the force
+    it needs, is a number or an array; all in N.
     """
     return needed > jaw_force * (1.0 + NO_FORCE)
 
 
 def is_beyond(value: Any, limit: float) -> Any:
-    """Return whether a bending stress or a movement by
-    bent pegs, a number or an array, is above its limit.
+    """Return whether a value is above its limit, by more than rounding.
+
+    ``value`` is a bending stress, or a movement of the part by bent pegs; a number or an array.
     """
     return np.round(value, FIGURE_DECIMALS) > limit
 
 
 def is_unfit(margin: Any, error: Any, off: float) -> Any:
-    """Return whether a closure margin and a location error in
-    mm, numbers or arrays, make a fixture unfit for a workshop.
+    """Return whether a closure margin and a location error in mm make a fixture unfit for a workshop.
 
-    ``off`` is the sum of the tolerances of peg and face in mm. NaN is unfit.
+    Both are numbers or arrays; NaN is unfit. ``off`` is the sum of the tolerances of peg and face in mm.
     """
     closes = np.round(margin, FIGURE_DECIMALS) >= UNFIT_CLOSURE
     return np.logical_not(closes & (np.round(error, FIGURE_DECIMALS) <= UNFIT_LOCATION_ERROR * off))
 
 
 def are_unfit(quality: Array, tolerance: Tolerance) -> NDArray[np.bool_]:
-    """Return which fixtures (N,) are unfit for a workshop, from figures of quality (N, F)."""
+    """Return a mask (N,): True for fixtures unfit for a workshop, from figures of quality (N, F)."""
     off = tolerance.peg + tolerance.face
     return np.asarray(is_unfit(quality[:, CLOSURE_MARGIN], quality[:, LOCATION_ERROR], off))

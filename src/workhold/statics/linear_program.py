@@ -2,8 +2,8 @@
 
 When costs change or rows are added, the solver continues from the last basis.
 
-Reference: Q. Huangfu, J. A. J. Hall, *Parallelizing the dual revised simplex method*, Mathematical Programming
-Computation 10 (2018).
+Reference: Q. Huangfu, J. A. J. Hall, *Parallelizing the dual revised simplex method*, Mathematical
+Programming Computation 10 (2018).
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ SETTINGS = {
 
 @frozen(eq=False)
 class LinearProgram:
-    """A linear program, minimize c . x subject to l <= A x
-    <= u, whose costs can change and that can get more rows.
+    """A linear program, minimize c . x subject to l <= A x <= u, whose
+    costs c can change and which can get more rows.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ class LinearProgram:
     def from_matrix(
         cls, matrix: Array, costs: Array, lower: Array, upper: Array, most: float | None = None
     ) -> LinearProgram:
-        """Return the program of a matrix (M, N), costs (N,)
-        and bounds of rows (M,), -inf or inf where unbounded.
+        """Return the program with a matrix A (M, N), costs c (N,), and bounds of its rows l, u (M,).
 
-        ``most`` bounds each x to [-most, most]; with None each x is 0 or more.
+        Bounds are -inf or inf where a row is unbounded. ``most`` bounds each x to [-most, most]; with None
+        each x is 0 or more.
         """
         # Slow to import, and only needed where a program is solved.
         import highspy
@@ -81,7 +81,7 @@ class LinearProgram:
         return cls(solver)
 
     def find_least_cost(self) -> float | None:
-        """Solve the program; return the least cost, None where it is infeasible or unbounded."""
+        """Solve the program; return the least cost, or None where it is infeasible or unbounded."""
         import highspy
 
         self.solver.run()
@@ -90,10 +90,10 @@ class LinearProgram:
         return float(self.solver.getInfo().objective_function_value)
 
     def find_bounding_rows(self) -> NDArray[np.int64] | None:
-        """Return the indices of the rows at their upper bound
-        in the last solution, if they are as many as columns.
+        """Return the indices of the rows at their upper bound in the last
+        solution, if there are as many as columns.
 
-        None if they are fewer, as bounds of columns are active, too.
+        None if there are fewer, since bounds of columns are active as well.
         """
         import highspy
 
@@ -103,7 +103,7 @@ class LinearProgram:
         return np.array(rows) if len(rows) == len(basis.col_status) else None
 
     def add_rows(self, rows: Array, upper: Array) -> None:
-        """Add rows (K, N) with upper bounds (K,) and no lower ones."""
+        """Add rows (K, N) with upper bounds (K,) and without lower bounds."""
         import highspy
 
         count, columns = rows.shape
@@ -113,7 +113,7 @@ class LinearProgram:
         self.solver.addRows(count, lower, upper, count * columns, starts, indices, rows.ravel())
 
     def solve_with_costs(self, costs: Array) -> Array | None:
-        """Set new costs (N,) and solve; return the optimal x (N,), None where infeasible or unbounded."""
+        """Set new costs (N,) and solve; return the optimal x (N,), or None where infeasible or unbounded."""
         import highspy
 
         columns = np.arange(len(costs), dtype=np.int32)

@@ -114,13 +114,13 @@ def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
 
 
 def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
-    """Return peg forces (..., P, 3) per unit of g_x, g_y and moment, with jaws of a stiffness.
+    """Return the peg forces per unit of g_x, g_y and moment of a load, with jaws of a stiffness, (..., P, 3).
 
     Parameters
     ----------
     free : (..., P, 3) peg forces per unit of load with a jaw that keeps its force.
     closing : (..., P, M) peg forces per unit of the force of each jaw or clamp, H.
-    stiffness : of a jaw, relative to that of a contact; 0 returns ``free``, inf is a locked jaw.
+    stiffness : stiffness of a jaw, divided by that of a contact; 0 returns ``free``, inf is a locked jaw.
     """
     if stiffness == 0:
         return free
@@ -130,17 +130,19 @@ def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Arra
 
 
 def compute_needed_jaw_forces(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
-    """Return jaw forces (N,) in N above which no peg of a screw vise lets go under any load; at least 0.
+    """Return for each fixture the jaw force in N above which no peg of
+    a screw vise lets go under any load, (N,).
 
-    Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0. Of two clamps F is the sum of
-    their forces, at the working ratio, and what is taken from f0 is its part in the plane of both.
+    At least 0. Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0; the letters are those
+    of the module's head. With two clamps F is the sum of their forces, at the working ratio, and the
+    component of f0 in the plane of both clamps' columns is subtracted.
 
     Parameters
     ----------
     inverses : (N, 4, P) inverses of the contact matrices, h in the last row.
     closing : (N, P, M) peg forces per unit of the force of each jaw or clamp.
     length : L in mm.
-    loads : (M, 11) rows of ``kernels.contact.quality``.
+    loads : (M, 11) rows of loads, see ``kernels.contact.quality``.
     """
     held = inverses[:, 3]
     back = np.swapaxes(closing, 1, 2)
@@ -159,8 +161,10 @@ def compute_needed_jaw_forces(inverses: Array, closing: Array, length: float, lo
 
 
 def find_touched_points(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> tuple[Array, Array]:
-    """Return the points (P, 2) in mm at which pegs touch the
-    part, and outward unit normals (P, 2), in the part's frame.
+    """Return (1) the points (P, 2) in mm at which pegs touch the part,
+    and (2) its outward unit normals there (P, 2).
+
+    Both are in the part's frame.
     """
     touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
     points, normals, *_ = find_contacts_on_part(
@@ -176,14 +180,15 @@ def find_contacts_on_part(
     touched: TouchableFeatures,
     matrices: ContactMatrices,
 ) -> tuple[Array, Array, Array, Array]:
-    """Return the first four arguments of :func:`make_cone_edges` for a fixture.
+    """Return (contacts, normals, moving, against) of a fixture, the
+    first four arguments of :func:`make_cone_edges`.
 
-    They are contact points (P, 2) relative to the part's centre, normals (P, 2), moving (P,) and against (P,
-    2).
+    ``against`` is (P, 2) here.
 
     Parameters
     ----------
-    touched, matrices : what the toolkit's pegs touch of the part, and the contact matrix of the fixture.
+    touched : features of the part that the toolkit's pegs can touch.
+    matrices : contact matrix of the fixture.
     """
     carriers = toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)
     faces = {face.number: face.segment for face in workpiece.numbered.faces}
@@ -197,8 +202,9 @@ def find_contacts_on_part(
 def make_cone_edges(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> tuple[Array, Array]:
-    """Return wrenches (2 P, 3) of the edges of friction cones, and
-    shares (2 P,) by which each pushes the moving carrier back.
+    """Return (1) wrenches (2 P, 3) of the edges of friction cones, and (2) shares (2 P,) of the edges.
+
+    A share is the force by which a unit force along the edge pushes the moving carrier back.
 
     Parameters
     ----------
@@ -207,8 +213,8 @@ def make_cone_edges(
     normals : (P, 2) outward unit normals.
     moving : (P,) 1 for pegs on the carrier that moves, 0 for others.
     against : (2,) unit vector in the part's frame opposite to the clamping direction, or (P, 2) for each peg.
-    friction : the coefficient mu.
-    length : L in mm, which moments are divided by.
+    friction : coefficient of friction mu.
+    length : length L in mm that moments are divided by.
     """
     tangents = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
     edges = np.concatenate([-normals + friction * tangents, -normals - friction * tangents])
@@ -222,11 +228,11 @@ def make_cone_edges(
 def list_possible_motions(
     contacts: Array, normals: Array, moving: Array, against: Array, friction: float, length: float
 ) -> Array:
-    """Return the corners (M, 3) of the dual polytope: jaw force in N per unit of (g_x, g_y, moment in N mm).
+    """Return the corners of the dual polytope, (M, 3): jaw force in N per unit of (g_x, g_y, moment in N mm).
 
-    The parameters are those of :func:`make_cone_edges`. The jaw force needed for a load is the largest
-    product with it, at least 0. No corners mean that friction alone can jam the part between pegs of one
-    carrier, so no load needs any jaw force.
+    The parameters are those of :func:`make_cone_edges`. The jaw force needed for a load (g_x, g_y, moment) is
+    its largest scalar product with a corner, at least 0. No corners mean that friction alone can jam the part
+    between pegs of one carrier, so that no load needs any jaw force.
     """
     wrenches, share = make_cone_edges(contacts, normals, moving, against, friction, length)
     corners = []
@@ -248,7 +254,7 @@ class WorstLoad:
     value : the worst force there, in N.
     peg : index of the peg concerned, in the fixture's order.
     point : where the load acts, in mm in the part's coordinates; the part's centre for a moment alone.
-    direction : of the load, in degrees in the part's frame, in [0, 360).
+    direction : direction of the load, in degrees in the part's frame, in [0, 360).
     """
 
     value: float
@@ -264,19 +270,18 @@ class LoadCase:
     Parameters
     ----------
     load : the load.
-    jaw_stiffness : of the closed jaw, in that of one contact: infinite for a screw, 0 for a jaw that keeps
-        its force.
-    jaw_force : force on the moving carrier, before the load comes, that ``smallest`` and ``largest`` hold
-        for.
-    smallest, largest : of each peg's force, in the fixture's order. Where a force is negative the peg would
-        have to pull: it lets go, and the forces given are no longer those that act.
+    jaw_stiffness : stiffness of the closed jaw, divided by that of one contact: inf for a screw, 0 for a jaw
+        that keeps its force.
+    jaw_force : force on the moving carrier before the load acts; ``smallest`` and ``largest`` hold for it.
+    smallest, largest : smallest and largest force of each peg, in the fixture's order. Where a force is
+        negative the peg would have to pull: it lets go, and the forces given are no longer those that act.
     reaction : the largest peg force with as little clamping as keeps all forces from being negative (the
         figure of quality ``compute_load_reaction``).
-    needed : the jaw force above which no peg lets go, and the peg that does below it; never negative.
-    needed_with_friction : the jaw force above which Coulomb friction could hold the part, None where no
-        friction was given. Optimistic: with friction, statics does not determine the forces, and this is
-        what the best of them would need. It assumes a jaw that keeps its force; a locked one needs no more.
-        Pegs may let go.
+    needed : the jaw force above which no peg lets go, and the peg that lets go below it; never negative.
+    needed_with_friction : the jaw force above which Coulomb friction could hold the part; None where no
+        friction was given. It is optimistic: with friction, statics does not determine the forces, and the
+        most favourable ones are assumed. It also assumes a jaw that keeps its force; a locked jaw needs no
+        more. Pegs may let go.
     """
 
     load: Load
@@ -370,7 +375,7 @@ def compute_load_cases(
 
 
 def find_largest_value(x: float, y: float, directions: tuple[float, float]) -> tuple[float, float]:
-    """Return the largest x cos t + y sin t for t in a range of degrees, and that t in [0, 360)."""
+    """Return (1) the largest x cos t + y sin t for t in a range of degrees, and (2) that t in [0, 360)."""
     low, high = directions
     peak = low + (degrees(atan2(y, x)) - low) % 360.0
     candidates = [low, high, peak] if peak <= high else [low, high]
@@ -381,10 +386,11 @@ def find_largest_value(x: float, y: float, directions: tuple[float, float]) -> t
 def find_largest_push(
     coefficients: Array, load: Load, center: tuple[float, float], peg: int = 0
 ) -> WorstLoad:
-    """Return where a load makes the product (g_x, g_y, moment)
-    . coefficients largest, over its points and directions.
+    """Return the point and direction at which a load makes a linear
+    function of it largest, and the value there.
 
-    The moment includes that of the force about ``center``. ``peg`` is only copied into the result.
+    The function is the scalar product of ``coefficients`` (3,) and (g_x, g_y, moment). The moment includes
+    that of the force about ``center``. ``peg`` is only copied into the result.
     """
     a, b, c = (float(value) for value in coefficients[:3])
     worst: WorstLoad | None = None
@@ -399,10 +405,11 @@ def find_largest_push(
 
 
 def find_needed_force(forces: Array, load: Load, center: tuple[float, float]) -> WorstLoad:
-    """Return the jaw force below which a peg lets go under
-    a load: the largest -f0_i / h_i, at least 0, and where.
+    """Return the jaw force below which a peg lets go under a load,
+    and at which point and direction of the load.
 
-    ``forces`` (P, 4) are peg forces per unit of g_x, g_y, moment and jaw force.
+    The force is the largest -f0_i / h_i, at least 0. ``forces`` (P, 4) are peg forces per unit of g_x, g_y,
+    moment and jaw force.
     """
     pushes = (find_largest_push(-row / row[3], load, center, peg) for peg, row in enumerate(forces))
     worst = max(pushes, key=lambda push: push.value)
@@ -412,7 +419,8 @@ def find_needed_force(forces: Array, load: Load, center: tuple[float, float]) ->
 def find_largest_reaction(forces: Array, load: Load, center: tuple[float, float]) -> WorstLoad:
     """Return the largest peg force under a load, with as little clamping as keeps all contacts, and where.
 
-    ``forces`` (P, 4) are as in :func:`needed` (Brost & Goldberg 1996, ``kernels.contact.quality``).
+    ``forces`` (P, 4) are as in :func:`find_needed_force` (Brost & Goldberg 1996,
+    ``kernels.contact.quality``).
     """
     pairs = permutations(range(len(forces)), 2)
     return max(
@@ -427,9 +435,10 @@ def find_largest_reaction(forces: Array, load: Load, center: tuple[float, float]
 def find_force_with_friction(
     motions: Array | None, load: Load, center: tuple[float, float], need: WorstLoad, stiffness: float
 ) -> float | None:
-    """Return the jaw force needed with friction: the largest work of the load on the motions, at least 0.
+    """Return the jaw force in N needed with friction: the largest work of a load on the motions, at least 0.
 
-    None if ``motions`` is None. With a jaw of some stiffness, at most the force ``need`` without friction.
+    None if ``motions`` is None. Otherwise ``motions`` are the corners that :func:`list_possible_motions`
+    returns. With a jaw of some ``stiffness``, the result is at most the force ``need`` without friction.
     """
     if motions is None:
         return None

@@ -1,10 +1,11 @@
-"""Pressure on flat faces that touch: affine on a patch, nowhere negative, its force and moment as exact integrals.
+"""Pressure on flat faces that touch: affine on a patch, nowhere negative, its force and moment as exact
+integrals.
 
 Two flat and stiff faces on an elastic bed press on each other with p = a + b u + c v, u along the jaw and v
 upward. The faces stay in contact everywhere if p is not negative at the corners. Such pressures form a cone.
-Its edges are the pressures that vanish along one side of the convex hull of the corners; every other one is a
-sum of these. The kern is the set of possible centres of pressure: the convex hull of those of the edges (the
-middle third of a rectangle's height).
+The edges of the cone are the pressures that vanish along one side of the convex hull of the corners; every
+other pressure of the cone is a sum of edges. The kern is the set of possible centres of pressure, the convex
+hull of the edges' centres of pressure (for a rectangle of a given height, its middle third).
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ class PatchCells:
 
     Parameters
     ----------
-    centre : (C, 2) in mm.
-    area : (C,) in mm²; of a line in mm.
+    centre : (C, 2) centre of each of C cells, in mm.
+    area : (C,) area of each cell in mm²; its length in mm where the patch is a line.
     """
 
     centre: Array
@@ -62,24 +63,27 @@ class PressedFace(ABC):
 
     @cached_property
     def edges(self) -> Array:
-        """Extreme pressures (R, 3): coefficients a, b, c of each,
-        with unit total force; all others are positive combinations.
+        """Extreme pressures (R, 3): coefficients a, b, c of each, scaled to a total force of 1.
+
+        All other pressures are sums of multiples of these.
         """
         return compute_pressure_edges(self.corners, self.integrals[0])
 
     @cached_property
     def centres(self) -> Array:
-        """Centres of pressure (R, 2) in mm of ``edges``; their hull is the kern."""
+        """Centres of pressure (R, 2) of ``edges``, in mm; their convex hull is the kern."""
         return np.asarray((self.edges @ self.integrals)[:, 1:])
 
     def compute_pressures(self, points: Array) -> Array:
-        """Return the pressures (R, N) of each of ``edges`` at points (N, 2), clipped to 0 or more."""
+        """Return the pressure of each of the R ``edges`` at points (N, 2),
+        clipped to 0 or more, as (R, N).
+        """
         return np.maximum(self.edges @ np.column_stack([np.ones(len(points)), points]).T, 0.0)
 
 
 @frozen(eq=False)
 class PressedPatch(PressedFace):
-    """A patch of a jaw with the pressures that it can bear; u along the jaw, v upward."""
+    """A patch of a jaw, with the pressures that it can bear; u runs along the jaw, v upward."""
 
     patch: JawPatch
 
@@ -108,7 +112,7 @@ class PressedPatch(PressedFace):
 
     @cached_property
     def cells(self) -> PatchCells:
-        """Cells of the rectangles, 6 along the jaw by 4 upward in each; 6 on a line."""
+        """Cells of the patch's rectangles: 6 along the jaw by 4 upward in each rectangle, or 6 on a line."""
         centres, areas = list[tuple[float, float]](), list[float]()
         for x0, x1, z0, z1 in self.rectangles:
             along, up = (1, CELLS_OF_LINE) if self.patch.is_line else (CELLS_ALONG, CELLS_UP)
@@ -121,14 +125,14 @@ class PressedPatch(PressedFace):
         return PatchCells(np.array(centres), np.array(areas))
 
     def compute_largest_pressures(self) -> Array:
-        """Return the pressures (R, K) of each of ``edges`` at the corners of the hull."""
+        """Return the pressure of each of the R ``edges`` at the K corners of the hull, (R, K)."""
         return self.compute_pressures(np.array(self.corners))
 
 
 @frozen(eq=False)
 class PressedPolygon(PressedFace):
-    """A flat face of any outline with the pressures that it
-    can bear, such as the lower side of a part on a plate.
+    """A flat face of any outline, such as the lower side of a part on a
+    plate, with the pressures that it can bear.
 
     Parameters
     ----------
@@ -149,7 +153,7 @@ class PressedPolygon(PressedFace):
 
     @cached_property
     def cells(self) -> PatchCells:
-        """Pieces of the face in the squares of a grid, about 50; each with its centre of area."""
+        """About 50 pieces of the face, cut by the squares of a grid, each with its centre of area."""
         points = np.vstack(self.loops)
         low, high = points.min(axis=0), points.max(axis=0)
         side = sqrt(float(self.integrals[0, 0]) / CELLS_OF_FOOT)
@@ -168,13 +172,14 @@ class PressedPolygon(PressedFace):
 
 
 def compute_pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
-    """Return the extreme pressures (R, 3) of those that are not
-    negative at a hull's corners, each with unit total force.
+    """Return the extreme ones, (R, 3), of the pressures a + b u + c v that are not negative on a convex hull.
+
+    Rows are coefficients a, b, c, scaled to a total force of 1.
 
     Parameters
     ----------
-    corners : of the convex hull, counter-clockwise; two of a line that runs upward.
-    integral : (3,) of 1, u and v over the face.
+    corners : corners of the convex hull, counter-clockwise; two for a line that runs upward.
+    integral : (3,) integrals of 1, u and v over the face.
     """
     if len(corners) == 2:
         (_, low), (_, high) = sorted(corners, key=lambda one: one[1])
@@ -189,11 +194,11 @@ def compute_pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
 
 
 def integrate_polygon(loop: Array) -> Array:
-    """Return the integrals (3, 3) of the products of 1, u and
-    v over a polygon (N, 2); negative for a clockwise one.
+    """Return the integrals (3, 3) over a polygon of the products of 1,
+    u and v; negative for a clockwise polygon.
 
-    Each side makes a triangle with the first corner; the mean at the middles of a triangle's sides is exact
-    for these.
+    ``loop`` (N, 2) are the corners. Each side makes a triangle with the first corner; a function of second
+    degree is integrated exactly from its values at the middles of a triangle's sides.
     """
     total = np.zeros((3, 3))
     if len(loop) < 3:
@@ -210,10 +215,10 @@ def integrate_polygon(loop: Array) -> Array:
 
 
 def cut_to_box(loop: Array, low: Array, high: Array) -> Array:
-    """Return the polygon (K, 2) that is left of a polygon (N, 2)
-    in the box from ``low`` to ``high`` (Sutherland & Hodgman).
+    """Return the part (K, 2) of a polygon (N, 2) that lies in a box (Sutherland & Hodgman).
 
-    Separate pieces stay joined along the border by sides without area. Empty where nothing is inside.
+    The box is from ``low`` to ``high``, (2,) each. Separate pieces stay joined along the border by sides
+    without area. Empty where nothing is inside.
     """
     for axis in (0, 1):
         for level, way in ((low[axis], 1.0), (high[axis], -1.0)):
@@ -234,8 +239,8 @@ def cut_to_box(loop: Array, low: Array, high: Array) -> Array:
 def hulls_meet(one: Array, other: Array, slack: float) -> bool:
     """Return whether the convex hulls of points (N, 2) and (M, 2) meet, or are at most ``slack`` mm apart.
 
-    Convex sets that are apart are so along the normal of a side of one of them; sets without area also along
-    a side, or from one point to the other.
+    Convex sets that do not meet are separated along the normal of a side of one of them; sets without area may
+    also be separated along a side, or along the line from one point to the other.
 
     >>> hulls_meet(np.array([[0, 0], [2, 0], [0, 2]]), np.array([[1.5, 1.5], [1.5, 3]]), 1e-9)
     False

@@ -82,16 +82,18 @@ class WorstPlace:
 
 @frozen(eq=False)
 class PathForces:
-    """The K pieces of a path at which a linear function of the
-    load can be largest: points, and arcs without their ends.
+    """The K pieces of a path at which a linear function of the load can be largest.
+
+    A piece is a point, or an arc without its ends.
 
     Parameters
     ----------
-    move : (K,) index of the program's move; of equal ones the first.
-    force, torque : (K,) in N and N mm.
+    move : (K,) index of the program's move; of equal pieces the first.
+    force : (K,) size of the tool's force in the plane, in N.
+    torque : (K,) size of the tool's torque, in N mm.
     x, y : (K,) the point, or the centre of the arc, relative to the point that moments are taken about, in
         mm.
-    radius : (K,) of the arc; 0 for a point.
+    radius : (K,) radius of the arc, in mm; 0 for a point.
     start, sweep : (K,) angle at which the arc starts, and signed angle by which it turns, in radians.
     against : (K,) direction opposite to the feed at a point, in radians.
     spread : half width of the range of directions about it, in radians; pi for any direction.
@@ -120,7 +122,8 @@ class PathForces:
         return evolve(self, **{name: getattr(self, name)[chosen] for name in COLUMNS})
 
     def find_worst(self, functions: Array) -> WorstPlace:
-        """Return, for each row of functions of the load, the largest value along the path, and where.
+        """Return, for each row of linear functions of the load, the
+        largest value along the path, and where it is.
 
         Parameters
         ----------
@@ -136,9 +139,7 @@ class PathForces:
         return found
 
     def search_rows(self, functions: Array, found: WorstPlace, first: int) -> None:
-        """Search for the worst places of rows of functions (R, J,
-        3), and write them into ``found`` from row ``first`` on.
-        """
+        """Write the worst places of rows of functions (R, J, 3) into ``found``, from its row ``first`` on."""
         rows, each = functions.shape[:2]
         bounds = self.blocks.compute_bounds(functions.reshape(-1, 3), self.spread).reshape(rows, -1)
         bounds *= 1.0 + SURELY
@@ -157,7 +158,8 @@ class PathForces:
     def search_blocks(
         self, functions: Array, row: IntArray, place: IntArray, blocks: int, found: WorstPlace, first: int
     ) -> None:
-        """Evaluate one block for each query, and write into ``found`` what is larger than what is there.
+        """Evaluate one block of pieces for each of Q queries, and write
+        values larger than those in ``found`` into it.
 
         Parameters
         ----------
@@ -178,8 +180,10 @@ class PathForces:
         found.move[at] = self.move[piece[leading]]
 
     def evaluate(self, a: Array, b: Array, c: Array, piece: IntArray) -> Array:
-        """Return the largest V (...) at pieces (...) for coefficients
-        a, b, c (...); -inf in an arc without an inner extreme.
+        """Return the largest V at each piece for coefficients a, b, c;
+        -inf in an arc without an inner extreme.
+
+        All arrays have the same shape (...); ``piece`` are indices. V is the function of the module's head.
         """
         force, torque, radius = self.force[piece], self.torque[piece], self.radius[piece]
         x, y = a - self.y[piece] * c, b + self.x[piece] * c
@@ -197,11 +201,13 @@ class PathForces:
         return np.asarray(out + torque * np.abs(c))
 
     def evaluate_within_arcs(self, x: Array, y: Array, size: Array, c: Array, piece: IntArray) -> Array:
-        """Return the largest inner extreme (Q,) of V on arcs for F = 1 and T = 0; -inf where there is none.
+        """Return the largest inner extreme of V on each of Q arcs for F =
+        1 and T = 0, (Q,); -inf where there is none.
 
         Parameters
         ----------
-        x, y, size : (Q,) a - m_y c, b + m_x c for the arc's centre m, and the length of that vector.
+        x, y : (Q,) a - m_y c and b + m_x c, where (m_x, m_y) is the arc's centre.
+        size : (Q,) length of the vector (x, y).
         """
         sweep = self.sweep[piece]
         sense = np.sign(sweep)
@@ -216,7 +222,7 @@ class PathForces:
 
 
 def find_largest_within(x: Array, y: Array, size: Array, middle: Array, half: Array | float) -> Array:
-    """Return the largest x cos t + y sin t (...) for t within ``half`` of ``middle``, in radians.
+    """Return the largest x cos t + y sin t for t within ``half`` of ``middle``, in radians, elementwise.
 
     ``size`` is hypot(x, y).
     """
@@ -228,13 +234,13 @@ def find_largest_within(x: Array, y: Array, size: Array, middle: Array, half: Ar
 
 @frozen(eq=False)
 class PieceBlocks:
-    """Runs of consecutive pieces, each with a circle around it, for bounds; see :class:`PathForces`.
+    """Blocks of consecutive pieces, each with a circle around it, for upper bounds; see :class:`PathForces`.
 
     Parameters
     ----------
-    first : (B,) index of the first piece of each.
+    first : (B,) index of the first piece of each of B blocks.
     x, y, reach : (B,) centre and radius in mm of a circle that contains the block's points.
-    force, torque : (B,) the largest in the block.
+    force, torque : (B,) largest force and largest torque in the block.
     against, half : (B,) middle and half width of the range of the force's directions in the block, in
         radians.
     """
@@ -279,7 +285,9 @@ class PieceBlocks:
         )
 
     def compute_bounds(self, functions: Array, spread: float) -> Array:
-        """Return upper bounds (N, B) of functions (N, 3) over the pieces of each block."""
+        """Return upper bounds of N linear functions (N, 3) of the load
+        over the pieces of each of B blocks, (N, B).
+        """
         a, b, c = (functions[:, k, None] for k in range(3))
         x, y = a - self.y * c, b + self.x * c
         largest = np.hypot(x, y)
@@ -291,8 +299,8 @@ class PieceBlocks:
         return np.asarray(self.force * largest + self.torque * np.abs(c))
 
     def find_greatest(self, pieces: PathForces, functions: Array, block: IntArray) -> tuple[Array, IntArray]:
-        """Return the largest value (Q,) of functions (Q,
-        3) in blocks (Q,), and the index (Q,) of the piece.
+        """Return (1) the largest value of each function (Q, 3) in its block
+        (Q,), and (2) the index of the piece, (Q,).
         """
         piece = np.minimum(self.first[block][:, None] + np.arange(BLOCK), len(pieces) - 1)
         a, b, c = (np.broadcast_to(functions[:, k, None], piece.shape) for k in range(3))
@@ -308,17 +316,18 @@ FIRST, MOST_LEVELS = 256, 64
 
 @lru_cache(maxsize=8)
 def list_path_forces(program: Program, center: tuple[float, float]) -> PathForces:
-    """Return the pieces of a program at which forces can be worst, with moments about ``center`` in mm;
-    cached.
+    """Return the pieces of a program at which forces can be worst; none without cutting forces; cached.
 
-    There are no pieces without cutting forces.
+    Moments are taken about ``center`` in mm.
     """
     pieces = list_all_pieces(program, center)
     return drop_inner_pieces(drop_lesser_torques(pieces))
 
 
 def list_all_pieces(program: Program, center: tuple[float, float]) -> PathForces:
-    """Return both ends of every stretch with a force, and the insides of arcs, in the order of moves."""
+    """Return both ends of every stretch of path with a force, and the
+    insides of arcs, in the order of moves.
+    """
     forces = program.forces
     stretches = MoveStretches((), (), ()) if forces is None else forces.stretches
     does, moves = stretches.move, program.moves.cut_to(stretches)
@@ -355,7 +364,9 @@ def list_all_pieces(program: Program, center: tuple[float, float]) -> PathForces
 
 
 def drop_lesser_torques(pieces: PathForces) -> PathForces:
-    """Return the pieces with a force, and of those with a torque alone only the one with the largest."""
+    """Return the pieces with a force and, of the pieces with a torque
+    alone, only the one with the largest torque.
+    """
     alone = np.flatnonzero(pieces.force == 0.0)
     kept = pieces.force > 0.0
     if len(alone):
@@ -364,10 +375,10 @@ def drop_lesser_torques(pieces: PathForces) -> PathForces:
 
 
 def drop_inner_pieces(pieces: PathForces) -> PathForces:
-    """Return the pieces without those inside the hull of
-    others with as large a force; see the head of this module.
+    """Return the pieces without those inside the hull of other pieces with at least as large a force.
 
-    Only pieces with the same ratio of torque to force and the same directions are compared.
+    Only pieces with the same ratio of torque to force and the same directions are compared; see the head of
+    this module.
     """
     pushing = np.flatnonzero(pieces.force > 0.0)
     # Of one tool the torque is in proportion to the force.
@@ -428,7 +439,7 @@ def select_outer_pieces(pieces: PathForces, order: IntArray) -> IntArray:
 
 
 def sample_arcs(pieces: PathForces, arcs: IntArray) -> Array:
-    """Return 15 points on each of some arcs, (Q, 2) in all, in mm."""
+    """Return 15 points on each of some arcs, given by index, all together (Q, 2) in mm."""
     share = np.linspace(0.0, 1.0, 17)[1:-1]
     angle = pieces.start[arcs][:, None] + pieces.sweep[arcs][:, None] * share
     far = pieces.radius[arcs][:, None]
@@ -437,8 +448,10 @@ def sample_arcs(pieces: PathForces, arcs: IntArray) -> Array:
 
 
 def enclose_arcs(pieces: PathForces, arcs: IntArray) -> tuple[Array, Array]:
-    """Return x (Q, 6) and y (Q, 6) in mm of polygons around arcs
-    of half a turn or less: ends and meeting points of tangents.
+    """Return x and y in mm of the six corners of a polygon around each arc, (Q, 6) each.
+
+    Each of the Q arcs, given by index, must be half a turn or less. The corners are its ends and the points
+    where tangents meet.
     """
     start, sweep, radius = pieces.start[arcs], pieces.sweep[arcs], pieces.radius[arcs]
     share = np.array([0.0, 1 / 8, 3 / 8, 5 / 8, 7 / 8, 1.0])
@@ -449,7 +462,10 @@ def enclose_arcs(pieces: PathForces, arcs: IntArray) -> tuple[Array, Array]:
 
 
 def select_hull_corners(pieces: PathForces, members: IntArray) -> IntArray:
-    """Return the indices of the points that are corners of the hull of all; of coincident ones the first."""
+    """Return those of the indices ``members`` whose points are corners of the convex hull of all of them.
+
+    Of coincident points the first is returned.
+    """
     if len(members) <= 2:
         return members
     points = np.stack([pieces.x[members], pieces.y[members]], axis=1)
@@ -472,7 +488,9 @@ def compute_hull(points: Array) -> Array:
 
 
 def are_inside_hull(hull: Array, x: Array, y: Array) -> Mask:
-    """Return which points (...) lie inside or on the convex hull with corners (H, 2); none if H < 3."""
+    """Return a mask (...): True for points inside or on a convex
+    hull with corners (H, 2); all False if H < 3.
+    """
     if len(hull) < 3:
         return np.zeros(x.shape, np.bool_)
     ordered = sorted(map(tuple, hull.tolist()))

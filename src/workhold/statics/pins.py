@@ -1,9 +1,9 @@
 """The deflection and stress of pegs, and the movement of the part by them (docs/quality.md, "Pins bend").
 
-Each peg is a cantilever, built in at the face of its plate, a round section of its diameter d. The part presses on
-it with F at the height a above the plate: at the middle of the run of heights on which the peg can press, or, at
-worst, at the top of that run. Then (S. P. Timoshenko, *Philosophical Magazine* 41, 1921, with the shear
-coefficient 9/10 of a circle)
+Each peg is a cantilever, built in at the face of its plate, a round section of its diameter d. The part
+presses on it with F at the height a above the plate: at the middle of the run of heights on which the peg can
+press, or, at worst, at the top of that run. Then (S. P. Timoshenko, *Philosophical Magazine* 41, 1921, with
+the shear coefficient 9/10 of a circle)
 
     deflection = F a³ / (3 E I) + 10 F a / (9 G A),   stress = 32 F a / (π d³),   I = π d⁴ / 64,   A = π d² / 4 .
 
@@ -56,9 +56,9 @@ def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
 
     Parameters
     ----------
-    force : in N.
-    height : of the force above where the cantilever is built in, in mm.
-    diameter : in mm.
+    force : force in N.
+    height : height of the force above the end at which the cantilever is built in, in mm.
+    diameter : diameter of the cantilever in mm.
 
     Examples
     --------
@@ -71,8 +71,9 @@ def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
 
 
 def compute_stresses(force: Any, height: Any, diameter: Any) -> Any:
-    """Return the largest bending stresses in MPa of
-    cantilevers; parameters as of :func:`compute_deflections`.
+    """Return the largest bending stresses in MPa of round cantilevers, numbers or arrays.
+
+    Parameters as in :func:`compute_deflections`.
 
     >>> round(compute_stresses(500.0, 38.0, 6.0))
     896
@@ -81,8 +82,10 @@ def compute_stresses(force: Any, height: Any, diameter: Any) -> Any:
 
 
 def get_limits(toolkit: Toolkit) -> tuple[float, float]:
-    """Return the largest stress in MPa and the largest movement
-    in mm that a toolkit's pins may have without a warning.
+    """Return (1) the largest stress in MPa and (2) the largest movement
+    in mm allowed for a toolkit without a warning.
+
+    They are the bending stress of its pins, and the movement of the part by bent pins.
     """
     own = toolkit.pins
     stress, movement = (None, None) if own is None else (own.stress_limit, own.movement_limit)
@@ -98,8 +101,9 @@ class PinRuns:
 
     Parameters
     ----------
-    low, high : (N, P); NaN for contacts that are no pegs in holes of a plate, and where not known.
-    diameter : (N, P) in mm; NaN for contacts that are no pegs.
+    low, high : (N, P) lowest and highest height for each of P contacts; NaN for contacts that are no pegs in
+        holes of a plate, and where not known.
+    diameter : (N, P) diameter of the peg; NaN for contacts that are no pegs.
     """
 
     low: Array
@@ -117,7 +121,7 @@ class PinRuns:
         pressed_up_to: float | None,
         lift: float = 0.0,
     ) -> PinRuns:
-        """Return the ranges of heights of some fixtures' pegs.
+        """Return the ranges of heights of the pegs of N fixtures.
 
         Parameters
         ----------
@@ -145,10 +149,10 @@ class PinRuns:
 
 
 def find_runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
-    """Return the lowest and the highest heights (N, P) in mm at
-    which pegs can press on faces of a solid; NaN for faces without.
+    """Return (1) the lowest and (2) the highest heights in mm at which
+    pegs can press on faces of a solid, (N, P).
 
-    ``faces`` is (N, P), ``points`` (N, P, 2) in the part's coordinates.
+    NaN for faces without known heights. ``faces`` is (N, P), ``points`` (N, P, 2) in the part's coordinates.
     """
     numbered = workpiece.numbered
     bands = [(np.nan, np.nan) if band is None else band for band in numbered.bands]
@@ -166,9 +170,10 @@ def find_runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece)
 
 
 def find_runs(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
-    """Return the lowest and the highest heights (N,) in mm at points (N, 2) of one face with these segments.
+    """Return (1) the lowest and (2) the highest heights in mm of one face at points (N, 2) of it, (N,) each.
 
-    Where the face's range of heights varies along a segment, that at the point is taken.
+    ``segments`` are the numbers of the face's segments. Where the range of heights varies along a segment,
+    that at the point is taken.
     """
     numbered = workpiece.numbered
     parameters = np.array([compute_parameters(numbered.segments[k], points) for k in segments])
@@ -191,7 +196,7 @@ def find_runs(segments: tuple[int, ...], points: Array, workpiece: Workpiece) ->
 
 
 def compute_parameters(segment: Segment, points: Array) -> Array:
-    """Return the parameters (N,) on a segment of points (N, 2), see ``Segment.parameter``."""
+    """Return the parameters on a segment of points (N, 2) of it, (N,); see ``Segment.parameter``."""
     return np.array([segment.find_parameter((x, y)) for x, y in points.tolist()])
 
 
@@ -201,7 +206,7 @@ class BentPins:
 
     Parameters
     ----------
-    deflection, stress : (N, P) in mm and MPa; NaN for contacts that are no pegs.
+    deflection, stress : (N, P) in mm and in MPa; NaN for contacts that are no pegs.
     movement : (N,) largest movement of a point of the silhouette, in mm.
     """
 
@@ -218,15 +223,15 @@ def compute_bent_pins(
     length: float,
     extremes: tuple[Array, Array],
 ) -> BentPins:
-    """Return how far pegs bend, and by how much that moves the part.
+    """Return how far the pegs of N fixtures bend, and by how much this moves the part.
 
     Parameters
     ----------
-    diameters : (N, P) of pegs, in mm; NaN for other contacts.
-    heights : (N, P) of the forces above the pegs' plates, in mm.
-    jaw_force : in N; None for figures for each kN.
-    length : L in mm.
-    extremes : of the silhouette, see ``statics.quality.extremes``.
+    diameters : (N, P) diameters of the pegs, in mm; NaN for other contacts.
+    heights : (N, P) heights of the forces above the pegs' plates, in mm.
+    jaw_force : in N; None for figures at a jaw force of 1 kN.
+    length : length L in mm that moments are divided by.
+    extremes : corners and arcs of the silhouette, see ``statics.quality.find_silhouette_extremes``.
     """
     force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[:, 3, :])
     deflection = np.asarray(compute_deflections(force, heights, diameters))
@@ -241,11 +246,13 @@ def compute_bent_pins(
 
 
 def find_farthest_movements(moves: Array, corners: Array, arcs: Array) -> Array:
-    """Return the largest movement (N,) in mm of a point of the
-    silhouette, given (shift x, shift y, turn) (N, 3) in mm and rad.
+    """Return the largest movement in mm of a point of the
+    silhouette, (N,), for N small movements of the part.
 
-    A point q about the centre moves by v + t (-q_y, q_x): farthest at a corner, or inside a convex arc about m
-    where the turn adds to the movement of m, there by |v(m)| + r |t| (``kernels.contact.quality``).
+    ``moves`` (N, 3) are the shift (v_x, v_y) in mm and the turn t in radians. A point q, relative to the
+    centre, moves by v + t (-q_y, q_x). It is farthest at a corner, or inside a convex arc about m where the
+    turn adds to the movement of m; there the movement is |v(m)| + r |t|, with the arc's radius r
+    (``kernels.contact.quality``).
     """
     most = np.zeros(len(moves))
     step = max(AT_ONCE // max(len(corners) + len(arcs), 1), 1)

@@ -42,10 +42,10 @@ class NearestMove:
     Parameters
     ----------
     clearance : (N,) in mm, negative for a collision; inf where nothing is swept at these heights.
-    line, tool : (N,) line and tool number of the program; -1 where the clearance is inf.
+    line, tool : (N,) line of the program, and tool number; -1 where the clearance is inf.
     contact : (N,) index of the nearest contact: a peg, a clamp, or an end on a wall.
     span : (N,) index of the swept span; -1 where there is none.
-    low : (N,) whether the span is of what is swept below the part.
+    low : (N,) whether the span is among those swept below the part.
     """
 
     clearance: Array
@@ -73,7 +73,7 @@ def find_nearest_moves(
     carriers = toolkit.find_peg_carriers(table.arrangement)
 
     def seen(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
-        """Return the places (R, 2) of contact ``k`` of some rows in the part's coordinates, in mm."""
+        """Return the places of contact ``k`` of some rows in the part's coordinates, in mm, (R, 2)."""
         dx, dy = (values[rows, k] - table.position[rows, axis] for axis, values in enumerate(points))
         return np.stack(rotate_vectors(dx, dy, -table.theta[rows]), axis=1)
 
@@ -104,11 +104,11 @@ class ToolClearance:
     Parameters
     ----------
     distance : to the nearest element that holds the part, in mm.
-    line, tool : of the program.
-    element : name of that element, such as "peg L-A1".
-    contact : its index among the contacts.
-    path : of the tool's axis there: one segment, arc or point in the part's coordinates, mm.
-    radius : of the tool's cylinder there, in mm.
+    line, tool : line of the program, and tool number.
+    element : name of the nearest element, such as "peg L-A1".
+    contact : index of the element among the contacts.
+    path : path of the tool's axis there: one segment, arc or point in the part's coordinates, in mm.
+    radius : radius of the tool's cylinder there, in mm.
     """
 
     distance: float
@@ -120,14 +120,14 @@ class ToolClearance:
     radius: float
 
     def rename_holes(self, before: Sequence[str], after: Sequence[str]) -> ToolClearance:
-        """Return a copy with the holes in ``element``
-        renamed; the k-th name before becomes the k-th after.
-        """
+        """Return a copy with the holes in ``element`` renamed: ``before[k]`` becomes ``after[k]``."""
         return evolve(self, element=rename_element(self.element, before, after))
 
 
 def rename_element(element: str, before: Sequence[str], after: Sequence[str]) -> str:
-    """Return the name of an element, such as "peg L-A1", with its hole renamed if it is among those before.
+    """Return the name of an element, such as "peg L-A1", with its hole renamed.
+
+    ``before[k]`` becomes ``after[k]``; other names stay.
 
     >>> rename_element("peg B2", ["A1", "B2"], ["C1", "D2"]), rename_element("clamp A1", ["clamp A1"], ["clamp C1"])
     ('peg D2', 'clamp C1')
@@ -168,8 +168,8 @@ def find_nearest_passing(result: Result, index: int) -> ToolClearance | None:
 
 
 def name_element(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) -> str:
-    """Return the name of the element behind a contact of row
-    ``row``, such as "peg L-A1", "clamp row 3" or "fence".
+    """Return the name of the element behind contact ``contact`` of
+    table row ``row``, such as "peg L-A1" or "fence".
     """
     arrangement = toolkit.arrangements[int(table.arrangement[row])]
     carrier = toolkit.carriers[arrangement.carriers[contact]]
@@ -180,8 +180,10 @@ def name_element(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) 
 
 
 def find_reach_to_wall(table: FixtureTable, rows: IntArray, swept: SweptSpans) -> tuple[Array, IntArray]:
-    """Return the distances (R,) in mm of swept axes from the wall,
-    less radii, for rows of a table, and the spans' indices (R,).
+    """Return (1) the distance in mm of the swept tools from the wall, and
+    (2) the index of the nearest span, (R,) each.
+
+    Distances are those of the tools' cylinders; ``rows`` (R,) are rows of the table.
     """
     # All fixtures on one hull edge have the same pose except for the place along the wall.
     poses = np.stack([table.theta[rows], -table.position[rows, 1]], axis=1)
@@ -201,10 +203,11 @@ def take(
     span: IntArray,
     below: bool = False,
 ) -> None:
-    """Write clearances (R,) of contact ``contact`` into the
-    rows of ``found`` where they are smaller than those there.
+    """Write clearances (R,) of contact ``contact`` into the rows of
+    ``found`` where they are smaller than the ones there.
 
-    ``below`` says whether ``swept`` is what is swept below the part.
+    ``span`` (R,) are the indices of the nearest spans. ``below`` says whether ``swept`` is what is swept
+    below the part.
     """
     less = (clearance < found.clearance[rows]) & (span >= 0)
     chosen, spans = rows[less], span[less]

@@ -2,8 +2,8 @@
 peg forces.
 
 The peg forces are those of ``statics.loads``: f = f0 + F h, with f0 linear in the load. So the jaw force
-below which peg i lets go, -f0_i / h_i, is linear in the load as well. ``statics.list_path_forces`` has the worst
-place of the path for both.
+below which peg i lets go, -f0_i / h_i, is linear in the load as well. ``statics.list_path_forces`` has the
+worst place of the path for both.
 """
 
 from __future__ import annotations
@@ -43,11 +43,12 @@ class CutStretch:
 
     Parameters
     ----------
-    kind : one of ``model.cutting_forces.CUT_KINDS``.
-    start, end : position of the tip as it begins and as it stops cutting, from the program's own zero.
-    length : how far it cuts, all stretches together.
+    kind : kind of cut, one of ``model.cutting_forces.CUT_KINDS``.
+    start, end : positions of the tool's tip where it begins and where it stops cutting, from the program's
+        own zero.
+    length : length over which the move cuts, all stretches together.
     whole : length of the move.
-    name : of the tool; empty without one.
+    name : name of the tool; empty without one.
     """
 
     kind: str
@@ -70,6 +71,7 @@ class CutStretch:
         """
 
         def place(axes: str, values: Sequence[float]) -> str:
+            """Return coordinates as words of a program, such as "X20 Y20 Z5"."""
             numbers = (format_length(value, unit) for value in values)
             return " ".join(f"{axis}{number}" for axis, number in zip(axes, numbers, strict=True))
 
@@ -89,7 +91,7 @@ class CutStretch:
 
 
 def format_length(value: float, unit: Unit) -> str:
-    """Return a length in mm as text in the given unit, without trailing zeros, as programs write it.
+    """Return a length in mm as a number in the given unit, without trailing zeros, as programs write it.
 
     >>> from workhold.units import INCH, MILLIMETRE
     >>> format_length(20.0, MILLIMETRE), format_length(-0.00001, MILLIMETRE), format_length(25.4, INCH)
@@ -105,9 +107,10 @@ class AskedForce:
     Parameters
     ----------
     force : in N.
-    line, tool : of the program's move that requires it; None where the force is the same without any tool.
-    element : the contact concerned, such as "peg L-A1"; None where no tool pushes the part off one.
-    done : the cutting part of that move; None where not known.
+    line, tool : line and tool number of the program's move that requires the force; None where the force is
+        the same without any tool.
+    element : the contact concerned, such as "peg L-A1"; None where no tool pushes the part off a contact.
+    done : the cutting part of the move that requires the force; None where not known.
     """
 
     force: float
@@ -121,22 +124,22 @@ class AskedForce:
         return {name: getattr(self, name) for name in ("force", "line", "tool", "element")}
 
     def describe_place(self, unit: Unit) -> str:
-        """Return a phrase with line, tool, and the cut if known."""
+        """Return a phrase with line and tool, and with the cut if it is known."""
         done = "" if self.done is None else f" ({self.done.describe(unit)})"
         return f"line {self.line}, T{self.tool}{done}"
 
 
 @frozen
 class CuttingNeed:
-    """What the tools of a program require of one fixture.
+    """Forces that the tools of a program require of one fixture.
 
     Parameters
     ----------
     jaw : the jaw force above which no contact lets go along the whole path, and the contact that lets go
         below it.
     contact : the largest force of a contact at ``jaw_force``, and which contact.
-    jaw_force : the given jaw force or, without one, the required one, in N.
-    room : given minus required jaw force, in N; None without a given one.
+    jaw_force : the given jaw force in N or, where none is given, the required one.
+    room : given minus required jaw force, in N; None where none is given.
     """
 
     jaw: AskedForce
@@ -150,9 +153,10 @@ class CuttingNeed:
         return asked | {"jaw_force": self.jaw_force, "room": self.room}
 
     def rename_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
-        """Return a copy with holes of elements renamed; the k-th name before becomes the k-th after."""
+        """Return a copy with the holes of elements renamed: ``before[k]`` becomes ``after[k]``."""
 
         def of(asked: AskedForce) -> AskedForce:
+            """Return a force whose element has its hole renamed."""
             return evolve(asked, element=asked.element and rename_element(asked.element, before, after))
 
         return evolve(self, jaw=of(self.jaw), contact=of(self.contact))
@@ -162,9 +166,9 @@ class CuttingNeed:
 
         Parameters
         ----------
-        mover : what presses, such as a jaw.
-        unit : of the forces.
-        movers : how many there are; of two the force is that of both together.
+        mover : what presses, such as "jaw".
+        unit : unit of the forces.
+        movers : number of jaws or clamps that press; the force of two is that of both together.
 
         Examples
         --------
@@ -226,7 +230,7 @@ def round_force_down(force: float) -> float:
 
 
 def compute_cutting_figures(matrices: ContactMatrices, touched: TouchableFeatures, program: Program) -> Array:
-    """Return load reactions and required jaw forces (N, 2) in N of fixtures along a program; at least 0.
+    """Return (load reaction, required jaw force) in N of N fixtures along a program, (N, 2); at least 0.
 
     NaN where the contact matrix has no inverse.
     """
@@ -245,17 +249,19 @@ def compute_cutting_figures(matrices: ContactMatrices, touched: TouchableFeature
 
 
 def get_center(touched: TouchableFeatures) -> tuple[float, float]:
-    """Return the centre of the part (x, y) in mm, which moments are taken about."""
+    """Return the centre of the part (x, y) in mm, about which moments are taken."""
     return float(touched.center[0]), float(touched.center[1])
 
 
 def make_scale(touched: TouchableFeatures) -> Array:
-    """Return (1, 1, L), by which columns of inverse contact matrices are divided to take moments in N mm."""
+    """Return (1, 1, L): columns of inverse contact matrices are divided by it to take moments in N mm."""
     return np.array([1.0, 1.0, touched.length])
 
 
 def make_reaction_functions(free: Array, held: Array) -> Array:
-    """Return linear functions (N, P (P - 1), 3) of the load; their maximum is the load reaction.
+    """Return P (P - 1) linear functions of the load for each fixture, (N, P (P - 1), 3).
+
+    The largest of their values is the load reaction.
 
     Parameters
     ----------
@@ -277,13 +283,12 @@ def find_cutting_needs(
     jaw_force: float | None,
     jaw: str | float = "screw",
 ) -> list[CuttingNeed | None]:
-    """Return what the tools of a program require of each
-    fixture of a table; None where its forces are not known.
+    """Return what the tools of a program require of each fixture of a table; None where forces are not known.
 
     Parameters
     ----------
-    jaw_force : in N, with which the vise is closed; None to take the required one.
-    jaw : what closes it, see :func:`workhold.statics.loads.jaw_stiffness`.
+    jaw_force : force in N with which the vise is closed; None to take the required one.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.read_jaw_stiffness`.
     """
     touched, carriers = (
         TouchableFeatures.from_workpiece(workpiece, toolkit),
@@ -322,10 +327,10 @@ def find_cutting_needs(
 def find_asked_force(
     table: FixtureTable, toolkit: Toolkit, program: Program, row: int, value: float, move: int, contact: int
 ) -> AskedForce:
-    """Return a force ``value`` in N with the move that
-    requires it and the contact concerned, of fixture ``row``.
+    """Return a force of ``value`` N with the move that requires it and
+    the contact concerned, for fixture ``row``.
 
-    Line and tool are None where ``move`` is -1, the element None where ``contact`` is -1.
+    Line and tool are None where ``move`` is -1, the element is None where ``contact`` is -1.
     """
     name = None if contact < 0 else name_element(table, toolkit, row, contact)
     if move < 0:
@@ -347,6 +352,7 @@ def find_cut_of_move(program: Program, move: int) -> CutStretch | None:
     shift = np.array([*program.zero, program.z_zero])
 
     def place(point: Array) -> tuple[float, float, float]:
+        """Return a point of the part's frame as a position from the program's own zero, in mm."""
         x, y, z = (point - shift).tolist()
         return x, y, z
 
@@ -369,8 +375,8 @@ def find_cutting_need(
 
     Parameters
     ----------
-    jaw_force : in N; None for the result's.
-    jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
+    jaw_force : in N; None for that of the result's query.
+    jaw : what closes the vise, see :func:`workhold.statics.loads.read_jaw_stiffness`.
     """
     program = result.query.program
     if program is None or program.forces is None or result.toolkit.holds_by_friction:

@@ -68,8 +68,8 @@ Array = NDArray[np.float64]
 
 
 def find_main_direction(workpiece: Workpiece) -> float:
-    """Return the main direction of a part in degrees in [0,
-    90), in the frame of its drawing; 0.0 where there is none.
+    """Return the main direction of a part in degrees in [0, 90), in the
+    frame of its drawing; 0.0 where it has none.
     """
     lines = [face.segment for face in workpiece.faces if isinstance(face.segment, Line)]
     if not lines:
@@ -90,18 +90,18 @@ def find_main_direction(workpiece: Workpiece) -> float:
 
 
 def compute_tilts(theta: Array, direction: float) -> Array:
-    """Return tilts (N,) in degrees, 0 to 45, of a part with main
-    direction ``direction`` turned by ``theta`` (N,) in radians.
+    """Return the tilts in degrees, 0 to 45, of a part turned by angles ``theta`` (N,) in radians, (N,).
 
-    Tilts below ``SQUARE_TILT`` are 0.
+    ``direction`` is the part's main direction in degrees. Tilts below ``SQUARE_TILT`` are 0.
     """
     off = np.abs((np.degrees(theta) + direction + 45.0) % 90.0 - 45.0)
     return np.where(off < SQUARE_TILT, 0.0, off)
 
 
 def measure_faces(workpiece: Workpiece) -> Array:
-    """Return sizes (S,) in mm by face number: a straight face's
-    length, an arc's radius; NaN for numbers without a face.
+    """Return the size of each face in mm by face number, (S,): length of a straight face, radius of an arc.
+
+    NaN for numbers without a face.
     """
     every = workpiece.numbered
     sizes = np.full(len(every.segments), np.nan)
@@ -131,12 +131,12 @@ def measure_quality(
     Parameters
     ----------
     tolerance : how far pegs and faces may be off, for the location error; None for 0.01 mm each.
-    loads : for the load reaction, the worst of them; each acts by itself.
+    loads : loads, each of which acts by itself, for the load reaction; the worst load counts.
     threads : how many threads share the work; the outcome does not depend on it.
     touched : the workpiece's contact features; None to compute them.
     jaw_force : in N, for the warning that a peg lets go under a load; None for no such warning.
-    passed : a program and the height of pegs in mm, which adds a column for the program clearance. Its
-        cutting forces count as loads.
+    passed : a program, and the height of pegs in mm; adds a column for the program clearance. The program's
+        cutting forces count as loads. None for no program.
     pressed_up_to : height in mm up to which pegs press on a prism, to compute how far they bend; None where
         not known. Not needed for a solid.
 
@@ -157,7 +157,7 @@ def measure_quality(
     out = np.empty((len(table), known_figures + (passed is not None)))
 
     def fill(start: int) -> None:
-        """Write the figures of the fixtures from row ``start`` on, one block, into the outcome."""
+        """Write the figures of one block of fixtures, from row ``start`` on, into the result."""
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
         faces = block.face.astype(np.int64)
@@ -228,8 +228,10 @@ def measure_most_bent(
     length: float,
     silhouette: tuple[Array, Array],
 ) -> Array:
-    """Return (N, 3): largest deflection in mm and stress in MPa
-    of a peg, and movement of the part in mm; NaN where not known.
+    """Return for each fixture the largest deflection and stress of a
+    peg, and the movement of the part, (N, 3).
+
+    In mm, MPa and mm; NaN where not known.
     """
     bent = compute_bent_pins(contacts, runs.diameter, runs.middle, jaw_force, length, silhouette)
     is_peg = ~np.isnan(runs.diameter)
@@ -242,9 +244,10 @@ def measure_most_bent(
 
 
 def compute_closures(reactions: Array) -> Array:
-    """Return (closure margin, clamp freedom in degrees) (N, 2) of fixtures with two clamps.
+    """Return (closure margin, clamp freedom in degrees) of N fixtures with two clamps, (N, 2).
 
-    ``reactions`` (N, 5, 2) are forces per unit of each clamp's force; NaN in, NaN out.
+    ``reactions`` (N, 5, 2) are the forces of all contacts per unit of each clamp's force. NaN where they are
+    NaN.
     """
     clamps = np.zeros((len(reactions), 2, CLAMP_LENGTH))
     for k in range(2):
@@ -257,9 +260,9 @@ def compute_closures(reactions: Array) -> Array:
 
 
 def number_shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NDArray[np.int64]:
-    """Return numbers (N, P) that are equal for contacts that an error of one face moves together.
+    """Return a number for each contact, (N, P), equal for contacts that an error of one face moves together.
 
-    They are face numbers; a corner on a wall has a number of its own.
+    The numbers are face numbers; a corner on a wall has a number of its own.
     """
     faces = block.face.astype(np.int64)
     for ends in toolkit.ends_on_walls:
@@ -268,8 +271,9 @@ def number_shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpi
 
 
 def measure_touched(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, sizes: Array) -> Array:
-    """Return sizes (N, P) in mm of the faces touched, ``sizes``
-    by face number (S,); on a wall the length that lies on it.
+    """Return the size in mm of the face that each contact touches, (N, P).
+
+    On a wall it is the length that lies on the wall. ``sizes`` (S,) are the sizes by face number.
     """
     out = sizes.take(block.face)
     for ends in toolkit.ends_on_walls:
@@ -282,7 +286,7 @@ def measure_fixture(
 ) -> Fixture:
     """Return fixture ``index`` of a result with all figures of quality.
 
-    ``loads`` and ``jaw_force`` in N replace the result's where not None.
+    Where given, ``loads`` and ``jaw_force`` in N replace those of the result's query.
     """
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
@@ -301,8 +305,9 @@ def measure_fixture(
 
 
 def find_silhouette_extremes(workpiece: Workpiece) -> tuple[Array, Array]:
-    """Return the corners and arcs of the silhouette among which
-    is the point that a small movement of the part moves most.
+    """Return corners and arcs of the part's silhouette.
+
+    One of them has the point that a small movement of the part moves most.
 
     Returns
     -------
@@ -322,11 +327,11 @@ def find_silhouette_extremes(workpiece: Workpiece) -> tuple[Array, Array]:
 
 
 def make_load_rows(loads: Sequence[Load], center: tuple[float, float]) -> Array:
-    """Return rows (M, 11) of loads for ``kernels.contact.quality``,
+    """Return the loads as rows (M, 11) for ``kernels.contact.quality``,
     one for each corner of a path's convex hull.
 
     The largest force is a convex function of the point, so no other point of a path is worse. ``center`` is
-    that of the part, in mm.
+    the centre of the part, in mm.
     """
     rows = []
     for load in loads:

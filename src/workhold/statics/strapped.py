@@ -1,9 +1,10 @@
-"""The strap force that loads ask for, of a part that locators place and straps press down.
+"""The strap force that loads require, for a part that locators place and straps press down.
 
-Each tip presses with the same force F and bears friction at a point, at most the coefficient times F. Below, the part
-bears on supports, points that press upward with friction, or with its foot on the plate: a pressure that is affine on
-it, with friction in each of its cells. Locators push inward without friction, at any height of their bands, and each
-may let go. What F is, and why it is safe, says :mod:`workhold.statics.friction`.
+Each strap's tip presses with the same force F, and bears friction at a point, at most the coefficient times
+F. Below, the part lies (a) on supports, which are points that press upward with friction, or (b) with its
+foot on the plate, which presses with a pressure that is affine over the foot, with friction in each of its
+cells. Locators push inward without friction, at any height of their bands, and each may let go. How F is
+computed, and why it is safe, is in :mod:`workhold.statics.friction`.
 """
 
 from __future__ import annotations
@@ -25,15 +26,16 @@ Array = NDArray[np.float64]
 
 @frozen(eq=False)
 class StrappedPart:
-    """A part against locators, before any strap presses; in the plate's frame, z 0 at the part's lower side.
+    """A part against locators, without any straps yet; in the plate's
+    frame, with z = 0 at the part's lower side.
 
     Parameters
     ----------
-    touched : (L, 2) in mm, where the locators touch it.
-    inward : (L, 2) unit vectors, in which they push.
-    bands : (L, 2) the heights in mm between which each may push.
-    below : the part's foot, or points (S, 2) in mm on supports.
-    friction : of what is below.
+    touched : (L, 2) points in mm at which the L locators touch the part.
+    inward : (L, 2) unit vectors along which the locators push.
+    bands : (L, 2) lowest and highest height in mm at which each locator may push.
+    below : the part's foot, or the points (S, 2) in mm of the S supports under it.
+    friction : coefficient of friction between the part and what is below it.
     """
 
     touched: Array
@@ -44,28 +46,35 @@ class StrappedPart:
 
     @cached_property
     def centre(self) -> Array:
-        """What moments are taken about, in mm."""
+        """Point (3,) in mm that moments are taken about."""
         return np.array([*self.touched.mean(axis=0), float(self.bands.max()) / 2])
 
     @cached_property
     def length(self) -> float:
-        """What moments are divided by, in mm."""
+        """Length in mm that moments are divided by."""
         return float(max(np.ptp(self.touched, axis=0).max(), self.bands.max(), 1.0) / 2)
 
     def compute_wrenches(self, points: Array, forces: Array) -> Array:
-        """Return wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm, moments over the length."""
+        """Return wrenches (N, 6) of forces (N, 3) in N at points (N, 3) in mm.
+
+        A wrench is the force, then its moment about ``centre``, divided by ``length``.
+        """
         return np.hstack([forces, np.cross(points - self.centre, forces) / self.length])
 
     def compute_level_wrenches(
         self, points: Array, height: float | Array, force: tuple[float, float, float]
     ) -> Array:
-        """Return wrenches (N, 6) of one force at points (N, 2), all of a height or each of its own (N,), in mm."""
+        """Return wrenches (N, 6) of the same force (3,) at N points.
+
+        ``points`` (N, 2) are x and y in mm; ``height`` in mm is one for all, or one for each (N,).
+        """
         places = np.column_stack([points, np.broadcast_to(height, len(points))])
         return self.compute_wrenches(places, np.tile(force, (len(points), 1)))
 
     def compute_friction_wrenches(self, points: Array, height: float | Array) -> Array:
-        """Return wrenches (N, 16, 6) of friction of 1 N in each direction; points as of
-        :meth:`compute_level_wrenches`.
+        """Return wrenches (N, 16, 6) of a horizontal force of 1 N at N points, in 16 directions.
+
+        ``points`` and ``height`` are as in :meth:`compute_level_wrenches`.
         """
         turns = 2 * pi / DIRECTIONS * np.arange(DIRECTIONS)
         rows = [
@@ -75,26 +84,30 @@ class StrappedPart:
 
     @cached_property
     def pushing(self) -> Array:
-        """Wrenches (2 L, 6) of unit forces of the locators, at the ends of their bands."""
+        """Wrenches (2 L, 6) of unit forces of the L locators, at both ends of their bands."""
         ways = np.column_stack([self.inward, np.zeros(len(self.inward))])
         ends = [np.column_stack([self.touched, self.bands[:, k]]) for k in (0, 1)]
         return np.vstack([self.compute_wrenches(points, ways) for points in ends])
 
     @cached_property
     def pressing_below(self) -> Array:
-        """Wrenches (R, 6) of unit pressures from below."""
+        """Wrenches (R, 6) of the R unit pressures from below."""
         points = self.below.centres if isinstance(self.below, PressedPolygon) else self.below
         return self.compute_level_wrenches(points, 0.0, (0.0, 0.0, 1.0))
 
     @cached_property
     def rubbing_below(self) -> Array:
-        """Wrenches (C, 16, 6) of unit forces of friction below."""
+        """Wrenches (C, 16, 6) of unit friction forces from below: in each
+        of C cells or supports, in 16 directions.
+        """
         points = self.below.cells.centre if isinstance(self.below, PressedPolygon) else self.below
         return self.compute_friction_wrenches(points, 0.0)
 
     @cached_property
     def bearing_below(self) -> Array:
-        """The friction (C, R) that each cell below bears per unit of each pressure."""
+        """Friction (C, R) that each of the C cells or supports below
+        bears, per unit of each of the R pressures.
+        """
         if not isinstance(self.below, PressedPolygon):
             return self.friction * np.eye(len(self.below))
         cells = self.below.cells
@@ -107,10 +120,10 @@ class StrapsOnPart:
 
     Parameters
     ----------
-    part : below the straps.
-    down : (K, 6) wrenches of the unit force of each tip.
-    tip_friction : (K, 16, 6) wrenches of unit forces of friction at each tip.
-    friction : of the tips.
+    part : the part without the straps.
+    down : (K, 6) wrenches of the unit forces with which the K tips press down.
+    tip_friction : (K, 16, 6) wrenches of unit friction forces at each tip, in 16 directions.
+    friction : coefficient of friction between tips and part.
     """
 
     part: StrappedPart
@@ -120,36 +133,44 @@ class StrapsOnPart:
 
     @property
     def centre(self) -> Array:
-        """What moments are taken about, in mm."""
+        """Point (3,) in mm that moments are taken about."""
         return self.part.centre
 
     @property
     def length(self) -> float:
-        """What moments are divided by, in mm."""
+        """Length in mm that moments are divided by."""
         return self.part.length
 
     def compute_wrenches(self, points: Array, forces: Array) -> Array:
-        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm."""
+        """Return wrenches (N, 6) of forces (N, 3) in N at points (N, 3) in
+        mm; see :meth:`StrappedPart.compute_wrenches`.
+        """
         return self.part.compute_wrenches(points, forces)
 
     @property
     def pushing(self) -> Array:
-        """Wrenches (2 L, 6) of the locators."""
+        """Wrenches (2 L, 6) of unit forces of the L locators."""
         return self.part.pushing
 
     @cached_property
     def pressing(self) -> Array:
-        """Wrenches (R + 1, 6) of the pressures below, then of all tips together."""
+        """Wrenches (R + 1, 6): of the R unit pressures below, then of
+        all tips together pressing with 1 N each.
+        """
         return np.vstack([self.part.pressing_below, self.down.sum(axis=0)])
 
     @cached_property
     def rubbing(self) -> Array:
-        """Wrenches (C + K, 16, 6) of friction below, then at the tips."""
+        """Wrenches (C + K, 16, 6) of unit friction forces in 16
+        directions: in the C cells below, then at the K tips.
+        """
         return np.concatenate([self.part.rubbing_below, self.tip_friction])
 
     @cached_property
     def bearing(self) -> Array:
-        """The friction (C + K, R + 1) that each cell and tip bears per unit of each pressure."""
+        """Friction (C + K, R + 1) that each cell below and each tip
+        bears, per unit of each row of ``pressing``.
+        """
         below = self.part.bearing_below
         out = np.zeros((len(below) + len(self.down), below.shape[1] + 1))
         out[: len(below), :-1], out[len(below) :, -1] = below, self.friction
@@ -157,5 +178,7 @@ class StrapsOnPart:
 
     @cached_property
     def most_work(self) -> Array:
-        """(R + 1,) 1 of the tips, which press with F each, else 0."""
+        """Force of each strap, (R + 1,), that a unit of each row of
+        ``pressing`` counts as: 1 for the tips, else 0.
+        """
         return np.asarray(np.eye(1, len(self.pressing), len(self.pressing) - 1)[0])

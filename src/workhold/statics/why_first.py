@@ -67,9 +67,9 @@ def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
 
 
 def describe_first_position(result: Result, angle: int) -> str:
-    """Return a phrase on the first fixture's angle, and why none of a better angle class is first.
+    """Return a phrase on the first fixture's angle, and why no fixture of a better angle class is first.
 
-    ``angle`` is the class of its angle, see :mod:`workhold.statics.effective_error`.
+    ``angle`` is the class of the first fixture's angle, see :mod:`workhold.statics.effective_error`.
     """
     if angle == 0:
         return "as drawn"

@@ -45,11 +45,11 @@ SMALLER = ((3.0, 4.0), (2.0, 3.0))
 
 
 def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]) -> SupportRequest:
-    """Return the usual support request for a part, with other values asked for by field name.
+    """Return the support request for a part: usual values, except those given by field name.
 
     Parameters
     ----------
-    thickness : of the part in mm; None for that of its solid.
+    thickness : thickness of the part in mm; None for that of its solid.
     asked : values of fields of :class:`SupportRequest` by name.
 
     Raises
@@ -77,13 +77,14 @@ def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]
 def try_smaller_requests(
     query: Query, thickness: float | None, asked: Mapping[str, Any] | None = None
 ) -> Iterator[SupportRequest]:
-    """Yield the request asked for, then, if no size was asked for, requests with smaller pads and tips.
+    """Yield the request that is asked for; then, if no size was asked
+    for, requests with smaller pads and tips.
 
     Sizes that the toolkit prescribes stay.
 
     Parameters
     ----------
-    thickness, asked : as of :func:`make_request`.
+    thickness, asked : see :func:`make_request`.
     """
     usual = last = make_request(query, thickness, asked or {})
     yield usual
@@ -117,7 +118,9 @@ def support_with_smaller_sizes(
     cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
-    """Return the supports of fixtures for the first request with which any fixture has a triple.
+    """Return the supports of fixtures for the first request with which at least one fixture has a triple.
+
+    The second result is the supports for the very first request of ``requests``.
 
     Parameters
     ----------
@@ -151,7 +154,7 @@ def support_with_smaller_sizes(
 
 
 def list_up_to_first_supported(every: Iterable[Supports]) -> Iterator[Supports]:
-    """Yield supports of fixtures, up to and including the first with a triple."""
+    """Yield the supports of fixtures, up to and including the first fixture that has a triple."""
     for one in every:
         yield one
         if one.triples:
@@ -198,8 +201,9 @@ def find_result_supports(
 
     Parameters
     ----------
-    best : how many fixtures.
-    each : how many sets of three for each of them. The rest is as in :meth:`workhold.Fixture.supports`.
+    best : number of fixtures.
+    each : number of sets of three for each fixture. The other parameters are as in
+        :meth:`workhold.Fixture.supports`.
     """
     count, sets = check_count("best", best), check_count("each", each)
     request, sets = make_request(result.query, thickness, select_given(asked)), 3 if sets is None else sets

@@ -1,10 +1,11 @@
-"""The choice of the best few triples of supports, or all of them in order, in blocks that need little memory.
+"""The choice of the best triples of supports, or of all in order, in blocks that need little memory.
 
-Sum max(r_j, 0) is a lower bound of the clamp force that a triple needs, wherever the clamp stands. The force
-on a support is at least what loads alone press on it, and at least a third of what all three carry. The
-tipping arm is at most the radius of the incircle. So triples whose bounds come after the last of the best so
-far are left out, and the clamp's best point is sought for the others only. Where the clamp's point is given,
-the bounds are exact.
+Let r_j be the force that the clamp must put on support j to keep it in contact. The sum of max(r_j, 0) is a
+lower bound of the clamp force that a triple needs, wherever the clamp stands. The force on a support is at
+least what loads alone press on it, and at least a third of what all three carry. The tipping arm is at most
+the radius of the incircle. So triples whose bounds rank after the last of the best triples so far are left
+out, and the clamp's best point is sought for the others only. Where the clamp's point is given, the bounds
+are exact.
 """
 
 from __future__ import annotations
@@ -54,14 +55,17 @@ ROUNDING = 1e-9
 
 
 def round_coarsely(value: float) -> float:
-    """Return a figure rounded to two significant digits, as the ranking compares it; below 1e-9 it is 0."""
+    """Return a figure rounded to two significant digits, as the
+    ranking compares it; 0 for figures below 1e-9.
+    """
     return float(f"{value:.{COARSE - 1}e}") if abs(value) > 10.0**-FIGURE_DECIMALS else 0.0
 
 
 def bound_coarse_figure(value: float) -> tuple[float, float]:
-    """Return (low, high) of the figures that round to a given coarse one, for :func:`round_coarsely`.
+    """Return (low, high): the figures that :func:`round_coarsely`
+    rounds to ``value`` are surely between them.
 
-    Figures below low round to less, above high to more.
+    Figures below low are rounded to less, figures above high to more.
     """
     if value <= 0.0:
         return 0.0, 10.0**-FIGURE_DECIMALS
@@ -79,8 +83,8 @@ class WorkLimit:
 
     Parameters
     ----------
-    most : how many places may be examined, of all triples together.
-    done : how many were examined so far.
+    most : number of places that may be examined, of all triples together.
+    done : number of places examined so far.
     """
 
     most: int
@@ -97,8 +101,9 @@ Stop: TypeAlias = Event | WorkLimit
 
 @lru_cache(maxsize=4)
 def list_triples(count: int) -> IntArray:
-    """Return all combinations (N, 3) of three numbers from 0
-    to count - 1 in lexicographic order, read-only and cached.
+    """Return all combinations (N, 3) of three numbers from 0 to count - 1, in lexicographic order.
+
+    The array is read-only and cached.
     """
     out = np.array(list(combinations(range(count), 3)), np.int64).reshape(-1, 3)
     out.setflags(write=False)
@@ -123,15 +128,19 @@ class ChosenTriples:
 
 @define(frozen=True, eq=False)
 class BoundFigures:
-    """Figures of N triples that decide their order; forces in N are 0 without loads, lengths in mm.
+    """Figures of N triples that decide their order, or bounds of them; forces are in N, lengths in mm.
+
+    Forces are 0 without loads.
 
     Parameters
     ----------
     falls : 1.0 where the part falls over before it is clamped, else 0.0.
     late : 1.0 where the clamp may not stand at the point asked for, else 0.0.
     hang : class of the clamp's place, see :class:`RankedPlaces`.
-    need, force : clamp force needed, and the largest force on a support.
-    arm, standing : tipping arm, and how far the centre of area is inside the triangle.
+    need : clamp force needed.
+    force : largest force on a support.
+    arm : tipping arm.
+    standing : distance by which the part's centre of area is inside the triangle.
     """
 
     falls: Array
@@ -144,7 +153,7 @@ class BoundFigures:
 
     @property
     def classes(self) -> tuple[Array, Array, Array]:
-        """Figures that count first in the order: falls, late and hang."""
+        """Figures that count first in the order: ``falls``, ``late`` and ``hang``."""
         return self.falls, self.late, self.hang
 
     def take(self, rows: NDArray[np.intp] | Flags) -> BoundFigures:
@@ -153,18 +162,18 @@ class BoundFigures:
         return BoundFigures(*(one[rows] for one in every))
 
     def sort_rows(self) -> NDArray[np.intp]:
-        """Return the indices (N,) that sort the rows best first, by figures that are not rounded."""
+        """Return the indices (N,) that sort the triples best first; figures are not rounded for this."""
         return np.lexsort((-self.arm, self.force, self.need, self.hang, self.late, self.falls))
 
 
 @define(eq=False)
 class KeptTriples:
-    """The best triples so far, or all, with their ranking keys.
+    """The best triples found so far, or all triples, with their ranking keys.
 
     Parameters
     ----------
-    limit : how many are kept; None for all.
-    found : (key, numbers of holes); ascending if there is a limit.
+    limit : number of triples that are kept; None for all.
+    found : (key, indices of holes) of each triple kept; ascending if there is a limit.
     left_out : whether valid triples may have been left out.
     """
 
@@ -174,11 +183,11 @@ class KeptTriples:
 
     @property
     def last(self) -> Key | None:
-        """Key that a further triple must come before; None while there is room."""
+        """Key that a further triple must come before; None while there is room for more triples."""
         return self.found[-1][0] if self.found and len(self.found) == self.limit else None
 
     def add_ranked(self, ranked: list[Ranked]) -> None:
-        """Add triples, and keep the best of all.
+        """Add triples, and keep only the best of all.
 
         Raises
         ------
@@ -202,10 +211,13 @@ class TripleChoice:
 
     Parameters
     ----------
-    sides, room, places : the holes' sides, the carriers' room, and the places for the clamp's tip.
-    inside : least distance of the clamp from a side, in mm.
+    sides : the holes that may hold a support, with the directed lines between them and the forces of the
+        loads.
+    room : which holes the carriers have room to use together.
+    places : the places for the clamp's tip.
+    inside : least distance of the clamp from a side of the triangle, in mm.
     center : (2,) centre of the part's area, in mm in the part's coordinates.
-    point : (2,) where the clamp should stand; None where it is free.
+    point : (2,) point at which the clamp should stand; None where it may stand anywhere.
     """
 
     sides: HoleSides
@@ -229,12 +241,12 @@ class TripleChoice:
         cancel: Stop | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> ChosenTriples:
-        """Return the best triples, or all, best first.
+        """Return the best triples, or all of them, best first.
 
         Parameters
         ----------
-        best : how many; None for all.
-        cancel : when set, the search stops soon with the best of those examined.
+        best : number of triples; None for all.
+        cancel : when set, the search stops soon with the best triples examined so far.
         progress : called with the fraction done.
 
         Raises
@@ -271,7 +283,7 @@ class TripleChoice:
     def find_open_rows(
         self, bounds: BoundFigures, rows: NDArray[np.intp], kept: KeptTriples
     ) -> NDArray[np.intp]:
-        """Return those of ``rows`` whose bounds allow a rank before the last triple kept."""
+        """Return those of ``rows`` whose bounds allow a rank before the last of the triples kept."""
         if kept.last is None:
             return rows
         entering = self.find_entering(bounds.take(rows), kept.last)
@@ -279,8 +291,9 @@ class TripleChoice:
         return rows[entering]
 
     def iterate_blocks(self) -> Iterator[tuple[float, IntArray]]:
-        """Yield (fraction done after it, triples (N, 3)) of holes
-        that are pairwise compatible, in lexicographic order.
+        """Yield (fraction done after the block, triples (N, 3)), in lexicographic order.
+
+        A triple is three indices of holes that are pairwise compatible.
         """
         pairs = self.room.find_compatible_pairs()
         count = len(pairs)
@@ -299,9 +312,9 @@ class TripleChoice:
                 yield done, np.stack([np.full(len(one), i), one, other], axis=1)
 
     def bound_figures(self, corners: CornerTriples) -> BoundFigures:
-        """Return bounds that the figures of triples cannot be better than.
+        """Return bounds: no figure of a triple can be better than its bound.
 
-        Where the clamp may stand at the point asked for, they are the figures themselves.
+        For triples over which the clamp may stand at the point asked for, they are the figures themselves.
         """
         count = len(corners.numbers)
         late, hang, need, force = (np.zeros(count) for _ in range(4))
@@ -323,13 +336,16 @@ class TripleChoice:
         return BoundFigures(falls_over(standing), late, hang, need, force, arm, standing)
 
     def measure_standing(self, corners: CornerTriples) -> Array:
-        """Return how far (N,) in mm the centre of area is inside the triangles, rounded; negative outside."""
+        """Return how far in mm the centre of the part's area is inside
+        each triangle, rounded, (N,); negative outside.
+        """
         inside = self.sides.measure_distances(corners, self.center).min(axis=1)
         return np.asarray(np.round(inside, FIGURE_DECIMALS))
 
     def find_allowed_at_given(self, corners: CornerTriples) -> Flags:
-        """Return over which triples (N,) the clamp may stand at the
-        point asked for; all False where no point was asked for.
+        """Return a mask (N,): True for triples over which the clamp may stand at the point asked for.
+
+        All False where no point was asked for.
         """
         if self.point is None or not self.point_allowed:
             return np.zeros(len(corners.numbers), np.bool_)
@@ -338,13 +354,16 @@ class TripleChoice:
         )
 
     def repeat_given_point(self, corners: CornerTriples) -> Array:
-        """Return the point asked for, repeated for each triple (N, 2); zeros where none was."""
+        """Return the point asked for, repeated for each triple, (N, 2);
+        zeros where no point was asked for.
+        """
         return np.broadcast_to(np.zeros(2) if self.point is None else self.point, (len(corners.numbers), 2))
 
     def compute_figures(self, corners: CornerTriples, points: Array) -> tuple[Array, Array, Array]:
-        """Return clamp force needed in N, largest support force at it in N, and tipping arm in mm, (N,) each.
+        """Return (1) the clamp force needed in N, (2) the largest support
+        force with it in N, (3) the tipping arm in mm.
 
-        The clamp stands at points (N, 2). Without loads the forces are 0.
+        Each is (N,). The clamp stands at points (N, 2). Without loads the forces are 0.
         """
         sides = self.sides.measure_distances(corners, points)
         arm = sides.min(axis=1)
@@ -357,7 +376,9 @@ class TripleChoice:
         return need, np.maximum(force, 0.0), arm
 
     def find_entering(self, bounds: BoundFigures, last: Key) -> Flags:
-        """Return which triples (N,) may rank before the key ``last``, by bounds of their figures."""
+        """Return a mask (N,): True for triples that may rank before the
+        key ``last``, by bounds of their figures.
+        """
         count = len(bounds.classes)
         keys: list[tuple[Array, float, float]] = [
             (value, one, one) for value, one in zip(bounds.classes, last[:count], strict=True)
@@ -384,20 +405,20 @@ class TripleChoice:
         return out | open_
 
     def find_best_arms(self, corners: CornerTriples) -> tuple[Array, Array, Array]:
-        """Return the points (N, 2) with the largest tipping arm,
-        the arms (N,) in mm, and the classes (N,) of the points.
+        """Return (1) the points with the largest tipping arm, (N, 2),
+        (2) the arms in mm, (3) the points' classes.
 
-        The arm is 0 where the clamp may stand nowhere.
+        The arm is 0 where the clamp may stand nowhere. For classes see :class:`RankedPlaces`.
         """
         some = self.make_triangles(corners)
         points, value, classes = self.places.find_best(some, some.steepness, self.inside)
         return points, 1.0 / value, classes
 
     def find_least_forces(self, corners: CornerTriples) -> tuple[Array, Array, Array]:
-        """Return the points (N, 2) with the least clamp force,
-        the forces (N,) in N, and the classes (N,) of the points.
+        """Return (1) the points with the least clamp force, (N, 2), (2)
+        the forces in N, (3) the points' classes.
 
-        Where no clamp is needed the point is NaN, and the force and the class are 0; where it may stand
+        Where no clamp is needed the point is NaN, and force and class are 0. Where the clamp may stand
         nowhere the force is inf.
         """
         reach = (
@@ -418,8 +439,9 @@ class TripleChoice:
         return Triangles.from_corners(self.sides.points[corners.numbers])
 
     def judge_triples(self, corners: CornerTriples, last: Key | None) -> list[Ranked]:
-        """Return (key, holes) of the triples that are valid and
-        may rank before the key ``last``; None for no such key.
+        """Return (key, indices of holes) of the triples that are valid and may rank before the key ``last``.
+
+        With ``last`` None, of all valid triples.
         """
         corners = corners.take(self.room.find_standing(corners.numbers).fits)
         given = self.find_allowed_at_given(corners)
@@ -457,9 +479,9 @@ class TripleChoice:
     def make_keys(
         self, corners: CornerTriples, late: float, hang: Array, need: Array, force: Array, arm: Array
     ) -> list[Ranked]:
-        """Return (key, holes) of triples from their figures (N,); smaller keys are better.
+        """Return (key, indices of holes) of N triples from their figures (N,); smaller keys are better.
 
-        ``late`` is 1.0 for triples over which the clamp cannot stand at the point asked for.
+        ``late`` is 1.0 for triples over which the clamp cannot stand at the point asked for, else 0.0.
         """
         standing = self.measure_standing(corners)
         falls = falls_over(standing)
@@ -479,8 +501,9 @@ class TripleChoice:
 
 
 def falls_over(standing: Array) -> Array:
-    """Return 1.0 (N,) for triples from which the part falls
-    over before it is clamped (standing < 0), else 0.0.
+    """Return 1.0 for triples from which the part falls over before it is clamped, else 0.0, (N,).
+
+    The part falls where ``standing`` is negative, see :class:`BoundFigures`.
     """
     return np.asarray(standing < 0.0, np.float64)
 

@@ -1,10 +1,13 @@
 """The best place of the clamp: the point t that minimizes the largest r_j / beta_j(t).
 
-The points with C beta_j(t) >= r_j form a triangle similar to that of the supports. It shrinks to t* = sum r_j
-s_j / sum r_j as C falls to C* = sum r_j (over r_j > 0). So t* is best if the clamp may stand there. Else the
-best point lies on the border of the allowed places: where two of the r_j / beta_j are equal, at a corner, or
-where b_j is normal to an arc of the border. With r_j = |b_j| the value is one over the distance to the
-nearest side: the same search then finds the best tipping arm, and t* is the incentre.
+Here r_j is the force that the clamp must put on support j, beta_j(t) is the share of the clamp force C that
+support j takes with the clamp at t (barycentric coordinates), b_j is the gradient of beta_j, and s_j is the
+place of support j. The points with C beta_j(t) >= r_j form a triangle similar to that of the supports. It
+shrinks to t* = sum r_j s_j / sum r_j as C falls to C* = sum r_j (over r_j > 0). So t* is best if the clamp
+may stand there. Else the best point lies on the border of the allowed places: where two of the r_j / beta_j
+are equal, at a corner, or where b_j is normal to an arc of the border. With r_j = |b_j| the value is one over
+the distance to the nearest side of the triangle: then the same search finds the best tipping arm, and t* is
+the incentre.
 """
 
 from __future__ import annotations
@@ -42,9 +45,9 @@ class ClampPlaces:
     Parameters
     ----------
     face : the top, with its keep-out zones.
-    tip_radius : in mm.
-    rings : (R, 4) centre, least and largest distance of the clamp's reach in the part's coordinates, mm; None
-        for no limit.
+    tip_radius : radius of the tip in mm.
+    rings : (R, 4) rings that the clamp can reach: centre x and y, least and largest radius, in the part's
+        coordinates in mm; None for no limit.
     tip_margin : least distance in mm of the tip from the border of its face.
     kept_off : regions by the height of the face, each with the least distance in mm of the tip's centre from
         them.
@@ -67,8 +70,10 @@ class ClampPlaces:
         object.__setattr__(self, "corners", np.unique(np.concatenate(corners), axis=0))
 
     def list_borders(self, level: float | None) -> tuple[CurvePieces, CurvePieces, Array]:
-        """Return the lines' and the circles' pieces that border
-        the places on faces of one height, and corners (K, 2).
+        """Return (1) the pieces of lines and (2) of circles that border the
+        places, and (3) corners (K, 2) of the border.
+
+        They are those on faces of one height, ``level`` in mm.
         """
         lines: list[Curve] = []
         circles: list[Curve] = []
@@ -92,9 +97,10 @@ class ClampPlaces:
         )
 
     def find_free_pieces(self, curves: Array, corners: Array, round_: bool) -> CurvePieces:
-        """Return the pieces of lines, or with ``round_`` circles, (N, 3) on which the tip may stand.
+        """Return the pieces of curves on which the tip may stand.
 
-        Curves are cut at the corners (K, 2); the middle of each piece decides.
+        ``curves`` (N, 3) are lines or, with ``round_``, circles. They are cut at the corners (K, 2), and the
+        middle of each piece decides.
         """
         kept, spans = list[int](), list[tuple[float, float]]()
         middles, owners = list[Array](), list[tuple[int, float, float]]()
@@ -119,10 +125,11 @@ class ClampPlaces:
         return CurvePieces(curves[kept].reshape(-1, 3), np.array(spans).reshape(-1, 2))
 
     def compute_slack(self, points: Array) -> Array:
-        """Return the slack (N,) in mm of the rules for a tip at points (N, 2), negative where one is broken.
+        """Return the slack in mm of the rules for a tip at points (N,
+        2), (N,); negative where a rule is broken.
 
-        The rules are the distances from the border of its face and from ``kept_off``, and the reach; zones
-        are left out.
+        The rules are the distances from the border of the face and from ``kept_off``, and the reach; keep-out
+        zones are not tested.
         """
         on, _ = self.face.own.measure_rooms(points)
         on = on - self.tip_radius - self.tip_margin
@@ -140,7 +147,7 @@ class ClampPlaces:
         return np.asarray(room)
 
     def find_allowed(self, points: Array) -> NDArray[np.bool_]:
-        """Return whether (N,) a tip may stand at points (N, 2)."""
+        """Return a mask (N,): True for points (N, 2) at which a tip may stand."""
         found = self.face.find_off_zones(points, self.tip_radius, GAP_SLACK)
         found[found] = self.compute_slack(points[found]) >= -GAP_SLACK
         return found
@@ -175,15 +182,15 @@ class ClampPlaces:
         return np.unique(np.round(every, 12), axis=0)
 
     def find_best(self, triangles: Triangles, reach: Array, inside: float) -> tuple[Array, Array]:
-        """Return, for each triangle, the allowed point (N, 2) with
-        the least max_j reach_j / beta_j, and that value (N,).
+        """Return, for each triangle, (1) the allowed point with the least
+        max_j reach_j / beta_j, (N, 2); (2) that value.
 
-        NaN and inf where no point is allowed; beta_j are barycentric coordinates.
+        The beta_j are the barycentric coordinates of the point. NaN and inf where no point is allowed.
 
         Parameters
         ----------
         reach : (N, 3) r_j, at least one positive in each row.
-        inside : smallest distance from a side in mm.
+        inside : smallest distance of the point from a side of the triangle, in mm.
         """
         asked = np.maximum(reach, 0.0)
         total = asked.sum(axis=1)
@@ -199,9 +206,9 @@ class ClampPlaces:
         return points, value
 
     def find_best_on_border(self, triangles: Triangles, asked: Array, inside: float) -> tuple[Array, Array]:
-        """Return as :meth:`find_best` the best of the points of :meth:`list_candidates`.
+        """Return the best of the points of :meth:`list_candidates`, in the form of :meth:`find_best`.
 
-        ``asked`` is ``reach`` with negative entries set to 0.
+        ``asked`` is ``reach`` of :meth:`find_best` with negative entries set to 0.
         """
         candidates = self.list_candidates(triangles, asked, inside)
         count = len(candidates)
@@ -239,8 +246,8 @@ class ClampPlaces:
         return out, least
 
     def list_candidates(self, triangles: Triangles, asked: Array, inside: float) -> Array:
-        """Return all points (N, K, 2) that can be best on the
-        border of the places; NaN where two curves do not meet.
+        """Return all points that can be best on the border of the places,
+        (N, K, 2); NaN where two curves do not meet.
         """
         count = len(triangles.slopes)
         lines = []
@@ -276,8 +283,9 @@ class CurvePieces:
 
     Parameters
     ----------
-    curves : (P, 3) unit normal and distance from the origin of lines, or centre and radius of circles, in mm.
-    spans : (P, 2) from and to, along the line in mm or as angles in radians.
+    curves : (P, 3) unit normal (x, y) and distance from the origin of a line, or centre (x, y) and radius of
+        a circle, in mm.
+    spans : (P, 2) begin and end of the piece, along the line in mm, or as angles in radians.
     """
 
     curves: Array
@@ -288,15 +296,15 @@ class CurvePieces:
 
     @classmethod
     def concatenate(cls, parts: Sequence[CurvePieces]) -> CurvePieces:
-        """Return the pieces of several, in order."""
+        """Return the pieces of several objects in order, as one object."""
         return cls(
             np.concatenate([one.curves for one in parts]), np.concatenate([one.spans for one in parts])
         )
 
     def mask_points_off_pieces(self, points: Array, round_: bool) -> Array:
-        """Return points (..., P, 2), each on the curve of its piece, with NaN for those off the piece.
+        """Return points (..., P, 2) with NaN for those off their piece.
 
-        ``round_`` says whether the curves are circles.
+        Point (..., p) must lie on the curve of piece p. ``round_`` says whether the curves are circles.
         """
         low, high = self.spans.T
         along = compute_parameters(self.curves, points, round_)
@@ -310,8 +318,9 @@ class CurvePieces:
 
 @define(frozen=True, eq=False)
 class RankedPlaces:
-    """Places of the clamp in classes, the best first: over
-    material that reaches down, then over overhangs, too.
+    """Places of the clamp in classes, best first.
+
+    The first classes are places over material that reaches down; the last may be over overhangs, too.
 
     Parameters
     ----------
@@ -321,11 +330,14 @@ class RankedPlaces:
     classes: tuple[ClampPlaces, ...]
 
     def find_allowed(self, points: Array) -> NDArray[np.bool_]:
-        """Return whether (N,) a tip may stand at points (N, 2), in any class."""
+        """Return a mask (N,): True for points (N, 2) at which a tip may stand, in any class."""
         return self.classes[-1].find_allowed(points)
 
     def find_classes(self, points: Array) -> Array:
-        """Return the class (N,), from 0, of points (N, 2); points not allowed count as of the last."""
+        """Return the class of each point (N, 2), (N,), counted from 0.
+
+        A point where the tip may not stand counts as of the last class.
+        """
         found = np.full(len(points), float(len(self.classes) - 1))
         for number in reversed(range(len(self.classes) - 1)):
             found[self.classes[number].find_allowed(points)] = number
@@ -342,19 +354,22 @@ class RankedPlaces:
         return sum(one.candidate_count for one in self.classes)
 
     def find_hanging(self, points: Array) -> NDArray[np.bool_]:
-        """Return whether (N,) points (N, 2) are of the last class, over an overhang; False with one class."""
+        """Return a mask (N,): True for points (N, 2) of the last class, over an overhang.
+
+        All False where there is only one class.
+        """
         last = len(self.classes) - 1
         return np.asarray((self.find_classes(points) == last) & (last > 0))
 
     def find_best(self, triangles: Triangles, reach: Array, inside: float) -> tuple[Array, Array, Array]:
-        """Return the best points (N, 2) in the first class
-        that has one, the values (N,), and the classes (N,).
+        """Return (1) the best points (N, 2) in the first class that has one,
+        (2) their values (N,), (3) the classes (N,).
 
-        NaN and inf where no class has one.
+        Points are NaN and values inf where no class has an allowed point.
 
         Parameters
         ----------
-        reach, inside : as of :meth:`ClampPlaces.find_best`.
+        reach, inside : see :meth:`ClampPlaces.find_best`.
         """
         count = len(reach)
         points, values = np.full((count, 2), np.nan), np.full(count, np.inf)
@@ -376,8 +391,9 @@ def measure_distances(curve: Array, points: Array, round_: bool) -> Array:
 
 
 def compute_parameters(curves: Array, points: Array, round_: bool) -> Array:
-    """Return the positions (...) of points (..., 2) along lines,
-    in mm, or with ``round_`` around circles (..., 3), in radians.
+    """Return the positions of points (..., 2) along their curves (..., 3), as (...).
+
+    Two cases: (a) lines: in mm; (b) circles, with ``round_``: angles in radians.
     """
     x, y = points[..., 0], points[..., 1]
     if round_:
@@ -386,14 +402,18 @@ def compute_parameters(curves: Array, points: Array, round_: bool) -> Array:
 
 
 def find_point_on_curve(curve: Array, place: float, round_: bool) -> Array:
-    """Return the point (2,) at a position of a line or circle (3,), the inverse of :func:`places_on`."""
+    """Return the point (2,) at a position of a line or circle (3,),
+    the inverse of :func:`compute_parameters`.
+    """
     if round_:
         return np.asarray(curve[:2] + curve[2] * np.array([np.cos(place), np.sin(place)]))
     return np.asarray(curve[2] * curve[:2] + place * np.array([-curve[1], curve[0]]))
 
 
 def normalize_lines(slope: Array, distance: Array) -> Array:
-    """Return lines slope . q = distance as (N, 3) unit normals and distances; NaN where the slope is zero."""
+    """Return lines slope . q = distance as rows (N, 3) of unit normal
+    and distance; NaN where the slope is zero.
+    """
     size = np.hypot(slope[:, 0], slope[:, 1])
     size = np.where(size > 0.0, size, np.nan)
     return np.column_stack([slope / size[:, None], distance / size])
@@ -410,10 +430,11 @@ def find_line_crossings(a: Array, b: Array) -> Array:
 
 
 def find_crossings_with_lines(lines: Array, others: Array, circles: Array) -> Array:
-    """Return the crossings (N, L, M + 2 K, 2) of lines (N, L,
-    3) with lines (M, 3) and circles (K, 3); NaN where none.
+    """Return the crossings of lines (N, L, 3) with M other lines and K
+    circles, (N, L, M + 2 K, 2); NaN where none.
 
-    The two crossings with the circles are at M to M + K - 1, and from M + K on.
+    ``others`` is (M, 3), ``circles`` (K, 3). The crossings with the other lines come first, then the first
+    crossing with each circle, then the second one.
     """
     straight = find_line_crossings(lines[:, :, None], others[None, None])
     normal, distance = lines[:, :, None, :2], lines[:, :, None, 2]

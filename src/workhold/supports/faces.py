@@ -49,8 +49,8 @@ class FaceBorders:
     first : (B,) index of each loop's first segment.
     starts, ends : (S, 2) end points of segments.
     straight, curved : indices of the lines, and of the A arcs.
-    arcs : (A, 6) centre, radius, middle angle, half sweep in radians, sign.
-    arcs_of : (A, B) 1.0 where the arc is of the loop.
+    arcs : (A, 6) centre (x, y), radius, middle angle and half sweep in radians, sign.
+    arcs_of : (A, B) 1.0 where the arc belongs to the loop, else 0.0.
     """
 
     loops: tuple[tuple[Segment, ...], ...]
@@ -84,9 +84,9 @@ class FaceBorders:
             object.__setattr__(self, name, value)
 
     def contains(self, points: Array) -> NDArray[np.bool_]:
-        """Return whether (N, B) points (N, 2) lie within each loop.
+        """Return a mask (N, B): True where a point (N, 2) lies within a loop.
 
-        Points are shifted by 1e-10 mm, as crossings do not tell for points on a chord.
+        Points are shifted by 1e-10 mm, since crossings do not decide for points on a chord.
         """
         x, y = points[:, :1] + HAIR, points[:, 1:] + 0.6 * HAIR
         (x0, y0), (x1, y1) = self.starts.T, self.ends.T
@@ -103,7 +103,7 @@ class FaceBorders:
         return np.asarray(odd % 2 == 1)
 
     def measure_distances(self, points: Array) -> Array:
-        """Return distances (N, B) in mm of points (N, 2) from each loop, never negative."""
+        """Return the distance in mm of each point (N, 2) from each loop, (N, B); never negative."""
         out = np.empty((len(points), len(self.starts)))
         x, y = points[:, :1], points[:, 1:]
         if len(self.straight):
@@ -120,7 +120,9 @@ class FaceBorders:
         return np.asarray(np.minimum.reduceat(out, self.first, axis=1))
 
     def measure_depths(self, points: Array) -> Array:
-        """Return distances (N, B) in mm of points (N, 2) from each loop, negative outside it."""
+        """Return the distance in mm of each point (N, 2) from each loop,
+        (N, B); negative outside the loop.
+        """
         step = max(1, AT_ONCE // max(1, len(self.starts)))
         blocks = (points[k : k + step] for k in range(0, len(points), step))
         signed = [np.where(self.contains(some), 1.0, -1.0) * self.measure_distances(some) for some in blocks]
@@ -149,10 +151,11 @@ def find_point_beside(loop: Loop) -> tuple[float, float]:
 
 
 def group_by_face(loops: Sequence[Loop]) -> list[list[int]]:
-    """Return, for each face, the indices of its loops: its border first, then its openings.
+    """Return, for each face, the indices of its loops: its outer border first, then its openings.
 
-    The first loop is a border. Others are openings if they run clockwise or lie directly on a face; the rest
-    are borders, such as that of the top of a boss within the opening that it leaves.
+    The first loop is an outer border. Another loop is an opening if it runs clockwise or lies directly on a
+    face; otherwise it is an outer border, such as that of the top of a boss within the opening that the boss
+    leaves.
     """
     areas = [compute_signed_area(loop) for loop in loops]
     within = FaceBorders(tuple(map(tuple, loops))).contains(
@@ -173,14 +176,15 @@ def group_by_face(loops: Sequence[Loop]) -> list[list[int]]:
 
 @define(frozen=True, eq=False)
 class TouchableFace:
-    """Faces side by side or above one another, with keep-out
-    zones; a disc must lie on one face, clear of all zones.
+    """Faces side by side or above one another, with keep-out zones.
+
+    A disc must lie on one face, clear of all zones.
 
     Parameters
     ----------
-    borders : for each face its border and its openings; then those of the zones.
+    borders : for each face its outer border and its openings; then the borders of the zones.
     faces : index in ``borders`` at which each face begins.
-    zones : how many borders are zones.
+    zones : number of borders, the last ones, that are zones.
     levels : height in mm of each face; None where not known.
     """
 
@@ -193,14 +197,13 @@ class TouchableFace:
     def from_loops(
         cls, loops: Sequence[Array], zones: Iterable[Array] = (), heights: Sequence[float] | None = None
     ) -> TouchableFace:
-        """Return the faces that loops of (x, y, bulge) vertices
-        border, the outer one first, with loops of keep-out zones.
+        """Return the faces bordered by loops of (x, y, bulge) vertices, with keep-out zones.
 
-        Without loops there is no face.
+        The outer loop comes first; ``zones`` are loops as well. Without loops there is no face.
 
         Parameters
         ----------
-        heights : of each loop's face, in mm; loops of different heights border different faces.
+        heights : height of each loop's face, in mm; loops of different heights border different faces.
         """
         rows = [tuple(make_loop_segments(np.asarray(loop))) for loop in loops]
         kept_out = [tuple(make_loop_segments(np.asarray(zone))) for zone in zones]
@@ -228,8 +231,10 @@ class TouchableFace:
         return tuple((one, np.concatenate(compute_box(one.loops))) for one in groups)
 
     def find_off_zones(self, points: Array, radius: float, slack: float) -> NDArray[np.bool_]:
-        """Return whether (N,) discs of a radius about points
-        (N, 2) overlap no zone by more than ``slack``, in mm.
+        """Return a mask (N,): True for discs about points (N, 2) that
+        overlap no zone by more than ``slack`` mm.
+
+        ``radius`` is that of the discs in mm.
         """
         out = np.ones(len(points), np.bool_)
         for borders, (x0, y0, x1, y1) in self.zone_groups:
@@ -241,10 +246,10 @@ class TouchableFace:
         return out
 
     def measure_rooms(self, points: Array) -> tuple[Array, Array]:
-        """Return radii in mm of the largest discs about points
-        (N, 2) on each face (N, F), and clear of all zones (N,).
+        """Return radii in mm of the largest discs about points (N, 2): (1)
+        on each face, (N, F); (2) clear of zones, (N,).
 
-        They are negative off the face, and in a zone; inf where there is no zone.
+        Negative off the face, or in a zone; (2) is inf where there is no zone.
         """
         signed = -self.borders.measure_depths(points)
         signed[:, list(self.faces)] *= -1.0
@@ -253,8 +258,10 @@ class TouchableFace:
         return on, np.asarray(signed[:, count:].min(axis=1, initial=np.inf))
 
     def measure_room(self, points: Array) -> Array:
-        """Return radii (N,) in mm of the largest discs about points
-        (N, 2) on a face and clear of zones; negative off all faces.
+        """Return radii in mm of the largest discs about points (N, 2)
+        that lie on a face, clear of all zones, (N,).
+
+        Negative off all faces, or in a zone.
         """
         on, off = self.measure_rooms(points)
         return np.asarray(np.minimum(on.max(axis=1, initial=-np.inf), off))
@@ -265,21 +272,23 @@ class TouchableFace:
         return compute_box([self.borders.loops[number] for number in self.faces])
 
     def find_face(self, border: int) -> int | None:
-        """Return the index of the face that a border belongs to; None for a zone's."""
+        """Return the index of the face that a border belongs to; None for the border of a zone."""
         if border >= len(self.borders.loops) - self.zones:
             return None
         return int(np.searchsorted(self.faces, border, side="right")) - 1
 
     def is_on_left(self, border: int) -> bool:
-        """Return whether the allowed side, on the face and off the zones, is on the left of a border."""
+        """Return whether the allowed side of a border is on its left;
+        allowed is on the face and off the zones.
+        """
         return (compute_signed_area(self.borders.loops[border]) > 0) == (border in self.faces)
 
 
 def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], list[Curve]]:
-    """Return lines (unit normal, distance) and circles (centre,
-    radius) that contain the centres of discs touching a loop.
+    """Return (1) lines and (2) circles that contain the centres of all discs touching a loop.
 
-    The discs have a radius in mm and are on the left of the loop if ``left``.
+    Lines are (unit normal, distance), circles (centre, radius). The discs have a radius in mm, and are on the
+    left of the loop if ``left``, else on its right.
     """
     lines: list[Curve] = []
     circles: list[Curve] = []
@@ -300,8 +309,9 @@ def offset_curves(loop: Loop, radius: float, left: bool) -> tuple[list[Curve], l
 
 
 def grow_radius(one: Segment, radius: float, left: bool) -> float:
-    """Return the radius in mm of the circle of centres of discs
-    that touch an arc, 0 or less if there is none; inf for a line.
+    """Return the radius in mm of the circle on which discs that touch a segment have their centres.
+
+    0 or less if there is no such circle; inf for a line.
     """
     if not isinstance(one, Arc):
         return np.inf
@@ -318,7 +328,9 @@ def is_smooth(one: Segment, after: Segment) -> bool:
 
 
 def find_last_parameter(one: Segment) -> float:
-    """Return the parameter of a segment's end; its start has the opposite one."""
+    """Return the parameter of a segment's end; the parameter of its start
+    is the same with the opposite sign.
+    """
     return one.half_extent * (one.sign if isinstance(one, Arc) else 1.0)
 
 
@@ -368,8 +380,9 @@ class LevelRegions:
         return cls(borders, turns)
 
     def measure_distances(self, height: float | None, points: Array) -> Array:
-        """Return distances (N,) in mm of points (N, 2) from the
-        region at a height, negative in it; inf where there is none.
+        """Return the distance in mm of points (N, 2) from the region at a height, (N,).
+
+        Negative inside the region; inf where there is no region at this height.
         """
         if height is None or height not in self.borders:
             return np.full(len(points), np.inf)
@@ -380,8 +393,10 @@ class LevelRegions:
     def iterate_offset_curves(
         self, height: float | None, radius: float
     ) -> Iterator[tuple[list[Curve], list[Curve]]]:
-        """Yield, for each border at a height, the lines and circles of
-        centres of discs outside the region, see :func:`offset_curves`.
+        """Yield, for each border at a height, the lines and circles of the
+        centres of discs that touch it from outside.
+
+        The discs are outside the region; see :func:`offset_curves`.
         """
         if height is not None and height in self.borders:
             for loop in self.borders[height].loops:

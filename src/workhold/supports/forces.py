@@ -63,7 +63,7 @@ class PegForces:
     Parameters
     ----------
     center : (2,) about which moments are taken, in mm.
-    pushes : (P, 2) unit vectors in which pegs push, in the part's frame.
+    pushes : (P, 2) unit vectors along which the P pegs push, in the part's frame.
     answers : (P, 4) peg forces per unit of g_x, g_y, moment in N mm about the centre, and jaw force.
     """
 
@@ -73,13 +73,15 @@ class PegForces:
 
     @classmethod
     def from_fixture(cls, fixture: Fixture, toolkit: Toolkit, touched: TouchableFeatures) -> PegForces:
-        """Return the answers of a fixture's pegs where the jaw keeps its force."""
+        """Return the answers of a fixture's pegs to loads, with a jaw that keeps its force."""
         matrices = touched.compute_for_fixture(fixture, toolkit)
         scale = np.array([1.0, 1.0, touched.length, 1.0])
         return cls(touched.center, -matrices.normals[0], matrices.inverses[0].T / scale)
 
     def compute_forces(self, point: Array) -> Array:
-        """Return peg forces (P, 2) per unit of a force in x, and in y, at a point (2,) in mm."""
+        """Return the force of each peg per unit of a force in x, and in y,
+        at a point (2,) in mm, as (P, 2).
+        """
         dx, dy = point - self.center
         x, y, moment, _ = self.answers.T
         return np.stack([x - dy * moment, y + dx * moment], axis=1)
@@ -105,8 +107,11 @@ class AffineFunctions:
         )
 
     def compute_leverage(self, pegs: PegForces, bands: Array, highest: bool) -> Array:
-        """Return h_i n . (-n_i) (..., P) at the end of each peg's band
-        (P, 2) of heights where it is least, or with ``highest`` largest.
+        """Return h_i n . (-n_i) for each peg i, (..., P), at the end of its band where it is least.
+
+        With ``highest`` at the end where it is largest. Here n is ``normals``, -n_i the direction in which
+        peg i pushes, and h_i the height in mm at which it presses; ``bands`` (P, 2) are the lowest and
+        highest heights.
         """
         along = self.normals[..., :1] * pegs.pushes[:, 0] + self.normals[..., 1:] * pegs.pushes[:, 1]
         ends = along * bands[:, 0], along * bands[:, 1]
@@ -140,25 +145,30 @@ class Triangles:
         return cls(corners, slopes, -(slopes * after).sum(axis=-1))
 
     def take(self, rows: NDArray[np.int64]) -> Triangles:
-        """Return the triangles of some rows."""
+        """Return the triangles with some indices."""
         return Triangles(self.corners[rows], self.slopes[rows], self.constants[rows])
 
     @property
     def steepness(self) -> Array:
-        """Lengths (N, 3) of b_j in 1/mm, the inverse of the height over the side that faces corner j."""
+        """Lengths of the vectors b_j, (N, 3), in 1/mm: the inverse of the
+        triangle's height over the side opposite corner j.
+        """
         return np.hypot(self.slopes[..., 0], self.slopes[..., 1])
 
     def compute_shares(self, points: Array) -> Array:
-        """Return barycentric coordinates (N, ..., 3) of points
-        (N, ..., 2), or of one point (2,) in all triangles.
+        """Return the barycentric coordinates (N, ..., 3) of points (N, ..., 2) in their triangles.
+
+        A single point (2,) is taken in all triangles.
         """
         shape = (len(self.slopes), *[1] * max(points.ndim - 2, 0))
         lines = AffineFunctions(self.slopes.reshape(*shape, 3, 2), self.constants.reshape(*shape, 3))
         return lines.evaluate(points[..., None, :])
 
     def measure_side_distances(self, points: Array) -> Array:
-        """Return distances (N, ..., 3) in mm of points from the three
-        sides, positive inside; points as of :meth:`compute_shares`.
+        """Return the distance in mm of points from each side of their
+        triangles, (N, ..., 3), positive inside.
+
+        Points as in :meth:`compute_shares`.
         """
         shares = self.compute_shares(points)
         extra = shares.ndim - 2
@@ -178,16 +188,18 @@ def find_largest_over_directions(x: Array, y: Array, directions: tuple[float, fl
 def compute_support_forces(
     lines: AffineFunctions, pegs: PegForces, bands: Array, loads: tuple[SpatialLoad, ...], jaw_force: float
 ) -> tuple[Array, Array]:
-    """Return the least and the largest force (N,) in N on N
-    supports without the clamp, over all loads and peg heights.
+    """Return (1) the least and (2) the largest force in N on each of
+    N supports, without the clamp, (N,) each.
+
+    They are taken over all loads, and over the heights at which pegs may press.
 
     Parameters
     ----------
-    lines : beta_j of the supports. With distances from the opposite sides instead, forces come multiplied by
-        the heights over these.
+    lines : barycentric coordinate beta_j of each support. With distances from the opposite sides instead,
+        forces come out multiplied by the triangles' heights over these sides.
     bands : (P, 2) heights at which each peg presses, in mm.
-    loads : with their heights known.
-    jaw_force : on what moves, in N.
+    loads : loads whose heights are known.
+    jaw_force : force on the moving carrier, in N.
     """
     x, y = lines.normals[..., 0], lines.normals[..., 1]
     out = []
@@ -217,13 +229,14 @@ def compute_support_forces(
 
 
 def count_worst_cases(load: SpatialLoad) -> int:
-    """Return how many combinations of point, height and axial force of a load are examined."""
+    """Return how many combinations of point, height and axial force of a load must be examined."""
     return max(len(load.points), 1) * len(set(load.heights or (0.0,))) * len(set(load.axial))
 
 
 def compute_jaw_lift(lines: AffineFunctions, pegs: PegForces, bands: Array) -> Array:
-    """Return by how much (...) the jaw lifts each support at most,
-    in N per N of jaw force, as :func:`compute_support_forces`.
+    """Return by how much the jaw lifts each support at most, (...), in N per N of jaw force.
+
+    Parameters as in :func:`compute_support_forces`.
     """
     return np.asarray(-(lines.compute_leverage(pegs, bands, highest=False) @ pegs.answers[:, 3]))
 
@@ -233,13 +246,13 @@ class WeakJawError(InputError):
 
 
 def find_needed_jaw_force(pegs: PegForces, loads: Sequence[SpatialLoad], jaw_force: float | None) -> float:
-    """Return the given jaw force, or for None the least
-    that keeps all pegs in contact under every load, in N.
+    """Return the given jaw force in N; for None, the least one that
+    keeps all pegs in contact under every load.
 
     Raises
     ------
     WeakJawError
-        When the given one is too small for a load.
+        When the given jaw force is too small for a load.
     """
     needs = [find_jaw_force_for_load(pegs, load) for load in loads]
     if jaw_force is None:
@@ -277,8 +290,8 @@ class CornerTriples:
     Parameters
     ----------
     numbers : (N, 3) indices of the holes, ascending.
-    sides : (N, 3) numbers of the sides opposite to them, see :class:`HoleSides`.
-    heights : (N, 3) of the triangle over these sides.
+    sides : (N, 3) numbers of the sides opposite to these holes, see :class:`HoleSides`.
+    heights : (N, 3) heights of the triangle over these sides.
     """
 
     numbers: IntArray
@@ -292,17 +305,18 @@ class CornerTriples:
 
 @define(frozen=True, eq=False)
 class HoleSides:
-    """The directed sides between H holes; side H a + b runs from hole a to hole b.
+    """The directed sides between H holes; side H·a + b runs from hole a to hole b.
 
     Parameters
     ----------
-    points : (H, 2) of the holes, in mm in the part's coordinates.
-    pegs, bands : of the fixture, and the heights (P, 2) at which pegs press.
-    loads : with their heights known.
-    jaw_force : in N.
-    length : (H H,) of each side, in mm.
-    least, most : (H H,) least and largest support force times its distance from the side, in N mm; empty
-        without loads.
+    points : (H, 2) centres of the holes, in mm in the part's coordinates.
+    pegs : answers of the fixture's pegs to loads.
+    bands : (P, 2) lowest and highest height in mm at which each peg presses.
+    loads : loads whose heights are known.
+    jaw_force : force on the moving carrier, in N.
+    length : (H·H,) length of each side, in mm.
+    least, most : (H·H,) least and largest force on a support, without the clamp, times the support's distance
+        from the side, in N mm; empty without loads.
     """
 
     points: Array
@@ -328,8 +342,9 @@ class HoleSides:
         object.__setattr__(self, "most", most)
 
     def make_lines(self, numbers: IntArray) -> AffineFunctions:
-        """Return distances from sides (...) as affine functions,
-        positive on the left; zero for sides from a hole to itself.
+        """Return the distances from sides, given by number (...), as affine functions, positive on the left.
+
+        They are zero for sides from a hole to itself.
         """
         begin, end = self.points[numbers // len(self.points)], self.points[numbers % len(self.points)]
         length = self.length[numbers]
@@ -338,11 +353,10 @@ class HoleSides:
         return AffineFunctions(normals, -(normals[..., 0] * begin[..., 0] + normals[..., 1] * begin[..., 1]))
 
     def make_corners(self, numbers: IntArray, inside: float) -> CornerTriples:
-        """Return the triangles of holes ``numbers`` (N, 3), ascending
-        in each row, with an incircle of radius ``inside`` or more.
+        """Return the triangles of three holes whose incircle has a radius of at least ``inside`` mm.
 
-        Flat triangles are left out, too. ``inside`` is in mm; no point is farther inside than the incircle's
-        centre.
+        ``numbers`` (N, 3) are indices of holes, ascending in each row. Flat triangles are left out, too. No
+        point of a triangle is farther inside than the incircle's centre.
         """
         count = len(self.points)
         i, j, k = numbers.T
@@ -367,8 +381,9 @@ class HoleSides:
         return CornerTriples(numbers[kept], sides[kept], area[kept, None] / length[kept])
 
     def compute_contact_forces(self, corners: CornerTriples) -> Array:
-        """Return r_j (N, 3), the force in N that the clamp must
-        put on each support to keep it in contact; may be negative.
+        """Return r_j, the force in N that the clamp must put on each support to keep it in contact, (N, 3).
+
+        Negative where the support stays in contact without the clamp.
         """
         return -self.least[corners.sides] / corners.heights
 
@@ -382,7 +397,8 @@ class HoleSides:
         return np.asarray(1.0 / (one[:, 0] + one[:, 1] + one[:, 2]))
 
     def measure_distances(self, corners: CornerTriples, points: Array) -> Array:
-        """Return distances (N, 3) in mm of points (N, 2), or of
-        one (2,), from each triangle's sides, positive inside.
+        """Return the distance in mm of points from each side of their triangles, (N, 3), positive inside.
+
+        ``points`` is (N, 2), or (2,) for the same point in all triangles.
         """
         return self.make_lines(corners.sides).evaluate(points[..., None, :])

@@ -7,8 +7,8 @@ program in the forces along the edges of pyramids inside the cones, with six equ
 the jaw. It is convex in the load, so the ends of ranges, and corners around a range of directions, are the
 worst loads.
 
-It is optimistic: with friction statics does not determine the forces, and this is the need of the most
-favourable ones. It does not affect the ranking.
+The result is optimistic: with friction, statics does not determine the forces, and the most favourable ones
+are assumed. It does not affect the ranking.
 
 The programs, minimize c . x subject to A x = b, x >= 0, with c >= 0, differ in b alone. They are solved by
 the simplex method in two phases (G. B. Dantzig, *Linear Programming and Extensions*, 1963, chapter 5), by
@@ -49,13 +49,14 @@ NEGLIGIBLE, MOST_TURNS = 1e-10, 2000
 
 
 def compute_clamp_force(supports: Supports, triple: Triple, friction: float) -> float:
-    """Return the least clamp force in N for which friction
-    could balance every load; at most that without friction.
+    """Return the least clamp force in N for which friction could balance every load.
+
+    It is at most the force needed without friction.
 
     Parameters
     ----------
-    triple : of these supports, with the clamp at :attr:`Triple.clamp`.
-    friction : coefficient of all contacts.
+    triple : one of the triples of these supports, with the clamp at :attr:`Triple.clamp`.
+    friction : coefficient of friction of all contacts.
 
     Raises
     ------
@@ -84,12 +85,12 @@ def compute_clamp_force(supports: Supports, triple: Triple, friction: float) -> 
 def make_balance_program(
     supports: Supports, triple: Triple, friction: float, heights: Sequence[float]
 ) -> tuple[Array, Array, float]:
-    """Return a matrix (7, V), costs (V,) and a length in mm:
-    the effects of unit forces along friction cones' edges.
+    """Return (1) a matrix (7, V), (2) costs (V,), and (3) a length in
+    mm: the program of the balance of forces.
 
-    Rows of the matrix: force in x, y, z; moments about the part's centre divided by the length; and push
-    against what moves. The cost is 1 for the clamp's edges, else 0. Each peg presses at one of the heights,
-    in mm.
+    Each of the V columns is the effect of a unit force along an edge of a friction cone. Rows: force in x, y,
+    z; moments about the part's centre divided by the length; push against what moves. The cost is 1 for the
+    clamp's edges, else 0. ``heights`` has the height in mm at which each peg presses.
     """
     query, fixture = supports.query, supports.fixture
     touched = TouchableFeatures.from_workpiece(query.workpiece, query.toolkit)
@@ -101,8 +102,9 @@ def make_balance_program(
     columns, costs = [], []
 
     def add(point: Array, push: Array, back: Array, cost: float) -> None:
-        """Append the edges of the pyramid about a unit push,
-        with the direction ``back`` against what moves.
+        """Append the edges of the pyramid about a unit push at a point.
+
+        ``back`` is the direction against what moves, ``cost`` the cost of each edge.
         """
         for edge in yield_pyramid_edges(push, friction):
             moment = np.cross(point, edge) / touched.length
@@ -123,8 +125,8 @@ def make_balance_program(
 
 
 def yield_pyramid_edges(push: Array, friction: float) -> Iterator[Array]:
-    """Yield the edges (3,) of a pyramid inside the friction
-    cone about a unit push, each with component 1 along it.
+    """Yield the edges (3,) of a pyramid inside the friction cone about
+    a unit push; each has component 1 along it.
     """
     one = np.array([-push[1], push[0], 0.0]) if push[2] == 0.0 else np.array([1.0, 0.0, 0.0])
     other = np.cross(push, one)
@@ -137,8 +139,9 @@ def yield_pyramid_edges(push: Array, friction: float) -> Iterator[Array]:
 
 
 def yield_load_wrenches(load: SpatialLoad, supports: Supports) -> Iterator[list[float]]:
-    """Yield wrenches [fx, fy, fz, mx, my, mz] about the
-    part's centre, in N and N mm, whose hull contains a load.
+    """Yield wrenches [fx, fy, fz, mx, my, mz] whose convex hull contains every case of a load.
+
+    They are about the part's centre, in N and N mm.
     """
     center = TouchableFeatures.from_workpiece(supports.query.workpiece, supports.query.toolkit).center
     assert load.heights is not None
@@ -152,7 +155,7 @@ def yield_load_wrenches(load: SpatialLoad, supports: Supports) -> Iterator[list[
 
 
 def yield_polygon_corners(directions: tuple[float, float]) -> Iterator[tuple[float, float]]:
-    """Yield corners of a polygon around the unit vectors of a range of directions in degrees."""
+    """Yield points (x, y) whose convex hull contains the unit vectors of a range of directions in degrees."""
     low, wide = radians(directions[0]), radians(min(directions[1] - directions[0], 360.0))
     steps = max(ceil(wide / radians(WIDEST_STEP)), 1)
     half = wide / steps / 2
@@ -166,10 +169,10 @@ def yield_polygon_corners(directions: tuple[float, float]) -> Iterator[tuple[flo
 
 
 def find_least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
-    """Return the least costs (N,) of programs min c . x, A x = b, x >= 0; inf where infeasible.
+    """Return the least costs of N programs min c . x, A x = b, x >= 0, as (N,); inf where infeasible.
 
-    ``matrix`` is A (R, V) with rows of like size, ``costs`` c (V,) >= 0, ``sides`` are the right sides b (N,
-    R).
+    ``matrix`` is A (R, V), whose rows must be of similar size; ``costs`` is c (V,) >= 0; the rows of
+    ``sides`` (N, R) are the right sides b.
     """
     out, open_ = np.full(len(sides), np.inf), np.ones(len(sides), bool)
     while open_.any():
@@ -188,9 +191,9 @@ def find_least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
 
 
 def find_optimal_basis(matrix: Array, costs: Array, side: Array) -> IntArray | None:
-    """Return the basic columns (R,) of an optimal solution; None where the program is infeasible.
+    """Return the basic columns (R,) of an optimal solution of the program with the right side ``side``.
 
-    None as well where the rows of the matrix are dependent.
+    None where the program is infeasible, or where the rows of the matrix are dependent.
     """
     rows, columns = matrix.shape
     size = max(float(np.abs(side).max()), 1.0)
@@ -212,7 +215,9 @@ def find_optimal_basis(matrix: Array, costs: Array, side: Array) -> IntArray | N
 
 
 def improve_basis(matrix: Array, costs: Array, side: Array, basis: IntArray) -> tuple[IntArray, Array]:
-    """Return an optimal basis (R,) and its values (R,), by the simplex method from a feasible basis."""
+    """Return (1) an optimal basis (R,) and (2) its values (R,), by the
+    simplex method from a feasible basis.
+    """
     basis = basis.copy()
     for turn in range(MOST_TURNS):
         inverse = np.linalg.inv(matrix[:, basis])

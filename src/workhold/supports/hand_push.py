@@ -1,9 +1,9 @@
 """A push by hand that presses a part against all of its locators.
 
-A force along a line presses three locators without friction with forces that are linear in it. In a fixed
-direction at a point q + t e of a straight side each of these is linear in t, so the places on the side that
-press all three are an interval. Directions are tried every half degree, within 60 degrees of the inward
-normal; points on arcs every two degrees, and corners.
+A push along a line makes three locators without friction press with forces that are linear in the push. For a
+push in a fixed direction at a point q + t e of a straight side, each of these forces is linear in t, so the
+places on the side at which the push presses all three locators are an interval. Directions are tried every
+half degree, within 60 degrees of the inward normal; points on arcs every two degrees, and corners.
 """
 
 from __future__ import annotations
@@ -30,14 +30,15 @@ HARDER = 0.02
 
 
 def find_hand_push(segments: Sequence[Segment], touched: Array, inward: Array) -> HandPush | None:
-    """Return the push by hand that presses hardest on the
-    locator it presses least; None where none presses all three.
+    """Return the push by hand whose least force on one of the three locators is largest.
+
+    None where no push presses the part against all three.
 
     Parameters
     ----------
-    segments : of the part's outer outline, on the plate.
-    touched, inward : (3, 2) points where locators touch the part in mm, and the unit directions in which they
-        push.
+    segments : segments of the part's outer outline, in the plate's frame.
+    touched : (3, 2) points in mm at which the locators touch the part.
+    inward : (3, 2) unit vectors along which the locators push.
     """
     matrix = np.vstack([inward.T, touched[:, 0] * inward[:, 1] - touched[:, 1] * inward[:, 0]])
     size = np.array([1.0, 1.0, max(float(np.ptp(touched, axis=0).max()), 1.0)])
@@ -57,8 +58,8 @@ def find_hand_push(segments: Sequence[Segment], touched: Array, inward: Array) -
 
 
 def list_pushed_places(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Array]]:
-    """Yield (start, vector to the end, directions (D,) of a
-    push in radians) for each place on the outline to try.
+    """Yield (start, vector to the end, directions in radians (D,)) for
+    each place on the outline at which to try a push.
 
     Sides are stretches; points on arcs and corners have a zero vector. On sides and arcs the direction
     nearest to the inward normal comes first.
@@ -83,8 +84,9 @@ def list_pushed_places(segments: Sequence[Segment]) -> Iterator[tuple[Point, Poi
 
 
 def list_corners(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Array]]:
-    """Yield convex corners as in :func:`list_pushed_places`,
-    with the directions between both sides' inward normals.
+    """Yield convex corners in the form of :func:`list_pushed_places`.
+
+    Their directions lie between the inward normals of both sides.
     """
     ends = {one.end: one for one in segments}
     for one in segments:
@@ -102,14 +104,14 @@ def list_corners(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Ar
 def list_best_places(
     answers: Array, start: Point, along: Point, turns: Array
 ) -> Iterator[tuple[float, float, Array]]:
-    """Yield (direction in radians, position 0 to 1 on the stretch,
-    the locators' shares (3,)) for directions that press all three.
+    """Yield (direction in radians, position on the stretch, the locators'
+    shares (3,)) for pushes that press all three.
 
-    The position is the one where the least share is largest.
+    There is at most one for each direction: the position, from 0 to 1, at which the least share is largest.
 
     Parameters
     ----------
-    answers : (3, 3) the locators' forces for a unit force along x, along y, and a unit moment.
+    answers : (3, 3) the locators' forces for a unit force along x, a unit force along y, and a unit moment.
     start, along : start of the stretch, and the vector to its end, in mm.
     turns : (D,) directions in radians.
     """

@@ -34,9 +34,9 @@ class HolesUnderPart:
 
     Parameters
     ----------
-    carrier : (H,) numbers of their carriers.
-    column, row : (H,) counted as by the planar fixture; may be outside its plates.
-    points : (H, 2) in mm in the part's coordinates.
+    carrier : (H,) number of the carrier of each of H holes.
+    column, row : (H,) counted as in the planar fixture; may be outside its plates.
+    points : (H, 2) centres of the holes, in mm in the part's coordinates.
     spare : (H,) slack in mm of the rules for a pad there, 0 or more within rounding.
     """
 
@@ -50,8 +50,8 @@ class HolesUnderPart:
 def find_holes_under_face(
     fixture: Fixture, toolkit: Toolkit, face: TouchableFace, request: SupportRequest
 ) -> HolesUnderPart:
-    """Return the holes under a face at which a pad keeps
-    clear of the face's border, its zones and the pegs.
+    """Return the holes under a face in which a pad keeps clear of the
+    face's border, its zones and the pegs.
     """
     low, high = face.box
     corners = np.array(list(product((low[0], high[0]), (low[1], high[1]))))
@@ -89,9 +89,9 @@ class TripleStanding:
 
     Parameters
     ----------
-    fits : (N,) whether there is such a place.
-    travel : (N,) of the moving carrier with a lattice, in mm; NaN where none moves.
-    spare : (N,) slack of the smallest gap, in mm; inf where none moves.
+    fits : (N,) whether the set has a place.
+    travel : (N,) travel of the moving carrier with a lattice, in mm; NaN where no such carrier moves.
+    spare : (N,) slack of the smallest gap, in mm; inf where no such carrier moves.
     """
 
     fits: NDArray[np.bool_]
@@ -100,8 +100,10 @@ class TripleStanding:
 
 
 def find_ends(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the first and last (N,) of the columns or rows
-    (N, S) where ``on``, those ``taken`` (K,) by pegs included.
+    """Return (1) the first and (2) the last column or row of each of N sets, (N,) each.
+
+    ``numbers`` (N, S) are the columns or rows of the S supports of each set, of which those count where
+    ``on`` is True. The columns or rows ``taken`` (K,) by pegs count for all sets.
     """
     first = np.where(on, numbers, UNBOUNDED).min(axis=1)
     last = np.where(on, numbers, -UNBOUNDED).max(axis=1)
@@ -119,10 +121,10 @@ class CarrierRoom:
 
     Parameters
     ----------
-    fixture, toolkit, holes : the fixture, and the holes that may hold a support.
-    plates : the carriers with holes, by their numbers.
-    taken : columns (K,) and rows (K,) of pegs and clamps on each of these.
-    has_blocked : whether there are two such carriers and a blocked hole.
+    fixture, toolkit, holes : the fixture, its toolkit, and the holes that may hold a support.
+    plates : the carriers with holes, by number.
+    taken : columns (K,) and rows (K,) of pegs and clamps on each of these carriers.
+    has_blocked : whether there are two carriers with holes, and a hole is blocked.
     """
 
     fixture: Fixture
@@ -155,14 +157,18 @@ class CarrierRoom:
         )
 
     def find_standing(self, sets: IntArray) -> TripleStanding:
-        """Return how sets (N, S) of holes, by index, stand beside the pegs, clear of blocked holes."""
+        """Return how sets of supports stand beside the pegs, clear of blocked holes.
+
+        ``sets`` (N, S) are indices of holes.
+        """
         found, at_rest = self.fit_sets(sets)
         return self.move_off_blocked(found, sets, at_rest) if self.has_blocked else found
 
     def find_compatible_pairs(self) -> NDArray[np.bool_]:
-        """Return a symmetric mask (H, H) of holes that may both hold a support, blocked holes disregarded.
+        """Return a symmetric mask (H, H): True for two holes that may both
+        hold a support, blocked holes disregarded.
 
-        A set needs all its pairs compatible, which does not suffice.
+        In a set that fits all pairs are compatible; the converse does not hold.
         """
         count = len(self.holes.row)
         out = np.zeros((count, count), np.bool_)
@@ -174,8 +180,8 @@ class CarrierRoom:
         return out | out.T
 
     def fit_sets(self, sets: IntArray) -> tuple[TripleStanding, Array]:
-        """Return how sets (N, S) stand, blocked holes disregarded,
-        and their travel (N,) in mm nearest the opening.
+        """Return (1) how sets (N, S) stand, blocked holes disregarded, and
+        (2) their travel nearest the opening in mm, (N,).
 
         A set that does not fit does not fit with more supports either.
         """
@@ -210,14 +216,16 @@ class CarrierRoom:
         number: int,
         plate: Carrier,
     ) -> tuple[TripleStanding, Array]:
-        """Return how sets stand with the moving carrier opened no wider than
-        it can, and its travel (N,) in mm with all pegs nearest the opening.
+        """Return (1) how sets stand, with the moving carrier opened no
+        wider than its travel allows; (2) their travel.
+
+        The travel (N,) in mm is that with all pegs nearest the opening.
 
         Parameters
         ----------
         fits : (N,) which sets fit so far.
         spans : for each carrier, first and last columns (N,), and first and last rows (N,).
-        number, plate : of the moving carrier.
+        number, plate : number of the moving carrier, and the carrier.
         """
         travel = plate.travel
         assert travel is not None
@@ -245,7 +253,8 @@ class CarrierRoom:
     def move_off_blocked(self, found: TripleStanding, sets: IntArray, at_rest: Array) -> TripleStanding:
         """Return how sets (N, S) stand with pegs and supports moved outward until none is in a blocked hole.
 
-        ``at_rest`` (N,) is the travel in mm nearest the opening. Sets without such a place no longer fit.
+        ``at_rest`` (N,) is the travel in mm with all pegs nearest the opening. Sets without such a place do
+        not fit.
         """
         holes, plates, numbers = self.holes, list(self.plates.values()), list(self.plates)
         travel = next(one.travel for one in plates if one.travel is not None)
@@ -269,10 +278,10 @@ class CarrierRoom:
 
 
 def find_first_free_columns(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:
-    """Return by how many columns outward in all pegs and
-    supports can stand clear of blocked holes, ascending.
+    """Return the total numbers of columns outward at which pegs and
+    supports stand clear of blocked holes, ascending.
 
-    ``standing`` are (carrier index, column, row); there are two plates.
+    ``standing`` has (index of the carrier, column, row) of each; there are two plates.
     """
     columns = [[c for k, c, _ in standing if k == number] for number in range(len(plates))]
     lowest = min(row for _, _, row in standing)

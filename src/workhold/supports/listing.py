@@ -52,9 +52,9 @@ class SupportSearch:
 
     Parameters
     ----------
-    query : part and toolkit.
+    query : query with the part and the toolkit.
     request : sizes and rules of supports and clamp.
-    loads : with their heights known.
+    loads : loads whose heights are known.
     """
 
     query: Query
@@ -88,7 +88,7 @@ class SupportSearch:
         object.__setattr__(self, "free_places", free)
 
     def find_places(self, fixture: Fixture) -> RankedPlaces:
-        """Return where the clamp's tip may stand over a fixture, in classes."""
+        """Return the places at which the clamp's tip may stand over a fixture, in classes."""
         if self.free_places is not None:
             return self.free_places
         rings = np.array(self.request.reach).reshape(-1, 4)
@@ -97,17 +97,18 @@ class SupportSearch:
 
     @property
     def heads(self) -> tuple[tuple[LevelRegions, float], ...]:
-        """Regions that rise above the top faces, with the
-        least distance in mm of the clamp's centre from them.
+        """Regions that rise above the top faces, each with the least
+        distance in mm of the clamp's centre from it.
         """
         asked = self.request
         return ((LevelRegions.from_loops(asked.rising, asked.rising_heights), asked.head_radius),)
 
     def rank_places(self, rings: Array | None) -> RankedPlaces:
-        """Return where the tip may stand, in classes: wholly
-        over material that reaches down, partly so, anywhere.
+        """Return the places of the tip in classes: wholly over material
+        that reaches down, partly so, anywhere.
 
-        ``rings`` (R, 4) is the clamp's reach in the part's coordinates; None for no limit.
+        ``rings`` (R, 4) is the clamp's reach in the part's coordinates, see :class:`ClampPlaces`; None for no
+        limit.
         """
         asked, heads = self.request, self.heads
         hanging = LevelRegions.from_loops(asked.hanging, asked.hanging_heights)
@@ -127,9 +128,10 @@ class SupportSearch:
         cancel: Stop | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> Supports:
-        """Return the supports of a fixture: all triples, or the best few; see :func:`find_supports`.
+        """Return the supports of a fixture: all triples, or the best
+        ones; see the function :func:`find_supports`.
 
-        ``best`` is how many; None for all.
+        ``best`` is the number of triples; None for all.
 
         Raises
         ------
@@ -209,7 +211,7 @@ def make_triples(choice: TripleChoice, corners: CornerTriples) -> tuple[Triple, 
 
 
 def measure_clamp_places(choice: TripleChoice, corners: CornerTriples, points: Array) -> list[ClampFigures]:
-    """Return the figures of triples with the clamp at points (N, 2)."""
+    """Return the figures of triples with the clamp at points (N, 2), one point for each triple."""
     sides = choice.sides
     need, force, arm = choice.compute_figures(corners, points)
     shares = sides.measure_distances(corners, points) / corners.heights
@@ -233,7 +235,7 @@ def measure_clamp_places(choice: TripleChoice, corners: CornerTriples, points: A
 
 
 def make_support_pad(room: CarrierRoom, hole: int) -> SupportPad:
-    """Return the pad in a hole, by the hole's index."""
+    """Return the pad in a hole, given by its index."""
     holes = room.holes
     x, y = holes.points[hole].tolist()
     name = room.toolkit.carriers[holes.carrier[hole]].name
@@ -241,18 +243,18 @@ def make_support_pad(room: CarrierRoom, hole: int) -> SupportPad:
 
 
 def to_spatial_loads(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
-    """Return loads as loads in space, with their heights set by the thickness in mm where not given."""
+    """Return loads as loads in space; heights that are not given are set by the part's thickness in mm."""
     every = (load if isinstance(load, SpatialLoad) else SpatialLoad.from_planar_load(load) for load in loads)
     return tuple(load.with_height(thickness) for load in every)
 
 
 def check_jaw_force(jaw_force: float | None) -> float | None:
-    """Return a jaw force in N as float, or None for None.
+    """Return a jaw force in N as a float; None for None.
 
     Raises
     ------
     InputError
-        For one that is negative, not finite, too large, or no number.
+        For a jaw force that is negative, not finite, too large, or no number.
     """
     if jaw_force is None:
         return None
@@ -278,18 +280,18 @@ def find_supports(
     Parameters
     ----------
     fixture, query : a planar fixture, and the part and toolkit it was asked for.
-    request : what supports and clamp are.
-    loads : those of the query if None; planar ones act at the top of the part.
-    jaw_force : in N; by default the one that keeps all pegs in contact.
-    best : how many triples to list; None lists all.
-    cancel : when set, the search stops soon, and has the best of those it looked at.
+    request : sizes and rules of supports and clamp.
+    loads : loads; None for those of the query. Planar loads act at the top of the part.
+    jaw_force : in N; None for the least one that keeps all pegs in contact.
+    best : number of triples to list; None for all.
+    cancel : when set, the search stops soon, with the best triples examined so far.
     progress : called with the fraction done.
 
     Raises
     ------
     InputError
         For pads too large for the holes, and a jaw force too small for a load. For more holes than can be
-        looked at, and for all triples where there are too many.
+        examined, and for all triples where there are too many.
     """
     asked = (query, request, loads, jaw_force, best)
     return next(yield_supports((fixture,), *asked, cancel=cancel, progress=progress))
@@ -307,16 +309,17 @@ def yield_supports(
     cancel: Stop | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Iterator[Supports]:
-    """Yield the supports of each of some fixtures of a query,
-    in order, as they are found; stops early once cancelled.
+    """Yield the supports of each of some fixtures of a query, in order, as they are found.
+
+    The iteration stops early once cancelled.
 
     Parameters
     ----------
-    each : how many triples of each fixture; None for all.
+    each : number of triples of each fixture; None for all.
     drops_weak_force : whether a jaw force too small for a load is replaced by the one needed, instead of an
         error.
 
-    The others are as of :func:`find_supports`.
+    The other parameters are as in :func:`find_supports`.
     """
     acting = list_acting_loads(query, request.thickness) if loads is None else loads
     asked = to_spatial_loads(acting, request.thickness)

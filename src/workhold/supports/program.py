@@ -1,20 +1,20 @@
-"""What a program asks of supports: its forces as loads in space, and keep-out zones of what it sweeps.
+"""A program's effect on supports: its forces as loads in space, and keep-out zones around what it sweeps.
 
-Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, what mills,
-what drills and what plunges are loads of their own, with every force that it has; where it has more than a few, with the
-largest. A path counts as the hull of its places. Arcs are taken in polygons around them, so that nothing is
-less than it is, and a force may act in any direction.
+Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, what
+mills, what drills and what plunges are loads of their own, with every force that it has; where it has more
+than a few, with the largest. A path counts as the hull of its places. Arcs are taken in polygons around them,
+so that nothing is less than it is, and a force may act in any direction.
 
-What tools sweep at heights below the part is no place for pads, such as where a drill comes through. What
-they sweep at the heights of the clamp is none for its tip. Each swept piece is a zone, straight or bent, as
-wide as the tool with the clearance.
+No pad may stand where tools sweep below the part, such as where a drill comes through. No tip may stand where
+they sweep at the heights of the clamp. Each swept piece is a zone, straight or bent, as wide as the tool with
+the clearance.
 
 Of the pieces above the part few border the places that are left. They are found on ever smaller squares of
 the face. Let c be the middle of a square and h its half diagonal. Let s(t) be the least distance of a place
-t from the paths, less what has to be kept. It changes by no more than the way. So a square is covered by the
-piece nearest to c where s(c) < -h, and free where s(c) > h. All others are quartered. On one as small as
-``FINEST`` the piece nearest to c stands for all others, once it is made 2 h wider. Places that are left are
-clear of every piece, and no place is lost that keeps 2 h more.
+t from the paths, less the distance that has to be kept. Between two places s changes by at most their
+distance. So a square is covered by the piece nearest to c where s(c) < -h, and free where s(c) > h. All
+others are quartered. On one as small as ``FINEST`` the piece nearest to c stands for all others, once it is
+made 2 h wider. Places that are left are clear of every piece, and no place is lost that keeps 2 h more.
 """
 
 from __future__ import annotations
@@ -56,13 +56,15 @@ FIRST = 16
 
 
 def list_acting_loads(query: Query, thickness: float) -> tuple[Load | SpatialLoad, ...]:
-    """Return the loads of a query, then those that its program makes on a part of this thickness in mm."""
+    """Return the loads of a query, followed by those that its
+    program makes on a part of this thickness in mm.
+    """
     return (*query.loads, *(() if query.program is None else make_cutting_loads(query.program, thickness)))
 
 
 def make_cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]:
-    """Return the loads in space that a program makes on a
-    part of this thickness in mm; none without cutting forces.
+    """Return the loads in space that a program makes on a part of this
+    thickness in mm; none without cutting forces.
     """
     forces = program.forces
     if forces is None:
@@ -77,8 +79,9 @@ def make_cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad,
 
 
 def group_by_torque(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]:
-    """Yield those of ``rows``, indices of moves, with equal torque
-    together; all at once if there are more than eight torques.
+    """Yield groups of ``rows``, indices of moves: those with equal torque together.
+
+    If there are more than eight different torques, all rows are one group.
     """
     values, which = np.unique(forces.torque[rows], return_inverse=True)
     if len(values) > MOST_FORCES:
@@ -90,8 +93,9 @@ def group_by_torque(forces: CuttingForces, rows: IntArray) -> Iterator[IntArray]
 def make_loads(
     program: Program, forces: CuttingForces, rows: IntArray, thickness: float, name: str
 ) -> Iterator[SpatialLoad]:
-    """Yield two loads that contain the cutting forces of
-    moves ``rows``, with positive and with negative torque.
+    """Yield two loads that contain the cutting forces of some moves: with positive and with negative torque.
+
+    ``rows`` are the indices of the moves.
     """
     count, own = len(program.moves), np.isin(forces.stretches.move, rows)
     only = np.zeros(count)
@@ -125,8 +129,9 @@ def make_loads(
 def add_program_zones(
     request: SupportRequest, workpiece: Workpiece, program: Program | None
 ) -> SupportRequest:
-    """Return a request with the zones that a program's tools
-    sweep added to its own; unchanged without a program.
+    """Return a request with the zones that a program's tools sweep added to its own zones.
+
+    Without a program, the request is returned unchanged.
     """
     if program is None:
         return request
@@ -170,8 +175,8 @@ class KeyedFace:
 def list_zones_below(
     program: Program, pad_radius: float, pad_margin: float, keyed: KeyedFace
 ) -> tuple[Zone, ...]:
-    """Return zones where no pad may stand, as tools come down
-    to the plane on which the part lies, or below; cached.
+    """Return zones in which no pad may stand, since tools come down
+    to the plane on which the part lies; cached.
     """
     swept = SweptSpans.from_program(program, 0.0)
     return find_zones(swept, program.clearance, pad_radius + pad_margin, pad_radius, keyed.face, MOST_BELOW)
@@ -181,7 +186,7 @@ def list_zones_below(
 def list_zones_above(
     program: Program, levels: tuple[float, ...], tip_radius: float, keyed: KeyedFace
 ) -> tuple[Zone, ...]:
-    """Return zones where the clamp's tip may not stand, as tools come too near to the clamp; cached."""
+    """Return zones in which the clamp's tip may not stand, since tools come too near to the clamp; cached."""
     return find_zones(
         SweptSpans.from_pieces(list_swept_beside_clamp(program, levels, tip_radius)),
         program.clearance,
@@ -193,8 +198,8 @@ def list_zones_above(
 
 
 def list_levels(request: SupportRequest) -> tuple[float, ...]:
-    """Return the heights in mm of the faces on which the
-    clamp may press, ascending, the part's thickness last.
+    """Return the heights in mm of the faces on which the clamp may
+    press, ascending; the last is the part's thickness.
     """
     lower = {height for height in request.top_heights or () if height < request.thickness}
     return *sorted(lower), request.thickness
@@ -203,8 +208,8 @@ def list_levels(request: SupportRequest) -> tuple[float, ...]:
 def list_swept_beside_clamp(
     program: Program, levels: tuple[float, ...], tip_radius: float
 ) -> Iterator[SweptPiece]:
-    """Yield what is swept at the heights of the clamp on each
-    face, enlarged where the clamp is wider than its tip.
+    """Yield what tools sweep at the heights of the clamp on each face,
+    enlarged where the clamp is wider than its tip.
     """
     for low in levels:
         for height, share in size_clamp_pieces(low, levels[-1]):
@@ -219,15 +224,15 @@ def list_swept_beside_clamp(
 def find_zones(
     swept: SweptSpans, clearance: float, on_face: float, disc: float, face: TouchableFace, most: int
 ) -> tuple[Zone, ...]:
-    """Return zones that keep discs clear of what is swept, with as few shapes as suffice; lengths in mm.
+    """Return zones that keep discs clear of what is swept, with as few shapes as suffice.
 
     Parameters
     ----------
-    clearance : least distance between the swept cylinders and a disc.
-    on_face : least distance of a disc's centre from the border of the face.
-    disc : radius of the discs.
-    face : on which the discs lie.
-    most : where there are more zones, wider and fewer ones are tried.
+    clearance : least distance in mm between the swept cylinders and a disc.
+    on_face : least distance in mm of a disc's centre from the border of the face.
+    disc : radius of the discs in mm.
+    face : face on which the discs lie.
+    most : number of zones above which fewer and wider ones are tried.
     """
     if not len(swept) or not face.faces:
         return ()
@@ -252,7 +257,8 @@ def find_zones(
 def find_needed_spans(
     swept: SweptSpans, keep: float, on_face: float, face: TouchableFace, finest: float
 ) -> tuple[IntArray, IntArray]:
-    """Return the indices of the spans, and of the filled boxes, that decide which places of a face are left.
+    """Return the indices (1) of the swept spans and (2) of the filled
+    boxes that decide which places of a face are free.
 
     Parameters
     ----------
@@ -289,8 +295,8 @@ def find_needed_spans(
 
 
 def find_filled_boxes(swept: SweptSpans, points: Array, half: float) -> tuple[NDArray[np.bool_], IntArray]:
-    """Return whether (N,) squares about points (N, 2) lie
-    in a filled box, and the box's index (N,), -1 for none.
+    """Return (1) whether squares about points (N, 2) lie in a filled
+    box, (N,), and (2) the box's index; -1 for none.
 
     A square counts as in a box if its centre is at least ``half`` mm from the box's sides.
     """
@@ -305,10 +311,10 @@ def find_filled_boxes(swept: SweptSpans, points: Array, half: float) -> tuple[ND
 def choose_covering_spans(
     swept: SweptSpans, first: IntArray, squares: Array, own: IntArray, keep: float
 ) -> IntArray:
-    """Return ascending indices of spans that cover squares (N, 3)
-    of centre and half diagonal: ``first``, and more as needed.
+    """Return indices of spans, ascending, that cover all of some squares: ``first``, and more as needed.
 
-    ``own`` (N,) is the index of a span that covers each square.
+    ``squares`` (N, 3) are (centre x, centre y, half diagonal); ``own`` (N,) is the index of a span that
+    covers each square. Spans are widened by ``keep`` mm.
     """
     chosen, open_ = first, np.ones(len(squares), np.bool_)
     for number in first.tolist():
@@ -322,8 +328,9 @@ def choose_covering_spans(
 
 
 def covers(swept: SweptSpans, number: int, squares: Array, keep: float) -> NDArray[np.bool_]:
-    """Return whether (N,) a span, widened by ``keep`` mm,
-    covers each square (N, 3) of centre and half diagonal.
+    """Return a mask (N,): True for squares that span ``number``, widened by ``keep`` mm, covers.
+
+    ``squares`` (N, 3) are (centre x, centre y, half diagonal).
     """
     row = swept.tree.rows[number : number + 1]
     away = measure_distances(row, squares[None, :, 0], squares[None, :, 1])[0]
@@ -332,8 +339,8 @@ def covers(swept: SweptSpans, number: int, squares: Array, keep: float) -> NDArr
 
 
 def make_capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float]]:
-    """Return the border, as vertices [x, y, bulge]
-    counter-clockwise, of all points within ``radius`` mm of a path.
+    """Return the border of all points within ``radius`` mm of a path,
+    as vertices [x, y, bulge], counter-clockwise.
 
     The path is a point, a segment, or an arc of at most half a turn.
     """
@@ -375,8 +382,8 @@ def make_capsule(path: tuple[PathVertex, ...], radius: float) -> list[list[float
 
 
 def measure_sweep_between(center: Array, one: Array, other: Array) -> float:
-    """Return the counter-clockwise angle about a centre
-    from one point to another, in radians in [0, 2 pi).
+    """Return the counter-clockwise angle about a centre from one point to
+    another, in radians in [0, 2 pi).
     """
     a, b = one - center, other - center
     return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)) % (2 * pi)

@@ -1,9 +1,10 @@
-"""The places for straps: for each hole that can take a bolt, the points of its ring on which the tip may press.
+"""The places for straps: for each hole that can take a bolt, the points around it on which the tip may press.
 
-The tip stands wholly on the part's upper face and off its zones, and the part's foot lies wholly under it, so that the
-strap bends nothing. Of a ring the points at its least, middle and greatest radius are looked at, every 30 degrees from
-the plate's x axis. A bolt is as thick as the dowels' holes are wide; it stands beside the part or in an opening of it,
-and in no locator's hole. Where bolts have holes of their own it stands clear of the locators.
+The tip stands wholly on the part's upper face and off its keep-out zones, and the part's foot lies wholly
+under the tip, so that the strap does not bend the part. The points that a strap can reach form a ring about
+the bolt; those at its least, middle and greatest radius are examined, every 30 degrees from the plate's x
+axis. A bolt is as thick as the dowels' holes are wide. It stands beside the part or in an opening of the
+part, and in no locator's hole. Where bolts have holes of their own, it stands clear of the locators.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ class StrapPlaces:
 
     Parameters
     ----------
-    hole : (P, 2) column and row of each bolt.
-    at : (P, 2) of each tip, in mm in the plate's frame.
+    hole : (P, 2) column and row of the bolt, for each of P places.
+    at : (P, 2) point of the tip, in mm in the plate's frame.
     """
 
     hole: IntArray
@@ -51,7 +52,10 @@ class StrapPlaces:
 def find_strap_places(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, request: SupportRequest, straps: StrapHardware
 ) -> StrapPlaces:
-    """Return the places for straps on the plate of a fixture, which the part lies on."""
+    """Return the places for straps on the plate of a fixture, on which the part lies.
+
+    There are none where the part has no face above or below.
+    """
     top, bottom = find_top_face(workpiece, request), None
     if request.bottom is None or request.bottom:
         bottom = TouchableFace.from_loops(request.bottom or [np.asarray(loop) for loop in workpiece.loops])
@@ -70,7 +74,9 @@ def find_strap_places(
 
 
 def find_top_face(workpiece: Workpiece, request: SupportRequest) -> TouchableFace | None:
-    """The face that tips may press on, less its zones; None where there is none."""
+    """Return the face that tips may press on, without its keep-out zones;
+    None where there is no such face.
+    """
     if request.top is not None and not request.top:
         return None
     outline = [np.asarray(loop) for loop in workpiece.loops]
@@ -81,7 +87,11 @@ def find_top_face(workpiece: Workpiece, request: SupportRequest) -> TouchableFac
 def find_bolt_holes(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, straps: StrapHardware
 ) -> tuple[IntArray, Array]:
-    """The holes (B, 2) in which a bolt stands free within a strap's reach of the part, and their places (B, 2) in mm."""
+    """Return (1) the holes (B, 2), column and row, in which a bolt
+    stands free, and (2) their centres (B, 2) in mm.
+
+    Only holes within a strap's reach of the part's bounding box are listed. Centres are in the plate's frame.
+    """
     plate = next(carrier for carrier in toolkit.carriers if carrier.has_lattice and carrier.travel is None)
     bolts = plate if toolkit.strap_set is None else toolkit.strap_set.bolts
     part = FaceBorders(tuple(make_loop_segments(np.asarray(loop)) for loop in workpiece.loops))

@@ -1,12 +1,14 @@
 """The straps that hold a part down on a plate with the least force, exact over a finite set of places.
 
-The force that a set of straps needs is a linear program with six equations (``statics.friction``). Its dual is a motion
-of the part that locators and plate allow. That motion bounds the force of every other set: straps at other places do
-the work on it that they do, so that no set needs less than the load's work over theirs. The set with the least bound
-is reckoned, which gives new motions, until no bound is below the least force found. Most sets are never reckoned.
+The force that a set of straps needs is a linear program with six equations (``statics.friction``). Its dual
+is a motion of the part that locators and plate allow. A motion bounds the force of every set of straps: no
+set needs less than the work of the load on this motion divided by the work that the straps of the set do on
+it per unit of force. The force of the set with the least bound is computed, which gives new motions, until no
+bound is below the least force found. For most sets no force is ever computed.
 
-The straps alone must press the part flat on the plate: the middle of their tips lies in the kern of its foot. So what
-holds at a force holds at every greater one.
+The straps alone must press the part flat on the plate: the middle of their tips lies in the kern of the
+part's foot, which is the set of its possible centres of pressure. So straps that hold at a force hold at
+every greater force.
 """
 
 from __future__ import annotations
@@ -79,18 +81,20 @@ NO_LOADS = "straps are chosen by the force that loads ask for: give one load or 
 
 @frozen
 class StrapQuestion:
-    """What is asked of straps.
+    """A request for straps: the hardware, the part, the loads and the friction.
 
     Parameters
     ----------
-    straps : that there are.
-    request : how thick the part is, and which faces tips and plate may touch; its clamp is not asked for.
-    loads : that act on the part, each by itself.
-    friction : coefficients by name, of "tip" and "plate"; usual ones for None.
-    safety : the factor on loads.
-    weight : of the part in N, without that factor; it acts at the middle of the foot.
+    straps : number, reach, tips and rated force of the straps.
+    request : thickness of the part, and faces that tips and plate may touch; its fields for a clamp are not
+        used.
+    loads : loads that act on the part, each by itself.
+    friction : coefficients of friction by name, such as "tip" and "plate"; None for usual ones.
+    safety : factor on the loads.
+    weight : weight of the part in N, not multiplied by ``safety``; it acts at the middle of the foot.
     is_over_supports : whether the part lies on three supports, and each tip presses over one of them.
-    program : whose tools pass the straps, and press on the part where their forces are known.
+    program : program whose tools must pass the straps, and press on the part where their forces are known;
+        None for none.
     """
 
     straps: StrapHardware
@@ -104,30 +108,34 @@ class StrapQuestion:
 
     @property
     def below(self) -> str:
-        """The name of the coefficient of friction below the part."""
+        """Name of the coefficient of friction between the part and what is below it: "support" or "plate"."""
         return "support" if self.is_over_supports else "plate"
 
     @property
     def counted(self) -> tuple[str, str]:
-        """The names of the coefficients of friction that count."""
+        """Names of the two coefficients of friction that are used."""
         return COUNTED_OVER_SUPPORTS if self.is_over_supports else COUNTED_BY_STRAPS
 
     def find_plate(self, fixture: Fixture) -> Carrier:
-        """Return the plate of a fixture, with the holes for locators and bolts."""
+        """Return the plate of a fixture, with the holes for locators."""
         return next(one for one in get_toolkit(fixture).carriers if one.has_lattice and one.travel is None)
 
     def get_bolt_holes(self, fixture: Fixture) -> Carrier:
-        """Return the holes for bolts on the plate of a fixture."""
+        """Return the lattice of holes for bolts on the plate of a fixture.
+
+        It is the plate itself unless the toolkit gives bolts holes of their own.
+        """
         straps = get_toolkit(fixture).strap_set
         return self.find_plate(fixture) if straps is None else straps.bolts
 
     def list_locators(self, fixture: Fixture) -> list[Peg]:
-        """Return the pegs of a fixture that stand still, among them the ends of a contact with a wall.
+        """Return the three pegs of a fixture that stand still; an end
+        of a contact with a wall counts as a peg.
 
         Raises
         ------
         InputError
-            For a fixture that has other than three on one plate.
+            For more or fewer than three locators, and for more or less than one plate.
         """
         toolkit = get_toolkit(fixture)
         still = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).travel is None]
@@ -139,26 +147,31 @@ class StrapQuestion:
 
 
 def get_toolkit(fixture: Fixture) -> Toolkit:
-    """Return the toolkit of a fixture of a result."""
+    """Return the toolkit of the result that a fixture belongs to."""
     return fixture.listing.result.toolkit
 
 
 def make_usual_request(
     query: Query, thickness: float | None, tip_radius: float, zones: Sequence[Zone] = ()
 ) -> SupportRequest:
-    """Return the faces of a part that tips and plate may touch, as a solid says them.
+    """Return the faces of a part that tips and plate may touch, with the part's thickness.
+
+    The faces are those of the part's solid, if it has one.
 
     Parameters
     ----------
-    thickness : in mm; that of the solid if None.
-    zones : where no tip may stand.
+    thickness : thickness of the part in mm; None for that of its solid.
+    zones : zones in which no tip may stand.
     """
     usual = SupportRequest.from_workpiece(query.workpiece, thickness, tip_radius=tip_radius)
     return evolve(usual, top_zones=tuple(zones))
 
 
 def make_question(query: Query) -> StrapQuestion:
-    """Return what a query whose toolkit has straps asks of them; tips stand off its keep-out zones as locators do."""
+    """Return the request for straps that a query makes whose toolkit has straps.
+
+    Tips keep off the query's keep-out zones, and so do pads of supports.
+    """
     straps = query.toolkit.strap_set
     assert straps is not None
     # Without loads nobody need know how thick the part is.
@@ -184,14 +197,16 @@ def make_question(query: Query) -> StrapQuestion:
 def find_straps(
     fixture: Fixture, query: Query, asked: StrapQuestion, cancel: Event | None = None
 ) -> StrappedHold:
-    """Return the straps that hold a part with the least force against the three locators of a fixture on a plate.
+    """Return the straps that hold a part with the least force against
+    the three locators of a fixture on a plate.
 
-    What pushes the part sideways in the fixture is not there; a hand does it until the straps are tight.
+    Clamps of the fixture are not used; a hand pushes the part against the locators until the straps are
+    tight. After ``cancel``, the best straps found so far.
 
     Raises
     ------
     InputError
-        For a fixture that has other than three locators on one plate.
+        For more or fewer than three locators, and for more or less than one plate.
     """
     return StrapSearch(fixture, query, asked).find_best(cancel)
 
@@ -207,8 +222,10 @@ def ask_for_straps(
     weight: float = 0.0,
     zones: Sequence[Zone] = (),
 ) -> StrappedHold:
-    """Return the straps of a fixture, with what nobody says as usual; see
-    :meth:`workhold.model.fixture.Fixture.straps`.
+    """Return the straps of a fixture; see :meth:`workhold.model.fixture.Fixture.straps`.
+
+    None stands for the usual value of a parameter: ``loads`` of the query, ``thickness`` of the solid, usual
+    ``friction`` and ``safety``.
     """
     query = fixture.listing.result.query
     given = query.loads if loads is None else loads
@@ -229,7 +246,10 @@ def ask_for_straps(
 
 @frozen(eq=False)
 class StrapSearch:
-    """The search for the straps of a fixture; see :func:`find_straps`."""
+    """The search for the straps of a fixture; see :func:`find_straps`.
+
+    Arrays with P rows have a row for each of the P places for a strap.
+    """
 
     fixture: Fixture
     query: Query
@@ -237,17 +257,17 @@ class StrapSearch:
 
     @cached_property
     def locators(self) -> list[int]:
-        """The numbers of the pegs that stand still, among them the ends of a contact with a wall."""
+        """Indices of the fixture's pegs that stand still; an end of a contact with a wall counts as a peg."""
         still = self.asked.list_locators(self.fixture)
         return [number for number, peg in enumerate(self.fixture.pegs) if any(peg is one for one in still)]
 
     @cached_property
     def part(self) -> StrappedPart:
-        """The part on the plate."""
+        """The part on the plate, without straps."""
         return self.part_on(self.foot)
 
     def part_on(self, below: PressedPolygon | Array) -> StrappedPart:
-        """The part on its foot, or on points (S, 2) of supports."""
+        """Return the part, without straps, on its foot or on the points (S, 2) of S supports."""
         fixture, request = self.fixture, self.asked.request
         touched, inward = fixture.contact_points[self.locators], -fixture.normals[self.locators]
         workpiece = self.query.workpiece
@@ -259,7 +279,7 @@ class StrapSearch:
 
     @cached_property
     def foot(self) -> PressedPolygon:
-        """What of the part lies on the plate, in the plate's frame."""
+        """Outline of the part's lower face, which lies on the plate, in the plate's frame."""
         loops = self.asked.request.bottom or self.query.workpiece.loops
         return PressedPolygon(
             tuple(
@@ -269,6 +289,7 @@ class StrapSearch:
 
     @cached_property
     def places(self) -> StrapPlaces:
+        """Places for straps; without those at which a tool of the program would hit the strap."""
         query, asked = self.query, self.asked
         places = find_strap_places(self.fixture, query.workpiece, query.toolkit, asked.request, asked.straps)
         straps = query.toolkit.strap_set
@@ -287,31 +308,38 @@ class StrapSearch:
 
     @cached_property
     def heights(self) -> Array:
-        """The height (P,) of the face on which a tip presses at each place, in mm."""
+        """Height in mm of the face under the tip at each place, (P,)."""
         return self.measure_heights(self.places.at)
 
     def measure_heights(self, at: Array) -> Array:
-        """The heights (N,) in mm of the face on which tips at points (N, 2) of the plate press, above its foot."""
+        """Return the height in mm, above the part's lower side, of the
+        face under tips at points (N, 2), as (N,).
+
+        The points are in mm in the plate's frame.
+        """
         request, back = self.asked.request, self.fixture.pose.inverse
         return np.array([request.find_clamped_height((float(x), float(y))) for x, y in back.apply(at)])
 
     @cached_property
     def down(self) -> Array:
-        """Wrenches (P, 6) of the unit force of a tip at each place."""
+        """Wrenches (P, 6) of a tip that presses down with 1 N at each place."""
         return self.part.compute_level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
 
     @cached_property
     def tip_friction(self) -> Array:
-        """Wrenches (P, 16, 6) of unit forces of friction of a tip at each place."""
+        """Wrenches (P, 16, 6) of a friction force of 1 N on the part at each place, in 16 directions."""
         return self.part.compute_friction_wrenches(self.places.at, self.heights)
 
     @property
     def coefficient(self) -> float:
+        """Coefficient of friction between a tip and the part."""
         return find_friction_coefficient(self.asked.friction, "tip")
 
     @cached_property
     def loads(self) -> list[Array]:
-        """The wrenches (N, 6) of the corners of each load, with the safety factor, and of the weight."""
+        """Wrenches (N, 6) of each load's corners, multiplied by the
+        safety factor, with the part's weight added.
+        """
         part, asked, weight = self.part, self.asked, self.weight
         out = []
         for load in asked.loads:
@@ -324,7 +352,7 @@ class StrapSearch:
 
     @cached_property
     def weight(self) -> Array:
-        """The wrench (6,) of the part's weight, at the middle of its foot."""
+        """Wrench (6,) of the part's weight, which acts at the middle of its foot."""
         integrals = self.foot.integrals[0]
         middle = (integrals[1:] / integrals[0])[None]
         return np.asarray(
@@ -333,7 +361,9 @@ class StrapSearch:
 
     @cached_property
     def cuts(self) -> CuttingPieces | None:
-        """Where the tools of the program press on the part; None where they do nowhere, or nobody says how hard."""
+        """Pieces of the program's path on which tools press on the part;
+        None without such pieces or without forces.
+        """
         program = self.asked.program
         if program is None or program.forces is None:
             return None
@@ -341,7 +371,9 @@ class StrapSearch:
         return cuts if len(cuts) else None
 
     def program_need(self, grip: StrapsOnPart) -> ProgramJawForce | None:
-        """What the tools of the program ask of each strap; None without their forces."""
+        """Return the largest strap force that the program's tools need,
+        and at which move; None without their forces.
+        """
         cuts, program, pose = self.cuts, self.asked.program, self.fixture.pose
         if cuts is None or program is None:
             return None
@@ -349,10 +381,12 @@ class StrapSearch:
         return find_worst_move(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, self.weight)
 
     def reckon(self, grip: StrapsOnPart, keep: Callable[[Array, float], None], enough: float) -> float:
-        """The force that loads and program ask of straps, or a bound that is not below ``enough``.
+        """Return the force in N of each strap that loads and program need,
+        or a lower bound of it that exceeds ``enough``.
 
-        Of a program it is what the hardest load asks for that an ascent finds; what is told in the end is proven
-        (:meth:`program_need`). Each motion (6,) that a load drives, with its power, is handed to ``keep``.
+        inf where no force holds. For a program, the need is that of the hardest load found by an ascent; the
+        need in the final answer is proven (:meth:`program_need`). ``keep`` is called with each motion (6,)
+        that a load drives, and the power of the load on it.
         """
         program, need = MotionProgram(grip), 0.0
         for row in (row for rows in self.loads for row in rows):
@@ -371,7 +405,11 @@ class StrapSearch:
     def reckon_program(
         self, cuts: CuttingPieces, grip: StrapsOnPart, keep: Callable[[Array, float], None]
     ) -> float:
-        """The force that the program asks of straps by its hardest load; as of :meth:`reckon`."""
+        """Return the force in N of each strap that the program needs,
+        by the hardest load that an ascent finds.
+
+        ``keep`` is called as in :meth:`reckon`.
+        """
         pose, motions = self.fixture.pose, MotionProgram(grip)
         theta = radians(pose.theta_deg)
         pressed = PressedPart(cuts, grip, motions, theta, (pose.x, pose.y), self.asked.safety, self.weight)
@@ -385,16 +423,20 @@ class StrapSearch:
         return force
 
     def place_straps(self, chosen: Sequence[int]) -> StrapsOnPart:
-        """Return the part with straps at some places."""
+        """Return the part with straps at some places, given by index."""
         numbers = list(chosen)
         return StrapsOnPart(self.part, self.down[numbers], self.tip_friction[numbers], self.coefficient)
 
     def compute_needs(self, chosen: Sequence[int]) -> tuple[float | None, ...]:
-        """Return the force in N of each strap at some places that each load asks for; None where none is enough."""
+        """Return, for each load, the force in N that each strap at some
+        places needs; None where no force holds the load.
+        """
         return self.needs_of(self.place_straps(chosen))
 
     def needs_of(self, grip: StrapsOnPart) -> tuple[float | None, ...]:
-        """The force in N of each strap of a part that each load asks for; None where none is enough."""
+        """Return, for each load, the force in N that each strap on a part
+        needs; None where no force holds the load.
+        """
         program = MotionProgram(grip)
         out = []
         for rows in self.loads:
@@ -405,14 +447,20 @@ class StrapSearch:
         return tuple(out)
 
     def find_compatible_pairs(self) -> BoolArray:
-        """Return whether two straps can be at two places (P, P): bolts in two holes, and tips side by side."""
+        """Return a mask (P, P): True for two places whose bolts are in
+        different holes and whose tips do not overlap.
+        """
         hole, at = self.places.hole, self.places.at
         same = (hole[:, None] == hole[None]).all(axis=2)
         apart = np.hypot(*np.moveaxis(at[:, None] - at[None], 2, 0))
         return np.asarray(~same & (apart >= 2 * self.asked.straps.tip_radius - ALIKE))
 
     def find_best(self, cancel: Event | None = None) -> StrappedHold:
-        """Return the straps that need the least force."""
+        """Return the straps that need the least force; a hold without
+        straps where there are no places for them.
+
+        After ``cancel``, the best straps found so far.
+        """
         if self.asked.is_over_supports:
             return self.best_over_supports(cancel)
         hold = evolve(self.find_unloaded_hold(), places=len(self.places))
@@ -436,7 +484,10 @@ class StrapSearch:
         )
 
     def best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
-        """The supports and the straps over them that need the least force."""
+        """Return the supports, and the straps over them, that need the least force.
+
+        A hold without straps where there are no places for them.
+        """
         pads = PadPlaces.of(self)
         hold, found = evolve(self.find_unloaded_hold(), places=len(pads)), SupportedStraps(self, pads)
         chosen = found.least(cancel)
@@ -461,7 +512,7 @@ class StrapSearch:
         )
 
     def find_unloaded_hold(self) -> StrappedHold:
-        """Return the push by hand alone, without any straps."""
+        """Return a hold with the push by hand alone, without any straps."""
         workpiece = self.query.workpiece
         segments = [self.fixture.pose.carry(one) for one in workpiece.segments[: workpiece.outer_count]]
         push = find_hand_push(segments, self.part.touched, self.part.inward)
@@ -469,15 +520,20 @@ class StrapSearch:
 
     @cached_property
     def kern(self) -> Array:
-        """The sides (R, 3) of the kern of the foot, a x + b y <= c within, of unit normals."""
+        """Sides (R, 3) of the kern of the foot: rows (a, b, c) with a x
+        + b y <= c inside, a and b a unit normal.
+
+        The kern is the set of possible centres of pressure of the foot.
+        """
         corners = np.array(compute_convex_hull((float(x), float(y)) for x, y in self.foot.centres))
         along = np.roll(corners, -1, axis=0) - corners
         normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
         return np.column_stack([normals, (normals * corners).sum(axis=1)])
 
     def find_pressing_flat(self, sets: IntArray) -> BoolArray:
-        """Return whether the plate bears all over the foot where straps at sets of places (N, K) press: in its
-        kern.
+        """Return a mask (N,): True for sets of straps that alone press the foot on the plate all over.
+
+        ``sets`` (N, K) are indices of places. The middle of a set's tips must lie in the kern.
         """
         middle = np.zeros((len(sets), 2))
         for k in range(sets.shape[1]):
@@ -490,13 +546,18 @@ class StrapSearch:
 
 @define(eq=False)
 class SetSearch:
-    """The sets of places, with the bounds that motions found so far give each.
+    """The search among sets of places for the set of straps that needs the least force.
+
+    Each motion (6,) found so far gives a lower bound of the force of every set.
 
     Parameters
     ----------
-    search : whose places they are.
-    work : (P, M) that the straps at each place do on each motion, with their friction, per unit of force.
-    power : (M,) of the load that drives each motion.
+    search : the search for straps that has the P places.
+    work : (P, M) work that a strap at each place does on each of M motions, with its friction, per N of
+        force.
+    power : (M,) power, on each motion, of the load that drives it.
+    least_force : least force in N found so far; inf before.
+    chosen : places of the set with this force; None before.
     """
 
     search: StrapSearch
@@ -509,10 +570,9 @@ class SetSearch:
         self.work, self.power = np.zeros((len(self.search.places), 0)), np.zeros(0)
 
     def find_least(self, count: int, cancel: Event | None = None) -> tuple[int, ...] | None:
-        """Return the places of so many straps that need the least force, in order; None where there are no such
-        places.
+        """Return the indices of the places of ``count`` straps that need the least force, ascending.
 
-        Where no force is enough it is the first set.
+        None where there are no such places. Where no force is enough, the first set.
         """
         may = self.search.find_compatible_pairs()
         for sets in list_sets(may, count, self.can_improve):
@@ -522,8 +582,10 @@ class SetSearch:
         return self.chosen
 
     def bound_forces(self, sets: IntArray, since: int = 0) -> Array:
-        """Return the least force (N,) that sets (N, K) may need, by the motions from one on; infinite where none is
-        enough.
+        """Return lower bounds in N of the forces that sets need, (N,); inf
+        where a motion shows that no force is enough.
+
+        ``sets`` (N, K) are indices of places. Only motions from index ``since`` on are used.
         """
         work, power = self.work[:, since:], self.power[since:]
         out = np.zeros(len(sets))
@@ -536,7 +598,9 @@ class SetSearch:
         return out
 
     def can_improve(self, taken: Sequence[int], more: int) -> bool:
-        """Return whether some set with these places, and so many more, may need less than what was found."""
+        """Return whether a set of the places ``taken`` and ``more`` further
+        ones may need less force than the best so far.
+        """
         if not len(self.power) or self.least_force == inf:
             return True
         most = self.work[list(taken)].sum(axis=0) + more * np.maximum(self.work.max(axis=0), 0.0)
@@ -545,7 +609,7 @@ class SetSearch:
         return bool(bound < self.least_force * (1.0 - ALIKE))
 
     def search_sets(self, sets: IntArray) -> None:
-        """Look among sets (N, K) for one that needs less than the best so far."""
+        """Update the best set by any of the sets (N, K), indices of places, that needs less force."""
         sets = sets[self.search.find_pressing_flat(sets)]
         bounds, seen = self.bound_forces(sets), len(self.power)
         if self.chosen is None and len(sets):
@@ -561,12 +625,16 @@ class SetSearch:
             bounds[first], seen = inf, len(self.power)
 
     def compute_force(self, chosen: IntArray) -> float:
-        """Return the force that a set (K,) needs, or a bound that is not below the best; its motions are kept."""
+        """Return the force in N that a set (K,) of places needs, or a
+        lower bound of it that exceeds the best so far.
+
+        The motions that are found on the way are kept.
+        """
         search = self.search
         return search.reckon(search.place_straps(chosen.tolist()), self.keep_motion, self.least_force)
 
     def keep_motion(self, motion: Array, power: float) -> None:
-        """Keep a motion (6,) that a load drives with a power."""
+        """Append a motion (6,) and the power of the load that drives it, for bounds."""
         search = self.search
         rubbed = (search.tip_friction @ motion).max(axis=1, initial=0.0)
         work = search.down @ motion + search.coefficient * rubbed
@@ -577,9 +645,16 @@ class SetSearch:
 def list_sets(
     may: BoolArray, count: int, is_promising: Callable[[Sequence[int], int], bool]
 ) -> Iterator[IntArray]:
-    """Return the sets (N, K) of places that may stand together by (P, P), in order; those of the same first ones at once."""
+    """Yield, in lexicographic order, arrays (N, K) of the sets of K =
+    ``count`` places that may stand together.
+
+    ``may`` (P, P) says which two places may. The sets of an array have all but their last two places in
+    common. ``is_promising(taken, more)`` says whether to go on with sets that begin with ``taken`` and have
+    ``more`` further places.
+    """
 
     def extend(taken: tuple[int, ...], free: IntArray) -> Iterator[IntArray]:
+        """Yield the sets that begin with ``taken`` and go on with some of the places ``free``."""
         more = count - len(taken)
         if more == 1:
             yield np.column_stack([*(np.full(len(free), one) for one in taken), free])
@@ -597,7 +672,11 @@ def list_sets(
 
 
 def list_load_corners(load: SpatialLoad, fixture: Fixture) -> tuple[Array, Array]:
-    """Return points (N, 3) in mm and forces (N, 3) in N on the plate, the worst of a load among them."""
+    """Return (1) points (N, 3) in mm and (2) forces (N, 3) in N whose
+    convex hull contains every case of a load.
+
+    Both are in the plate's frame. The load's moments are left out.
+    """
     pose = fixture.pose
     low, high = (radians(angle + pose.theta_deg) for angle in load.directions)
     ways = enclose_directions(low, high) if load.force else np.zeros((1, 2))
@@ -612,7 +691,7 @@ def list_load_corners(load: SpatialLoad, fixture: Fixture) -> tuple[Array, Array
 
 
 def flatten_loop(segments: Sequence[Segment]) -> Array:
-    """Return the corners (N, 2) of a loop whose arcs are chords, at most 0.1 mm off."""
+    """Return the corners (N, 2) of a loop in which arcs are replaced by chords, at most 0.1 mm off."""
     out = list[tuple[float, float]]()
     for one in segments:
         if not isinstance(one, Arc):

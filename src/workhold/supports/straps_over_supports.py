@@ -1,12 +1,15 @@
-"""The supports and the straps over some of them that hold a part down with the least force, exact over a finite set.
+"""Supports, and straps over some of them, that hold a part down with the least force; exact over a finite
+set.
 
-The part lies on three pads in holes of the plate, by the rules of ``supports.holes``, and each tip presses on it right
-over one of them. So straps alone never tip it, and what holds at a force holds at every greater one. Every three pads
-that are not on one line, with every choice of those that have a strap over them, make the finite set. Those from which
-the part would fall before it is strapped come after those on which it stands.
+The part lies on three pads in holes of the plate, by the rules of ``supports.holes``, and each tip presses on
+it right over one of them. So straps alone never tip the part, and straps that hold at a force hold at every
+greater force. The finite set has every three pads that are not on one line, with every choice of the pads
+that have a strap over them. Three pads from which the part would fall before it is strapped come after those
+on which it stands.
 
-As for straps over the plate (``supports.straps``) a motion of the part that locators and pads allow bounds the force of
-other sets: of those whose pads allow it, too. Motions that all pads allow come first, as they bound every set.
+As for straps over the plate (``supports.straps``), a motion of the part that locators and pads allow bounds
+the force of other sets, but only of sets whose pads allow the motion, too. Motions that all pads allow come
+first, as they bound every set.
 """
 
 from __future__ import annotations
@@ -52,13 +55,16 @@ ALIKE = 1e-9
 
 @frozen(eq=False)
 class PadPlaces:
-    """The holes that may hold a support at a seat, in order of columns and rows; lengths in mm in the plate's frame.
+    """The H holes that may hold a support under the part, in order of columns and rows.
+
+    Lengths are in mm in the plate's frame.
 
     Parameters
     ----------
-    hole : (H, 2) column and row of each.
-    at : (H, 2) of each.
-    bolts : for each the holes for bolts from which a strap reaches it, the nearest first; none where no tip may stand.
+    hole : (H, 2) column and row of each hole.
+    at : (H, 2) centre of each hole.
+    bolts : for each hole the holes (column, row) for bolts from which a strap reaches it, the nearest first;
+        empty where no tip may stand over it.
     """
 
     hole: IntArray
@@ -70,12 +76,12 @@ class PadPlaces:
 
     @classmethod
     def of(cls, search: StrapSearch) -> PadPlaces:
-        """The holes under the part of a search.
+        """Return the holes that may hold a support under the part of a search.
 
         Raises
         ------
         InputError
-            For more of them than can be looked at.
+            For more holes than can be examined.
         """
         fixture, query, asked = search.fixture, search.query, search.asked
         request, plate = asked.request, asked.find_plate(fixture)
@@ -105,7 +111,12 @@ class PadPlaces:
 
 
 def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int, int], ...], ...]:
-    """For each place (H, 2) the holes for bolts from which a strap reaches it, as many as there are straps."""
+    """Return for each place the holes (column, row) for bolts from
+    which a strap reaches it, the nearest first.
+
+    ``at`` (H, 2) are the places in mm. Each list has at most as many holes as there are straps; it is empty
+    where no tip may stand.
+    """
     fixture, query, asked = search.fixture, search.query, search.asked
     top = find_top_face(query.workpiece, asked.request)
     if top is None or not len(at):
@@ -131,13 +142,16 @@ def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int
 
 
 def find_middle(fixture: Fixture, workpiece: Workpiece) -> Array:
-    """The middle (2,) of the area of the part of a fixture, in mm in the plate's frame."""
+    """Return the centre of the part's area (2,), in mm in the plate's frame."""
     x, y = compute_area_center(workpiece.loop_segments)
     return np.array(fixture.pose.apply(float(x), float(y)))
 
 
 def stand_on(middle: Array, corners: Array) -> BoolArray:
-    """Whether a point (2,) is over each of some triangles (N, 3, 2), or on a side."""
+    """Return a mask (N,): True for triangles that contain a point (2,), also on a side.
+
+    ``corners`` (N, 3, 2) are those of the triangles, in either sense of rotation.
+    """
     along = np.roll(corners, -1, axis=1) - corners
     away = middle - corners
     sides = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
@@ -147,12 +161,12 @@ def stand_on(middle: Array, corners: Array) -> BoolArray:
 
 @frozen
 class StrappedTriple:
-    """Three supports, by their numbers among the places, and those of them with a strap over them.
+    """Three supports, and those of them that have a strap over them; all given by index among the places.
 
     Parameters
     ----------
-    pads : numbers of the three, in order.
-    strapped : numbers of those under straps, in order.
+    pads : indices of the three supports, ascending.
+    strapped : indices of the supports under straps, ascending.
     """
 
     pads: tuple[int, ...]
@@ -161,15 +175,19 @@ class StrappedTriple:
 
 @define(eq=False)
 class SupportedStraps:
-    """The search for the supports of a seat and the straps over them.
+    """The search for the three supports, and the straps over them, that need the least force.
+
+    A set is three pads, and a choice of those that have a strap over them. Pads are given by index in
+    ``places``.
 
     Parameters
     ----------
-    search : at the seat.
-    places : the holes that may hold a support.
-    allowed : (H, M) whether each pad allows each motion that was found.
-    work : (H, M) that a strap over each pad does on each motion, with its friction, per unit of force.
-    power : (M,) of the load that drives each motion.
+    search : the search for straps of the fixture.
+    places : the H holes that may hold a support.
+    allowed : (H, M) whether each pad allows each of the M motions found so far.
+    work : (H, M) work that a strap over each pad does on each motion, with its friction, per N of force.
+    power : (M,) power, on each motion, of the load that drives it.
+    relaxed : choices of strapped pads whose force was already computed with the part on all pads.
     """
 
     search: StrapSearch
@@ -186,39 +204,44 @@ class SupportedStraps:
 
     @cached_property
     def whole(self) -> StrappedPart:
-        """The part on all pads together."""
+        """The part on all H pads together, without straps."""
         return self.search.part_on(self.places.at)
 
     @cached_property
     def heights(self) -> Array:
-        """The height (H,) in mm of the face over each pad."""
+        """Height in mm, above the part's lower side, of the face over each pad, (H,)."""
         return self.search.measure_heights(self.places.at)
 
     @cached_property
     def down(self) -> Array:
-        """Wrenches (H, 6) of the unit force of a tip over each pad."""
+        """Wrenches (H, 6) of a tip that presses down with 1 N over each pad."""
         return self.whole.compute_level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
 
     @cached_property
     def tip_friction(self) -> Array:
-        """Wrenches (H, 16, 6) of unit forces of friction of a tip over each pad."""
+        """Wrenches (H, 16, 6) of a friction force of 1 N on the part over each pad, in 16 directions."""
         return self.whole.compute_friction_wrenches(self.places.at, self.heights)
 
     def on(self, chosen: StrappedTriple) -> StrapsOnPart:
-        """The part on three supports, with straps."""
+        """Return the part on three supports, with straps over some of them."""
         part = evolve(self.whole, below=self.places.at[list(chosen.pads)])
         return self.strap(part, chosen.strapped)
 
     def strap(self, part: StrappedPart, strapped: Sequence[int]) -> StrapsOnPart:
+        """Return a part with straps over the pads ``strapped``, given by index."""
         numbers = list(strapped)
         return StrapsOnPart(part, self.down[numbers], self.tip_friction[numbers], self.search.coefficient)
 
     def needs(self, chosen: StrappedTriple) -> tuple[float | None, ...]:
-        """The force in N of each strap that each load asks for; None where none is enough."""
+        """Return, for each load, the force in N that each strap needs; None where no force holds the load."""
         return self.search.needs_of(self.on(chosen))
 
     def find_bolts(self, strapped: Sequence[int]) -> tuple[tuple[int, int], ...] | None:
-        """The holes for the bolts of straps over some pads, the nearest that are all different; None without such."""
+        """Return holes (column, row) for the bolts of straps over some
+        pads, all different and as near as possible.
+
+        None where there are no such holes.
+        """
         lists = [list(enumerate(self.places.bolts[number])) for number in strapped]
         ways = [way for way in product(*lists) if len({hole for _, hole in way}) == len(way)]
         if not ways:
@@ -228,7 +251,9 @@ class SupportedStraps:
 
     @cached_property
     def combinations(self) -> tuple[tuple[int, ...], ...]:
-        """Which pads can have straps over them together: with a bolt each, and tips side by side."""
+        """Sets of pads that can have straps over them at the same time: each
+        with a bolt of its own, and tips side by side.
+        """
         count, apart = self.search.asked.straps.count, 2 * self.search.asked.straps.tip_radius
         free = [number for number in range(len(self.places)) if self.places.bolts[number]]
         return tuple(
@@ -242,7 +267,9 @@ class SupportedStraps:
         )
 
     def list_sets(self) -> tuple[IntArray, IntArray]:
-        """All sets: three pads (N, 3), and the number (N,) of the combination of those under straps."""
+        """Return all sets: (1) the three pads (N, 3), and (2) the index
+        (N,) in ``combinations`` of the strapped pads.
+        """
         index = {some: number for number, some in enumerate(self.combinations)}
         triples = list_triples(len(self.places))
         one, two, three = (self.places.hole[triples[:, k]] for k in range(PADS))
@@ -259,14 +286,17 @@ class SupportedStraps:
         return np.concatenate(pads), np.concatenate(strapped)
 
     def stands(self, pads: IntArray) -> BoolArray:
-        """Whether the part stands on sets of three pads (N, 3) before it is strapped: its centre is over them."""
+        """Return a mask (N,): True for three pads on which the part stands before it is strapped.
+
+        The centre of the part's area must be over their triangle. ``pads`` is (N, 3).
+        """
         middle = find_middle(self.search.fixture, self.search.query.workpiece)
         return stand_on(middle, self.places.at[pads])
 
     def least(self, cancel: Event | None = None) -> StrappedTriple | None:
-        """The supports and straps that need the least force; None where there are no such places.
+        """Return the supports and straps that need the least force; None where there are no places for them.
 
-        Sets on which the part stands come first. Where no force is enough it is the first set.
+        Sets on which the part stands come first. Where no force is enough, the first set.
         """
         pads, strapped = self.list_sets()
         stands = self.stands(pads)
@@ -283,7 +313,11 @@ class SupportedStraps:
         return first
 
     def least_of(self, pads: IntArray, strapped: IntArray, cancel: Event | None) -> tuple[int, float]:
-        """The number of the set among some that needs the least force, and the force; infinite where none is enough."""
+        """Return (1) the index of the set that needs the least force, and
+        (2) this force in N; inf where none is enough.
+
+        ``pads`` (N, 3) and ``strapped`` (N,) are as :meth:`list_sets` returns them.
+        """
         members = np.array(self.combinations, np.int64).reshape(len(self.combinations), -1)[strapped]
         bounds, seen = self.bounds(pads, members), len(self.power)
         best, least = 0, inf
@@ -306,7 +340,12 @@ class SupportedStraps:
         return best, least
 
     def bounds(self, pads: IntArray, members: IntArray, since: int = 0) -> Array:
-        """The least force (N,) that sets may need, by the motions from one on; infinite where none is enough."""
+        """Return lower bounds in N of the forces that sets need, (N,); inf
+        where a motion shows that no force is enough.
+
+        ``pads`` (N, 3) are the supports, ``members`` (N, K) the pads under straps. Only motions from index
+        ``since`` on are used.
+        """
         out = np.zeros(len(pads))
         for number in range(since, len(self.power)):
             own, allowed = self.work[:, number], self.allowed[:, number]
@@ -316,7 +355,7 @@ class SupportedStraps:
         return out
 
     def keep(self, motion: Array, power: float) -> None:
-        """Keeps a motion (6,) that a load drives with a power."""
+        """Append a motion (6,) and the power of the load that drives it, for bounds."""
         part, search = self.whole, self.search
         forces = part.pressing_below
         rubbed = (part.rubbing_below @ motion).max(axis=1, initial=0.0)

@@ -1,9 +1,9 @@
-"""Straps and supports that the tools of a program pass: where these may stand beside what a program sweeps.
+"""Where straps and supports may stand so that the tools of a program do not hit them.
 
-A strap's bar is as wide as its tip, and reaches from the tip over its bolt to a heel as far behind the bolt as the bar
-is wide. The bar is in the way from the face that its tip presses on, bolt and heel from below, all up to the height that
-straps stand above their faces.
-Pads are in the way below the part, such as of a drill that comes through.
+A strap's bar is as wide as its tip. It reaches from the tip over its bolt to a heel, as far behind the bolt
+as the bar is wide. The bar is an obstacle from the height of the face under its tip upward, bolt and heel at
+all heights below as well; all of them up to the straps' standout above that face. Pads are obstacles below
+the part, such as to a drill that comes through.
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ BoolArray = NDArray[np.bool_]
 
 
 def find_heels(tip: Array, bolt: Array, tip_radius: float) -> Array:
-    """Where the bars of straps end behind their bolts (N, 2), in mm."""
+    """Return the points at which the bars of straps end behind their bolts, (N, 2) in mm.
+
+    ``tip`` and ``bolt`` are (N, 2) in mm.
+    """
     away = bolt - tip
     far = np.hypot(away[:, 0], away[:, 1])[:, None]
     return np.asarray(
@@ -35,12 +38,14 @@ def find_heels(tip: Array, bolt: Array, tip_radius: float) -> Array:
 def are_clear(
     program: Program, pose: Pose, tip: Array, bolt: Array, heights: Array, straps: StrapSet
 ) -> BoolArray:
-    """Whether all tools pass each of some straps.
+    """Return a mask (N,): True for straps that all tools of a program pass without hitting them.
 
     Parameters
     ----------
-    tip, bolt : (N, 2) where each presses, and where its bolt stands, in mm in the plate's frame.
-    heights : (N,) of the faces under the tips, in mm above the part's lower side.
+    pose : pose of the part on the plate.
+    tip : (N, 2) points at which the straps press, in mm in the plate's frame.
+    bolt : (N, 2) centres of the straps' bolts, in mm in the plate's frame.
+    heights : (N,) heights of the faces under the tips, in mm above the part's lower side.
     """
     radius = straps.tip_radius
     heel = find_heels(tip, bolt, radius)
@@ -56,13 +61,17 @@ def are_clear(
 
 
 def move_into_part(pose: Pose, points: Array) -> Array:
-    """Points (N, 2) of the plate as the part has them."""
+    """Return points (N, 2) of the plate's frame in the part's coordinates, in mm."""
     x, y = pose.inverse.apply(points[:, 0], points[:, 1])
     return np.column_stack([x, y])
 
 
 def keep_clear(swept: SweptSpans, program: Program, starts: Array, ends: Array, radius: float) -> BoolArray:
-    """Whether bodies of a radius about lines between points (N, 2) of the part keep clear of what is swept."""
+    """Return a mask (N,): True for capsules that keep the program's clearance from what its tools sweep.
+
+    A capsule is all points within ``radius`` mm of the segment from ``starts[k]`` to ``ends[k]``, (N, 2) in
+    the part's coordinates.
+    """
     if not len(starts):
         return np.zeros(0, np.bool_)
     reach, _ = swept.find_nearest_spans(starts, ends)

@@ -1,8 +1,8 @@
-"""What is said of a list of supports, in the same words wherever it is shown, and why a list is empty.
+"""Words about a list of supports, the same wherever the list is shown, and why a list is empty.
 
-Of an empty list it is asked in turn whether three holes have room for a pad, and whether three of them fit
-the plates. Then it is asked whether their triangle is large enough for the clamp, and whether the tip may
-stand in it. The first that fails is said in one sentence, with what would help.
+For an empty list these questions are asked in turn: whether three holes have room for a pad, whether three
+such holes fit the plates, whether their triangle is large enough for the clamp, and whether the tip may stand
+in the triangle. The first question answered with no is told in one sentence, with what would help.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ SAME_OPENING = 1e-6
 
 
 def explain_no_set(found: Supports, unit: Unit) -> str:
-    """Return a sentence why supports have no set of three; lengths in the given unit."""
+    """Return a sentence on why there is no set of three supports; lengths in the given unit."""
     return f"No three supports hold the part with the clamp between them: {explain_reason(found, unit)}"
 
 
 def explain_reason(found: Supports, unit: Unit) -> str:
-    """Return the end of a sentence: the first obstacle to a set of three, and what would help."""
+    """Return the end of a sentence: the first obstacle to a set of three supports, and what would help."""
     request, toolkit = found.request, found.query.toolkit
     turned = "" if found.query.workpiece.solid is None else "; another side up would help"
     if request.bottom is not None and not request.bottom:
@@ -102,8 +102,9 @@ def explain_reason(found: Supports, unit: Unit) -> str:
 
 
 def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
-    """Return a phrase that the space beside level faces at
-    these heights in mm is not known, and what would help.
+    """Return a phrase that the space beside level faces at some heights is not known, and what would help.
+
+    ``heights`` are in mm.
     """
     faces = "face" if len(heights) == 1 else "faces"
     at = listed_words([unit.format_length(height) for height in heights])
@@ -117,7 +118,7 @@ def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
 def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
     """Return the end of a sentence: the tip fits on none of the upper faces, and what would help.
 
-    ``turned`` is added to it.
+    The phrase ``turned`` is added at its end.
     """
     margin = f", {unit.format_length(request.tip_margin)} from its border" if request.tip_margin else ""
     head = (
@@ -164,9 +165,9 @@ def compute_incircle_radius(corners: np.ndarray) -> float:
 
 
 def list_set_headings(unit: Unit, loaded: bool) -> tuple[str, ...]:
-    """Return the headings of a table of sets of three, see :func:`format_set_row`; ``>`` marks columns of numbers.
+    """Return the headings of a table of sets of three, see :func:`format_set_row`.
 
-    ``loaded`` adds columns for forces.
+    A heading that begins with ``>`` marks a column of numbers. ``loaded`` adds columns for forces.
     """
     of = unit.abbreviation
     forces = (f">clamp force {unit.force}", f">support force {unit.force}") if loaded else ()
@@ -174,7 +175,10 @@ def list_set_headings(unit: Unit, loaded: bool) -> tuple[str, ...]:
 
 
 def format_set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
-    """Return the cells of a set of three in a table, as text; with ``loaded`` those of forces, too."""
+    """Return the cells of a table's row for a set of three, as text.
+
+    ``loaded`` adds cells for forces.
+    """
     clamp = triple.clamp
     sizes = (clamp.clamp_needed, clamp.support_force or 0.0) if loaded else ()
     return [
@@ -189,7 +193,7 @@ def format_set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
 def write_listing_notes(
     found: Supports, listed: Sequence[Triple], unit: Unit, keep_off: Sequence[str]
 ) -> list[str]:
-    """Return notes, a sentence or two each, about listed sets of three that no figure tells.
+    """Return notes about listed sets of three on what their figures do not tell, a sentence or two each.
 
     Parameters
     ----------
@@ -211,12 +215,12 @@ def write_listing_notes(
 
 
 def place_notes(listed: Mapping[int, Triple]) -> list[str]:
-    """Return notes on sets from which the part falls before
-    it is clamped, and over which the clamp presses over air.
+    """Return notes on sets from which the part falls before it is
+    clamped, and on sets whose clamp presses over air.
 
     Parameters
     ----------
-    listed : the sets by the numbers that they have in the list.
+    listed : the sets, by their numbers in the list.
     """
     falls = [number for number, one in listed.items() if not one.stands]
     hangs = [number for number, one in listed.items() if one.clamp.hangs]
@@ -241,11 +245,12 @@ def name_sets(some: Sequence[int], every: Mapping[int, Triple]) -> str:
 def write_flat_faces_notes(
     workpiece: Workpiece, keep_off: Sequence[str], unit: Unit = MILLIMETRE
 ) -> list[str]:
-    """Return notes where a solid has no level face below or on top, or counts as flat since none is known.
+    """Return notes where a solid has no level face below or on top, or
+    counts as flat since no level face is known.
 
     Parameters
     ----------
-    keep_off : as of :func:`write_listing_notes`.
+    keep_off : see :func:`write_listing_notes`.
     """
     solid = workpiece.solid
     if solid is None:

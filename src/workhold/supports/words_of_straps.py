@@ -1,4 +1,4 @@
-"""Sentences about straps: how they are set up, what they are reckoned with, and what to beware of."""
+"""Sentences about straps: how to set them up, assumptions of the computation, and warnings."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
 
 
 def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> str:
-    """What the part lies on."""
+    """Return a phrase that says what the part lies on: the plate, or supports."""
     if not asked.is_over_supports:
         return "the part lies on the plate"
     if not found.supports:
@@ -73,20 +73,20 @@ def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion
 
 
 def find_support_height(fixture: Fixture) -> float | None:
-    """How high the supports of a fixture's plate are, in mm; None where nobody says."""
+    """Return the height of the supports on a fixture's plate, in mm; None where it is not given."""
     pads = fixture.listing.result.toolkit.supports
     return None if pads is None else pads.height
 
 
 def stands_on_supports(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> bool:
-    """Whether the middle of the part's area is over its three supports."""
+    """Return whether the centre of the part's area is over the triangle of its three supports."""
     plate = asked.find_plate(fixture)
     corners = np.array([plate.compute_hole_center(*one) for one in found.supports], np.float64)
     return bool(stand_on(find_middle(fixture, fixture.listing.result.workpiece), corners[None])[0])
 
 
 def list_remarks(found: StrappedHold) -> list[str]:
-    """What the straps were chosen from, in sentences."""
+    """Return a sentence on the places among which the straps are the best; empty without straps."""
     if not found.straps:
         return []
     if found.supports:
@@ -100,7 +100,7 @@ def list_remarks(found: StrappedHold) -> list[str]:
 
 
 def describe_program_need(need: ProgramJawForce, program: Program, unit: Unit) -> str:
-    """Say what a program asks of each strap and where, in a sentence."""
+    """Return a sentence on the force that a program requires of each strap, and at which line."""
     where = find_place(need, program, unit)
     if need.force is None:
         return f"No force of the straps holds the part in {where}."
@@ -108,19 +108,19 @@ def describe_program_need(need: ProgramJawForce, program: Program, unit: Unit) -
 
 
 def find_place(need: ProgramJawForce, program: Program, unit: Unit) -> str:
-    """Where a program asks for most: its line and tool."""
+    """Return a phrase with the line, the tool and the cut at which a program requires the largest force."""
     cut = find_cut_of_move(program, need.move)
     return AskedForce(need.force or 0.0, need.line, need.tool, None, cut).describe_place(unit)
 
 
 def name_acting(found: StrappedHold) -> str:
-    """What acts on the part, in words."""
+    """Return what acts on the part, in words: "the loads", "the tools", or both."""
     names = ("the loads", bool(found.clamp_needed_each)), ("the tools", found.program_need is not None)
     return " and ".join(name for name, is_there in names if is_there)
 
 
 def describe_assumptions(asked: StrapQuestion) -> str:
-    """Return the coefficients of friction and the safety factor, in a sentence."""
+    """Return a sentence with the coefficients of friction and the safety factor."""
     given = dict(asked.friction or ())
     named = (
         f"{find_friction_coefficient(asked.friction, name):g} between {COEFFICIENTS[name].between}"
@@ -131,7 +131,7 @@ def describe_assumptions(asked: StrapQuestion) -> str:
 
 
 def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:
-    """Return what to beware of, sentences with a full stop."""
+    """Return warnings about a hold by straps, as sentences with a full stop."""
     out = []
     if not found.is_looked_at:
         return [
@@ -158,7 +158,7 @@ def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, u
 
 
 def describe_missing_places(asked: StrapQuestion) -> str:
-    """Why there are no straps, with what to do."""
+    """Return a sentence on why there are no straps, and what to change."""
     free = " clear of the program" if asked.program is not None else ""
     if asked.is_over_supports:
         return (

@@ -1,33 +1,32 @@
 """Whether the numbers that a result gives about itself agree with each other and with what it lists.
 
-The identities, for each type apart where a number is given for each:
+The identities, for each type apart where a number is given for each type:
 
 - counts = fixtures listed; counts <= found; 0 < distinct where 0 < found; distinct <= found <= distinct *
   rotations of the part onto itself.
 - Where more are found than listed, the best were asked for and as many are listed, or a note says that some
-  were not kept. None lists more than were asked for.
-- A type that is not asked for is not found.
+  were not kept. No more are listed than were asked for.
+- No fixture is found of a type that is not asked for.
 - candidates = discarded_by_bound + verified + undecided; escalated <= candidates, and escalated > 0 where
   undecided > 0.
 - found <= verified, since every fixture comes from a candidate of its own.
-- What is undecided is a real place (``verification.undecided``).
-- Of a search crossings_sought <= curve_pairs. Once it is complete it has cells, and contacts_examined <=
-  candidates.
+- Every undecided entry is a possible place (``verification.undecided``).
+- A search has crossings_sought <= curve_pairs. A complete one has cells, and contacts_examined <= candidates.
 - The algebra has no cells. Once it is complete candidates <= simultaneous_contacts.
 - Beside a wall cells = hull_edges, candidates = contacts_examined.
 - features >= faces touched.
-- With two clamps and a note that not all was counted there are no pairs and seats, and found = listed.
-- Otherwise, with two clamps and the best pair of each seat listed found = seats. Where all are listed,
-  pairs = the sum of what each stands for.
-- With two clamps and every pair listed found = pairs, and seats = those among the fixtures listed. Once the
-  search is complete each seat has as many pairs as are derived.
+- With two clamps and a note that not all was counted, pairs and seats are not given, and found = listed.
+- Otherwise, with two clamps and the best pair of each seat listed, found = seats. Where all are listed,
+  pairs = the sum of the numbers of pairs that the listed fixtures stand for.
+- With two clamps and every pair listed, found = pairs, and seats = the number of seats among the listed
+  fixtures. Once the search is complete each seat has as many pairs as are derived.
 - Each seat and pair of directions needs two contacts of locators, or wall and locator, and a clamp. Each pair
-  of clamps needs two of its own.
-- Where seating rules fixtures out, a note says how many of how many are listed, and each has its seating
-  stated. Without such rules as many have it as were asked for.
+  of clamps needs two contacts of its own.
+- Where seating rules fixtures out, a note says how many of how many are listed, and each of these has its
+  seating stated. Without such rules as many have it as were asked for.
 - The notes are those that follow from these numbers.
 
-What became of the candidates, and how much work that was, is otherwise known to the search alone.
+Whatever else became of the candidates, and how much work it was, only the search knows.
 """
 
 from __future__ import annotations
@@ -99,11 +98,11 @@ def find_account_faults(listing: WrittenListing, rotations: int) -> Iterator[str
 
 
 def count_faults(listing: WrittenListing, rotations: int) -> Iterator[str]:
-    """Yield one sentence for each contradiction among the listed fixtures,
-    ``counts``, ``found`` and ``distinct``.
+    """Yield one sentence for each contradiction among the listed fixtures, ``counts``, ``found`` and
+    ``distinct``.
 
-    ``rotations`` is the largest possible number of rotations of the part onto itself: found <= distinct ·
-    rotations.
+    ``rotations`` is the largest possible number of rotations of the part onto itself; found <= distinct ·
+    rotations must hold.
     """
     for kind, counts in listing.counts.items():
         listed = sum(fixture.type == kind for fixture in listing.fixtures)
@@ -127,8 +126,8 @@ def count_faults(listing: WrittenListing, rotations: int) -> Iterator[str]:
 
 
 def find_seating_count_faults(listing: WrittenListing) -> Iterator[str]:
-    """Yield one sentence for each contradiction between how many fixtures have
-    their seating stated and how many should.
+    """Yield one sentence where the number of fixtures with a stated seating is not the number that should
+    have one.
     """
     query, listed = listing.query, len(listing.fixtures)
     # With two clamps there is none to state.
@@ -236,7 +235,7 @@ def find_note_faults(listing: WrittenListing) -> Iterator[str]:
 
 
 def expect_note(note: Note) -> Wanted:
-    """Return a note with a predicate that accepts only an equal note."""
+    """Return (note, predicate), where the predicate accepts only a note equal to ``note``."""
     return note, lambda other: other == note
 
 
@@ -265,10 +264,11 @@ def list_expected_notes(listing: WrittenListing) -> Iterator[Wanted]:
 
 
 def expect_reason(listing: WrittenListing, verified: int) -> Wanted:
-    """Return (example, predicate) for the note that says why no fixture is listed.
+    """Return (example, predicate) for the note that must say why no fixture is listed.
 
-    ``verified`` is the number of verified candidates. The predicate accepts whatever the note says of what
-    only the search knows: the seats examined, and the program line that blocks most.
+    ``verified`` is the number of verified candidates. Some contents of that note are known to the search
+    only: the number of seats examined, and the program line that blocks most. The predicate accepts any
+    possible value there.
     """
     query, numbers, stages = listing.query, listing.statistics, STAGES
     wording, is_walled = query.toolkit.wording, WALL_END in query.toolkit.contacts
@@ -330,7 +330,7 @@ def may_be_said(note: Note, listing: WrittenListing) -> bool:
 
 
 def is_as_seated(note: Seated, listing: WrittenListing) -> bool:
-    """Return whether a ``Seated`` note's numbers are possible.
+    """Return whether both numbers of a ``Seated`` note are possible.
 
     They are the number of fixtures whose seating was worked out, and the number of those that keep the
     seating rules.
@@ -378,11 +378,11 @@ def is_uncounted(listing: WrittenListing) -> bool:
 
 
 def find_seat_faults(listing: WrittenListing, refuted: Collection[int]) -> Iterator[str]:
-    """Yield one sentence where the number of seats, or of clamp pairs at one
-    seat, differs from the derived number.
+    """Yield one sentence where the number of seats, or of clamp pairs at one seat, differs from the derived
+    number.
 
     Yields nothing unless the toolkit has two clamps, every pair is listed and all was counted. ``refuted``
-    holds indices from 0 of fixtures that are left out. Stops at the first seat with a wrong number of pairs.
+    holds the indices, from 0, of fixtures to leave out. Stops at the first seat with a wrong number of pairs.
     """
     query, found = listing.query, sum(listing.found.values())
     if query.toolkit.travels == 1 or query.listing != "all" or found != len(listing.fixtures):
@@ -412,10 +412,11 @@ def find_seat_faults(listing: WrittenListing, refuted: Collection[int]) -> Itera
 
 
 def has_too_few_contacts(listing: WrittenListing, proof: ProofReport) -> bool:
-    """Return whether the proof verified fewer candidate contacts than the two-clamp fixtures claimed need.
+    """Return whether the proof verified too few candidate contacts for the stated numbers of seats and
+    fixtures.
 
-    Each seat needs two contacts (locators, or wall and locator, with one clamp) per pair of directions; n
-    contacts form at most n(n - 1)/2 pairs.
+    For toolkits with two clamps only. A seat needs two verified contacts (each of the locators, or wall and
+    locator, with one clamp) for a pair of directions. n contacts form at most n(n - 1)/2 pairs of clamps.
     """
     found, pairs = sum(listing.found.values()), len(listing.query.toolkit.arrangements)
     if 2 * (listing.seats or 0) > pairs * proof.verified:

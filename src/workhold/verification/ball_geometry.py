@@ -69,7 +69,7 @@ PRECISIONS = (128, 256, 512)
 
 
 def make_exact_point(x: float, y: float) -> Point:
-    """Return a point of two balls of radius 0."""
+    """Return the point (x, y), in mm, with an exact ball (radius 0) for each coordinate."""
     return arb(x), arb(y)
 
 
@@ -157,8 +157,10 @@ class LineSide:
         )
 
     def find_vector_away(self, point: Point) -> Point | None:
-        """Return a vector, not of unit length, parallel to the shortest connection of the side and a point.
+        """Return a vector, not of unit length, along the line from the nearest point of the side through
+        ``point``.
 
+        On the side's interior it is the outward normal, else it points from the nearer end to ``point``.
         Returns None where it is uncertain which point of the side is nearest.
         """
         along = compute_dot_product(subtract(point, self.start), self.tangent)
@@ -168,10 +170,10 @@ class LineSide:
         return None if end is None else subtract(point, end)
 
     def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
-        """Return the distances in mm along the side from its start and end to
-        a point; negative beyond that end.
+        """Return (from the start, from the end): distances in mm along the side to the foot of ``point``.
 
-        ``offset`` does not matter on a line.
+        A distance is negative where the foot lies beyond that end. ``offset`` is ignored: it matters on arcs
+        only.
         """
         along = compute_dot_product(subtract(point, self.start), self.tangent)
         return along, self.length - along
@@ -227,9 +229,11 @@ class ArcSide:
         return from_ends if within < 0 else from_circle.union(from_ends)
 
     def find_vector_away(self, point: Point) -> Point | None:
-        """Return a vector, not of unit length, parallel to the shortest connection of the arc and a point.
+        """Return a vector, not of unit length, along the line from the nearest point of the arc through
+        ``point``.
 
-        Returns None where it is uncertain which point of the arc is nearest.
+        It points from the arc's centre to ``point``, or where an end of the arc is nearest, from that end to
+        ``point``. Returns None where it is uncertain which point of the arc is nearest.
         """
         ray = self.measure_from_center(point)
         within = self.measure_within(ray)
@@ -242,16 +246,19 @@ class ArcSide:
         return ways[0] if one < two else ways[1] if two < one else None
 
     def measure_within(self, ray: Point) -> arb:
-        """Return a number in mm that is positive where a ray from the centre meets
-        the arc, negative where it misses it.
+        """Return a number whose sign says whether the ray from the centre along the vector ``ray`` meets the
+        arc.
+
+        It is positive where the ray meets the arc and negative where it misses the arc. Its size, in mm, has
+        no meaning.
         """
         return compute_dot_product(self.middle, ray) - compute_norm(ray) * self.half_sweep.cos()
 
     def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
-        """Return the arc lengths in mm from start and end to a peg's centre on the
-        arc offset outward by ``offset`` mm.
+        """Return (from the start, from the end): arc lengths in mm to ``point``, a peg's centre.
 
-        They are negative beyond that end. Returns () for a whole circle.
+        They are measured along the arc offset outward by ``offset`` mm, and negative where ``point`` lies
+        beyond that end. Returns () for a whole circle.
         """
         if self.whole:
             return ()
@@ -312,10 +319,10 @@ def make_loop_sides(loop: NDArray[np.float64]) -> list[Side]:
 
 
 def join_sides_to_face(run: Sequence[Side]) -> Side:
-    """Return one side in place of successive sides that continue the same line or circle.
+    """Return a single side that replaces successive sides of the same line or circle.
 
-    Such sides agree to rounding only: the line runs from the first start to the last end, and the circle is
-    that of the first arc.
+    The sides of ``run`` are equal to rounding only. A line is drawn from the first start to the last end. An
+    arc takes centre and radius of the first arc.
     """
     first, last = run[0], run[-1]
     if len(run) == 1:
@@ -336,13 +343,15 @@ class BallOutline:
 
     Parameters
     ----------
-    segments : by number.
-    faces : whole faces by their numbers.
-    others : for each face, by its number, the numbers and sides of all segments outside the face.
-    neighbours : for each face, by its number, the segments before its start and after its end.
-    turns : for each face, the larger component of the difference of normals at its start and at its end.
-    own : outlines by role of the carriers that touch the part at a height of their own, and under the empty role the
-        outline of all other carriers; empty where all carriers touch the same outline (``verification.contacts``).
+    segments : all segments, in the order of their numbers.
+    faces : by face number, the whole face as one side.
+    others : by face number, (number, side) of every segment that is not part of the face.
+    neighbours : by face number, the segments (before the face's start, after its end).
+    turns : by face number, how far the neighbours (before, after) turn at the joint; see
+        :func:`measure_turn_at`.
+    own : outlines by role of the carriers that touch the part at heights of their own; under the empty role,
+        the outline of all other carriers. Empty where all carriers touch the same outline
+        (``verification.contacts``).
     """
 
     segments: tuple[Side, ...]
@@ -354,8 +363,9 @@ class BallOutline:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece, number: int = 0) -> BallOutline:
-        """Return the outline at the current precision (``ctx.prec``), its segments
-        and faces numbered from ``number``.
+        """Return the outline of a workpiece at the current precision (``ctx.prec``).
+
+        Its segments and faces are numbered from ``number`` on.
         """
         segments, before = list[Side](), list[int]()
         for loop in workpiece.loops:
@@ -373,10 +383,10 @@ class BallOutline:
         return cls(tuple(segments), faces, others, neighbours, turns)
 
     def find_smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
-        """Return whether a face joins its neighbours tangentially at its start and at its end.
+        """Return (start, end): whether a face joins its neighbour tangentially at its start, and at its end.
 
-        With ``has_flat`` (a peg with a flat) only a joint of two arcs counts, because the contact changes
-        between flat and round where a line meets an arc.
+        With ``has_flat`` (a peg with a flat) only a joint of two arcs counts, because at a joint of line and
+        arc the contact changes between the flat and the round body.
         """
         one, other = (bool(turn < TANGENT) for turn in self.turns[face])
         if not has_flat:
@@ -400,7 +410,7 @@ def measure_turn_at(one: Side, two: Side, joint: Point) -> arb:
 def compute_box_center(outline: BallOutline) -> Point:
     """Return the centre in mm of the bounding box of a workpiece.
 
-    The box contains the joints and the points of arcs whose tangent is along x or y.
+    The box is computed from the joints, and from the points of arcs whose tangent is along x or y.
     """
     places = [side.start for side in outline.segments]
     arcs = [side for side in outline.segments if isinstance(side, ArcSide)]

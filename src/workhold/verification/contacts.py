@@ -1,9 +1,9 @@
-"""The contacts of a fixture in balls: equations, force closure without friction, forces and wrench radius.
+"""The contacts of a fixture in ball arithmetic: equations, frictionless force closure, forces, wrench radius.
 
 The equations (model: condition 1) are in the unknowns theta, x, y and the travels of what moves. A workpiece
 point q lies at R(theta) q + t, t = (x, y). A peg that moves is at its hole's place plus its travel S times
-its way. Of jaws the travel is the separation; of a clamp it is how far its tip is from its hole. With u the
-vector from t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
+its way, a unit vector. Of jaws the travel is the separation; of a clamp it is how far its tip is from its
+hole. With u the vector from t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
 
 - a line with outward normal n and level l when N · u - l - rho = 0;
 - an arc about c when (|u - C|² - reach²) / 2 = 0, reach = r + rho on a convex and r - rho on a concave arc.
@@ -12,9 +12,10 @@ Force closure and forces (model: conditions 4 and 5) follow from the null vector
 which the signed 3 x 3 minors give. It depends neither on the point that moments are taken about nor on their
 scale, because both change the matrix by invertible row operations only.
 
-Segments of further outlines, those that carriers with heights of their own meet, are numbered on; those of
-equal outlines have the same numbers. So a face's number says of which outline it is, and whoever looks up a
-face by its number finds those of all outlines. What a peg keeps from is its own carrier's outline.
+Carriers with heights of their own touch further outlines of the part. The segments of these have numbers
+above those of the first outline; equal outlines share their numbers. So a face's number says which outline
+the face is of, and a table by face number holds the faces of all outlines. A peg keeps clear of its own
+carrier's outline.
 
 Glossary
 --------
@@ -106,13 +107,14 @@ class BallContact:
 
     Parameters
     ----------
-    hole : where it is in mm without any travel.
-    way : unit vector along which it moves as the travel grows; (0, 0) where it stands still.
+    hole : centre of the peg's hole in the toolkit's frame, in mm, at travel 0.
+    way : unit vector along which the peg moves as the travel grows; (0, 0) where it stands still.
     side : the face touched.
-    radius : distance in mm of the peg's centre from the side: its radius, or that of a flat on a line.
-    body : radius of the peg in mm where it has a flat, which its body keeps of all else; None where that is
+    radius : distance in mm of the peg's centre from the side: the peg radius, or where a flat lies on a line
+        the distance of the flat from the centre.
+    body : for a peg with a flat, the radius in mm to be kept clear of all other sides; None where that is
         ``radius``.
-    travel : the number of its travel among those of a pose.
+    travel : index, from 0, of the peg's travel among the travels of a pose.
     """
 
     hole: Point
@@ -173,16 +175,17 @@ class BallContact:
 def compute_standoff(side: Side, peg_radius: float, flat: PegFlat | None) -> arb:
     """Return the distance in mm from a side to the centre of a peg that touches it.
 
-    It is the distance of the flat where a peg with a flat touches a line, else the peg radius.
+    Two cases: (a) a peg with a flat on a straight side: the distance of the flat from the peg's centre; (b)
+    otherwise: the peg radius.
     """
     return arb(flat.distance if flat is not None and isinstance(side, LineSide) else peg_radius)
 
 
 def evaluate_contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
-    """Return the values (N x 1) and the Jacobian (N x N) of the contact
-    equations on a box of unknowns (N x 1).
+    """Return (values (N, 1), Jacobian (N, N)) of the equations of N contacts on a box of unknowns (N, 1).
 
-    The unknowns are theta in radians, x, y and the travels in mm; N is the number of contacts.
+    The unknowns are theta in radians, then x, y and the travels in mm, each a ball; so the results enclose
+    all values on the box.
     """
     pose = BallPose.from_turn_and_place(*unknowns.entries())
     values, rows = [], []
@@ -194,18 +197,19 @@ def evaluate_contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) 
 
 
 def compute_minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
-    """Return the null vector in mm of four wrenches (n, q x n): entry i is (-1)^i
-    times the determinant without wrench i.
+    """Return the null vector in mm of the four wrenches (n, q x n), one for each point q and unit normal n.
+
+    Entry i is (-1)^i times the determinant of the three wrenches other than wrench i.
     """
     wrenches = [(*n, cross(q, n)) for q, n in zip(points, normals, strict=True)]
     return [(-1) ** i * arb_mat([*wrenches[:i], *wrenches[i + 1 :]]).det() for i in range(4)]
 
 
 def measure_wrench_span(vector: Sequence[arb], wrench_length: float) -> arb:
-    """Return the sum of the absolute values of the minors ``vector``, divided by ``wrench_length`` (L in mm).
+    """Return the sum of the absolute values of ``vector``, divided by ``wrench_length`` (L in mm).
 
-    ``vector`` is from :func:`compute_minors`. The result has no unit and is 0 where the wrenches are
-    coplanar.
+    ``vector`` holds the four minors from :func:`compute_minors`. The result has no unit and is 0 where the
+    four wrenches span less than three dimensions.
     """
     return sum((abs(entry) for entry in vector), arb(0)) / wrench_length
 
@@ -220,7 +224,8 @@ class Balance:
     vector : the null vector of the wrenches, not scaled, see :func:`compute_minors`.
     shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
     clamp : the clamping force that the moving contacts exert in total, for these shares.
-    ways : for each peg the unit vector of its motion as the travel grows, in the workpiece's frame; (0, 0) if fixed.
+    ways : for each peg the unit vector of its motion as the travel grows, in the workpiece's frame; (0, 0) if
+        fixed.
     """
 
     points: tuple[Point, ...]
@@ -272,14 +277,16 @@ class Balance:
 
     @property
     def responses(self) -> list[list[arb]]:
-        """The force of each peg per unit of load: one row each for g_x, g_y and the
-        moment; [] where ``inverse`` is None.
+        """Three rows: the force of each peg per unit of g_x, of g_y and of the moment of a load; [] if
+        ``inverse`` is None.
         """
         return [] if self.inverse is None else self.inverse[:3]
 
     def project_on_closing(self, forces: Sequence[arb]) -> list[arb]:
-        """Return the orthogonal projection of peg forces on the closing forces:
-        the part that a locked jaw takes up.
+        """Return the orthogonal projection of peg forces, one per peg, on the direction of the closing
+        forces.
+
+        It is the part of ``forces`` that a locked jaw takes up.
         """
         own = self.forces
         share = compute_inner_product(forces, own) / compute_inner_product(own, own)
@@ -289,8 +296,8 @@ class Balance:
 def bound_relative_error(forces: Sequence[arb]) -> arb:
     """Return the relative error within which forces and figures in the file must agree with the derived ones.
 
-    An error of the pose moves a fixture by as many times more as its forces exceed the clamping force, and
-    its forces by that factor again.
+    ``forces`` are the peg forces per unit of clamping force. The rounding of the written pose is amplified by
+    the square of the largest of them.
     """
     amplification = find_largest(forces)
     return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
@@ -315,13 +322,13 @@ def judge_closure(
 ) -> Iterator[Finding]:
     """Yield a finding for each condition of force closure that four contacts break, or that is at its limit.
 
-    The wrenches must span space, all shares must be positive, and the moving contacts must clamp.
+    Three conditions: the wrenches span space, all shares are positive, the moving contacts clamp.
 
     Parameters
     ----------
     wrench_length : L in mm, half the diameter of the peg-centre locus.
-    names : of the contacts, for the messages.
-    slack_words : the message's start where the clamping force is too small.
+    names : of the four contacts, for the messages.
+    slack_words : first words of the message where the clamping force is too small.
     """
     vector, spanned = balance.vector, measure_wrench_span(balance.vector, wrench_length)
     yield from judge_slack(
@@ -352,12 +359,13 @@ Wrench = tuple[arb, arb, arb]
 def compute_wrench_radius(
     center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]
 ) -> arb | None:
-    """Return the distance from the origin to the hull of wrenches about
-    ``center``; None if they may lie on one line.
+    """Return the wrench radius: the distance, without unit, from the origin to the nearest facet of the
+    wrenches' hull.
 
-    ``length`` is L in mm. The result is the distance to the nearest plane through three wrenches that has all
-    others on one side. Wrenches may be coplanar or equal to within ``FLAT``; in doubt the ball holds both
-    cases.
+    A wrench is (n, (q - c) x n / L) for each of the ``points`` q and ``normals`` n, with c = ``center`` and L
+    = ``length`` in mm. A facet is a plane through three wrenches with all others on one side. Wrenches may be
+    coplanar or equal to within ``FLAT``; in doubt the ball holds both cases. Returns None if the wrenches may
+    lie on one line.
     """
     (x, y), nearest = center, None
     arms = [(px - x, py - y) for px, py in points]
@@ -388,8 +396,9 @@ def subtract_wrenches(a: Wrench, b: Wrench) -> Wrench:
 
 
 def make_joint_outline(workpiece: Workpiece) -> BallOutline:
-    """Return the whole part's outline at the current precision; its tables also
-    hold the faces of all other outlines.
+    """Return the outline of the whole part at the current precision, with the faces of its further outlines.
+
+    Its tables by face number hold the faces of all outlines that carriers touch at heights of their own.
     """
     whole = BallOutline.from_workpiece(workpiece)
     if not workpiece.outlines:
@@ -406,8 +415,8 @@ def make_joint_outline(workpiece: Workpiece) -> BallOutline:
 
 
 def select_outline_for(outline: BallOutline, carrier: str) -> BallOutline:
-    """Return the outline that the pegs of a named carrier must keep clear of.
+    """Return the outline that the pegs of a carrier must keep clear of.
 
-    A clamp's name ends with its direction, as in "clamp +x".
+    ``carrier`` is its name; a clamp's name ends with its direction, as in "clamp +x".
     """
     return outline.own.get(carrier.split(" ")[0], outline.own[""]) if outline.own else outline

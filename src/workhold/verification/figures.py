@@ -1,4 +1,4 @@
-"""The figures of quality, in balls and from the outline alone.
+"""The figures of quality, in ball arithmetic and from the outline alone.
 
 They are defined in docs/quality.md and, as formulas, in the model ("Quality"). Let A be the matrix of the
 rows (n_x, n_y, q x n, n . w) of a fixture's contacts at q with outward unit normals n. They are in the
@@ -80,14 +80,14 @@ RANGES = ("end_distance", "edge_distance", "tilt", *COUNTS)
 
 @frozen(eq=False)
 class DirectedLoad:
-    """A load in balls.
+    """A load in ball arithmetic.
 
     Parameters
     ----------
-    points : where its force acts, in mm.
+    points : where its force acts, in mm in the part's frame.
     force, moment : in N and N mm.
-    low, high, middle : unit vectors of the first, the last and the middle direction.
-    half_cosine : cosine of half the range; -1 for any direction.
+    low, high, middle : unit vectors of the first, the last and the middle direction of the force.
+    half_cosine : cosine of half the range of directions; -1 for any direction.
     """
 
     points: tuple[Point, ...]
@@ -135,18 +135,20 @@ class FigureMeasure:
     diameter : of the part, in mm.
     center : of the part's bounding box.
     arcs : the convex arcs of the outer loop, each face whole.
-    centers : (A, 4) rows 1, x² + y², x, y of the centres of these arcs, in mm.
-    corners : (C, 4) such rows of the joints of the outer loop that may be farthest from some point.
-    peg, face : how far they may be off, in mm.
-    loads : as asked for.
-    walk : along the program, where that has forces.
+    centers : (A, 4) rows (1, x² + y², x, y), one for the centre of each of the A arcs, in mm.
+    corners : (C, 4) such rows, one for each of the C joints of the outer loop that may be farthest from some
+        point.
+    peg, face : tolerances in mm of peg places and of faces.
+    loads : those that the query asks about.
+    walk : along the program; None where the program has no forces.
     direction : main direction of the part in degrees (``verification.judging``).
     jaw_force : in N, None where none was said.
     has_ends : whether the part lies on a wall that has ends.
     stated_force : the jaw force in N for which bending is stated.
-    bending : largest stress of a pin in MPa, and farthest that pins may move the part in mm.
-    beside : the barriers on the contact feature of each face and radius, as far as known
-        (``verification.touching``).
+    bending : limits above which a warning counts: stress of a pin in MPa, movement of the part by bent pins
+        in mm.
+    beside : barriers found so far, by (face number, contact radius, body radius); see
+        ``verification.touching``.
     """
 
     outline: BallOutline
@@ -206,12 +208,13 @@ class FigureMeasure:
     ) -> Mapping[str, arb]:
         """Return the figures of quality of a fixture by key.
 
-        Without loads there are no load figures, and only forces where the pose is not known well enough.
+        Two cases leave figures out: (a) without loads and program forces, those of loads; (b) where the pose
+        is not known well enough, all but those of the balance's forces.
 
         Parameters
         ----------
-        beams : of the contacts, see ``verification.pins``; None where it is not known how far pegs bend.
-        states_bending : whether the file says how far they do.
+        beams : one for each contact, see ``verification.pins``; None where it is not known how far pegs bend.
+        states_bending : whether the file states how far pegs bend.
         """
         out = {"closure_margin": balance.margin, "clamp_amplification": find_largest(balance.forces)}
         if isinstance(balance, SeatBalance):
@@ -251,12 +254,17 @@ class FigureMeasure:
     def compute_bending(
         self, beams: Sequence[PegBeam | None], forces: Sequence[arb], inverse: Sequence[Sequence[arb]]
     ) -> dict[str, arb]:
-        """Return "pin_deflection" in mm, "pin_stress" in MPa and
-        "pin_movement" in mm at the stated jaw force.
+        """Return "pin_deflection" in mm, "pin_stress" in MPa and "pin_movement" in mm at the stated jaw
+        force.
 
-        Deflection and stress are the largest of any peg; the movement is the largest of a point of the part
-        when all pegs give way. ``forces`` are per unit of jaw force; a beam is None for a contact that does
-        not bend.
+        Deflection and stress are the largest of any peg. The movement is the largest of a point of the part
+        when all pegs bend.
+
+        Parameters
+        ----------
+        beams : one for each contact; None for a contact that does not bend.
+        forces : of the contacts, per unit of jaw force.
+        inverse : of the balance: rows for x, y and turn (and more), a column for each contact.
         """
         pressed = [abs(force) * self.stated_force for force in forces]
         pairs = list(zip(beams, pressed, strict=True))
@@ -271,11 +279,10 @@ class FigureMeasure:
         }
 
     def find_barriers(self, contact: BallContact, face: int) -> list[Barrier]:
-        """Return the ranges (from, to) of the peg's path along a face in which
-        the peg would enter another side.
+        """Return the ranges (from, to) in which a peg that slides along a face would enter another side.
 
-        They are arc lengths in mm, see ``touching.find_barriers``. They are computed once per face and pair
-        of radii.
+        Ends are arc lengths in mm along the path of the peg's centre, see ``touching.find_barriers``. Results
+        are cached by face and radii of the contact.
         """
         key = face, float(contact.radius), float(contact.clear_radius)
         if key not in self.beside:
@@ -286,8 +293,8 @@ class FigureMeasure:
     def compute_end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
         """Return the distance in mm from a peg's centre to the nearer end of its path along a face.
 
-        The path ends where the face ends, or where the peg would enter another side. ``center`` is in the
-        part's frame. On a whole circle, which has no end, half the path's circumference counts.
+        The path ends where the face ends, or where the peg would enter another side. A whole circle has no
+        end: there it is half the path's circumference. ``center`` is the peg's centre in the part's frame.
         """
         side, radius = contact.side, contact.radius
         ends = measure_edge_distances(side, radius, self.find_barriers(contact, face), center, (False, False))
@@ -298,11 +305,11 @@ class FigureMeasure:
         )
 
     def compute_edge_distance(self, contact: BallContact, face: int, center: Point) -> arb | None:
-        """Return the distance in mm from a peg's centre to the nearer edge of its path
-        along a face; None where it has none.
+        """Return the distance in mm from a peg's centre to the nearer edge of its path along a face.
 
-        An end of the path at a tangent joint is no edge, unless the neighbour is a concave arc too tight for
-        the peg. In doubt the ball holds both readings.
+        An end of the path is an edge unless it is a tangent joint; a tangent joint to a concave arc that is
+        too tight for the peg is an edge too. In doubt the ball holds the results for both readings. Returns
+        None where the path has no edge. ``center`` is the peg's centre in the part's frame.
         """
         beside, outline, radius = self.find_barriers(contact, face), self.outline, contact.radius
         readings: list[tuple[bool, bool]] = []
@@ -325,11 +332,12 @@ class FigureMeasure:
         return near if near is far else near.union(arb(self.wrench_length) if far is None else far)
 
     def compute_needed_jaw_force(self, balance: Balance | SeatBalance) -> arb:
-        """Return the jaw force in N above which no peg loses contact under any
-        load of a screw vise, 0 or more.
+        """Return the least jaw force in N, 0 or more, at which no load makes a peg of a screw vise lose
+        contact.
 
-        Let f0 balance a load while the jaw keeps its force, and let P project on the forces of the jaw, or of
-        both clamps. Locking leaves f0 - P f0, so the figure is the largest of ((P f0)_i - f0_i) / h_i.
+        Let the peg forces f0 balance a load while the jaw keeps its force, let h be the peg forces per unit
+        of jaw force, and let P project on the closing forces of the jaw, or of both clamps. A locked jaw
+        leaves f0 - P f0, so the result is the largest of ((P f0)_i - f0_i) / h_i over all pegs i and loads.
         """
         most, rows = arb(0), balance.responses
         pairs = list(zip(map(balance.project_on_closing, rows), rows, strict=True))
@@ -338,7 +346,11 @@ class FigureMeasure:
         return most
 
     def find_largest_under_loads(self, most: arb, a: arb, b: arb, c: arb) -> arb:
-        """Return the largest of ``most`` and of a f_x + b f_y + c m over all loads and the program's path."""
+        """Return the largest value of a f_x + b f_y + c m, or ``most`` if that is larger.
+
+        (f_x, f_y) is the force in N and m the moment in N mm about the part's origin, over all loads and all
+        tool forces along the program.
+        """
         for load in self.loads:
             for x, y in load.points:
                 most = most.max(
@@ -351,14 +363,15 @@ class FigureMeasure:
         )
 
     def compute_location_error(self, inverse: Sequence[Sequence[arb]], faces: Sequence[int]) -> arb:
-        """Return the largest movement in mm of a point of the silhouette over all
-        signs of the peg and face tolerances.
+        """Return the largest movement in mm of a point of the silhouette over all signs of the peg and face
+        tolerances.
 
-        ``inverse`` has one column per contact, ``faces`` the face of each; pegs on one face share its error.
-        A point q moves by v + t (-q_y, q_x), t being the turn. The square |v|² + t² |q|² + 2 t (q x v) is a
-        convex function of q. So the movement is largest at a joint, or where a convex arc about m is farthest
-        along the movement of m: there it is |v(m)| + r |t|. Opposite signs of all errors move points equally
-        far, so the last error keeps its sign.
+        ``inverse`` has a column for each contact. ``faces`` has a number for each contact; pegs with the same
+        number share the error of a face. With shift v of the part's origin and turn t, a point q moves by v +
+        t (-q_y, q_x). The square |v|² + t² |q|² + 2 t (q x v) is a convex function of q. So the movement is
+        largest at a joint, or on a convex arc with centre m and radius r at the point in the direction in
+        which m moves: there it is |v(m)| + r |t|. Opposite signs of all errors move points equally far, so
+        one sign is fixed.
         """
         generators, located = [], range(len(inverse[0]))
         for face in {faces[k] for k in located}:
@@ -375,7 +388,8 @@ class FigureMeasure:
         return self.find_farthest_movement(movements)
 
     def find_farthest_movement(self, movements: Sequence[Sequence[arb]]) -> arb:
-        """Return the largest movement in mm of a point of the silhouette over some rigid movements.
+        """Return the largest movement in mm of any point of the silhouette under any of the given rigid
+        movements.
 
         Each movement is (x, y, turn): the shift of the origin in mm and a small turn in radians.
         """
@@ -392,12 +406,13 @@ class FigureMeasure:
         return most
 
     def compute_load_reaction(self, balance: Balance | SeatBalance) -> arb:
-        """Return the largest peg force in N over all loads, at the least clamping
-        that keeps every peg force at 0 or more.
+        """Return the largest peg force in N over all loads, at the least clamping that keeps every peg force
+        at 0 or more.
 
-        Forces that balance a load are f0 + k lambda. The least k without a negative one is the largest -f0_i
-        / lambda_i. So peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i. This is
-        linear in the load's direction for each i.
+        Let f0 be peg forces that balance a load and lambda the closing forces. All peg forces that balance
+        the load are f0 + k lambda. The least k that leaves no force negative is the largest of -f0_i /
+        lambda_i, so peg j presses with the largest over i of f0_j - f0_i lambda_j / lambda_i. For each i this
+        is linear in the load.
         """
         most, rows = arb(0), balance.responses
         for i, j in permutations(range(len(balance.shares)), 2):
@@ -407,8 +422,9 @@ class FigureMeasure:
 
 
 def find_bending_limits(query: Query) -> tuple[float, float]:
-    """Return the largest allowed pin stress in MPa and part movement in mm:
-    the toolkit's, or the default limits.
+    """Return (largest allowed pin stress in MPa, largest allowed movement of the part in mm).
+
+    Each is the toolkit's own limit, or the default where the toolkit has none.
     """
     own = query.toolkit.pins
     stress, movement = (None, None) if own is None else (own.stress_limit, own.movement_limit)
@@ -416,11 +432,11 @@ def find_bending_limits(query: Query) -> tuple[float, float]:
 
 
 def bound_arc_movement(arc: ArcSide, x: arb, y: arb, turn: arb, known: arb) -> arb:
-    """Return the largest movement in mm of an interior point of a convex arc;
-    ``known`` where an end moves farthest.
+    """Return the largest movement in mm of a convex arc's interior points, or ``known`` where an end moves
+    farther.
 
-    The movement is a shift (x, y) of the origin in mm and a small ``turn`` in radians; in doubt the ball
-    holds both.
+    (x, y) is the shift of the part's origin in mm and ``turn`` a small turn in radians. ``known`` is the
+    largest movement of the arc's ends. In doubt the ball holds both values.
     """
     way = x - turn * arc.center[1], y + turn * arc.center[0]
     moved = compute_norm(way) + abs(turn) * arc.radius
@@ -452,8 +468,8 @@ def find_hull_candidates(points: Sequence[Point]) -> list[Point]:
 
 
 def find_missing_figure(fixture: Fixture, query: Query) -> str:
-    """Return a sentence, without full stop, on the first figure of quality that
-    is missing or superfluous; else "".
+    """Return a sentence, without full stop, on the first figure of quality that is missing or should not be
+    there; else "".
     """
     for figure in FIGURES:
         of_loads = figure in (FIGURES[LOAD_REACTION], FIGURES[JAW_FORCE_NEEDED])
@@ -482,8 +498,8 @@ def judge_written_numbers(
     """Yield a finding for each peg force and figure of quality in the file that differs from the derived one.
 
     ``names`` are those of the pegs. The file's numbers were computed in double precision from a rounded pose.
-    A derived figure may be a range (an end distance where the clearance passes slowly through zero, a count
-    at the edge of its rule), and any number in the range is right.
+    A derived figure may be a range, such as a count at the edge of its rule; then any number in the range is
+    right.
     """
     part = bound_relative_error(balance.forces)
     for name, peg, force in zip(names, fixture.pegs, balance.forces, strict=True):

@@ -46,16 +46,17 @@ class EffectiveJudge:
     Parameters
     ----------
     query : what is asked.
-    least : the least effective error of all in mm, as a file says; None where it says none.
+    least : least effective error in mm among all fixtures found, as the file states it; None where it does
+        not.
     """
 
     query: Query
     least: float | None
 
     def compute_effective_error(self, fixture: Fixture) -> tuple[int, int]:
-        """Return the least and greatest possible effective error in whole billionths of a mm.
+        """Return (least, greatest) possible effective error in whole billionths of a mm.
 
-        The effective error is the written location error times each factor that holds. The fixture must state
+        It is the written location error times the factor of each rule that applies. The fixture must state
         its location error.
         """
         written = fixture.quality.get("location_error", inf)
@@ -65,16 +66,17 @@ class EffectiveJudge:
         return floor(low * BILLION + 0.5 - HALF), floor(high * BILLION + 0.5 + HALF)
 
     def count_error_steps(self, fixture: Fixture) -> Range:
-        """Return the least and greatest number of steps (factor 1.1) by which the
-        effective error exceeds ``self.least``.
+        """Return (least, greatest) number of steps of a factor 1.1 by which the effective error exceeds
+        ``self.least``.
         """
         least = round((self.least or 0.0) * BILLION)
         low, high = (count_steps_above(end, least) for end in self.compute_effective_error(fixture))
         return low, high
 
     def list_factors(self, fixture: Fixture) -> Iterator[tuple[float, tuple[bool, bool]]]:
-        """Yield (factor, (holds certainly, may hold)) for each rule that
-        multiplies a fixture's location error.
+        """Yield (factor, (certainly, perhaps)) for each rule that can multiply a fixture's location error.
+
+        The two booleans say whether the rule certainly holds, and whether it may hold.
         """
         low, high = classify_angle(fixture.pose.theta_deg)
         yield TURNED, (low == high == 1, 1 in (low, high))
@@ -92,8 +94,9 @@ class EffectiveJudge:
 
     @cached_property
     def holes(self) -> frozenset[int]:
-        """The numbers of the faces of the part's holes, empty where jaws open
-        outward or no other face may be touched.
+        """The numbers of the faces of the part's holes.
+
+        Empty where jaws open outward, or where no other faces may be touched.
         """
         part = self.query.workpiece.numbered
         outside = {face.number for face in part.faces if face.number not in part.inside}
@@ -108,8 +111,8 @@ class EffectiveJudge:
         return peg.face in self.holes and self.find_carrier(peg).contact.is_placed
 
     def touches_an_end(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Return (certainly, perhaps): whether some peg's centre is nearer than its
-        radius to an end of a straight face.
+        """Return (certainly, perhaps): whether any peg's centre is nearer than the peg's radius to an end of
+        a straight face.
         """
         faces = {face.number: face.segment for face in self.query.workpiece.numbered.faces}
         surely = perhaps = False
@@ -126,8 +129,8 @@ class EffectiveJudge:
         return surely, perhaps
 
     def hangs_over(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Return (certainly, perhaps): whether the part overhangs the plates however
-        the whole fixture is shifted by holes.
+        """Return (certainly, perhaps): whether the part overhangs the plates at every shift of the fixture by
+        whole holes.
         """
         surely = perhaps = False
         for axis in (0, 1):
@@ -136,11 +139,11 @@ class EffectiveJudge:
         return surely, perhaps
 
     def is_over(self, fixture: Fixture, axis: int, spare: float) -> bool:
-        """Return whether the part reaches more than ``spare`` mm beyond the
-        plates along an axis (0 for x, 1 for y).
+        """Return whether the part reaches more than ``spare`` mm beyond the plates along an axis (0 for x, 1
+        for y).
 
-        True only if that holds for every shift by whole holes that keeps the pegs on their plates; False
-        where a plate is endless.
+        True only if the part does so at every shift by whole holes that keeps the pegs on their plates. False
+        where a plate is endless along the axis.
         """
         toolkit, plates = self.query.toolkit, self.query.toolkit.plates
         counts = [(plate.columns, plate.rows)[axis] for plate in plates]
@@ -183,10 +186,10 @@ class EffectiveJudge:
 def find_arc_extremes(
     a: tuple[float, float], b: tuple[float, float], bulge: float, axis: int
 ) -> Iterator[float]:
-    """Yield the x (axis 0) or y (axis 1) at which a convex arc from a to b is
-    extreme between its ends; 0 to 2 numbers.
+    """Yield the least or greatest x (``axis`` 0) or y (``axis`` 1) that a convex arc from a to b reaches
+    between its ends.
 
-    ``bulge`` is positive: the tangent of a quarter of the arc's angle.
+    Yields 0 to 2 numbers. ``bulge`` is positive: the tangent of a quarter of the arc's angle.
     """
     chord = hypot(b[0] - a[0], b[1] - a[1])
     radius = chord * (1 + bulge * bulge) / (4 * bulge)
@@ -218,7 +221,7 @@ def map_to_part(fixture: Fixture, x: float, y: float) -> tuple[float, float]:
 
 
 def classify_angle(degrees: float) -> tuple[int, int]:
-    """Return the least and greatest class of an angle: 0 at 0 degrees, 1 at 90, 180 and 270, 2 elsewhere.
+    """Return (least, greatest) class of an angle: 0 at 0 degrees, 1 at 90, 180 and 270 degrees, 2 elsewhere.
 
     Both are equal unless the angle is within a rounding of the edge between classes.
     """
@@ -230,8 +233,9 @@ def classify_angle(degrees: float) -> tuple[int, int]:
 
 
 def count_steps_above(error: int, least: int) -> int:
-    """Return the largest j with error >= 1.1^j · max(least, 1), or 0; ``error``
-    and ``least`` in billionths of a mm.
+    """Return the largest whole j >= 0 with ``error`` >= 1.1^j · max(``least``, 1), or 0 if there is none.
+
+    ``error`` and ``least`` are in billionths of a mm.
     """
     up, down = STEP
     steps, left, right = 0, error * down, max(least, 1) * up

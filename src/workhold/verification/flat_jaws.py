@@ -1,4 +1,5 @@
-"""What flat jaws hold, derived anew: poses, what each jaw touches, the rules, and the forces that loads ask for.
+"""What flat jaws hold, derived anew: poses, what each jaw touches, the rules, and the forces that loads ask
+for.
 
 A fixture is given by a pose, parallels and a stop. What follows from these is derived from the loops of the part and
 compared with what is written: lengths to 1e-6 mm, forces to a thousandth. The forces come from another method
@@ -84,10 +85,10 @@ class JawJudge:
         return UNKNOWN_HEIGHT if known is None else known
 
     def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
-        """Yield one sentence, without full stop, for each fault of a fixture at
-        index ``place`` of the list, from 0.
+        """Yield one sentence, without full stop, for each fault of a fixture.
 
-        Keeps the fixtures seen, to find equal ones.
+        ``place`` is the fixture's index in the list, from 0. The fixture is stored in ``seen``, so that a
+        later equal one counts as a fault.
         """
         hold = fixture.hold
         if not isinstance(hold, JawHold):
@@ -105,7 +106,9 @@ class JawJudge:
             yield f"it is the same as fixture {first + 1}"
 
     def find_order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
-        """Yield one sentence for the first fixture that should precede the fixture before it."""
+        """Yield one sentence for the first fixture that belongs before its predecessor in the list; nothing
+        if all are in order.
+        """
         rows = [rank_cautions(one.hold) for one in fixtures if isinstance(one.hold, JawHold)]
         for place, (before, after) in enumerate(pairwise(rows), 2):
             if after < before:
@@ -169,8 +172,9 @@ class JawJudge:
         yield from self.find_grip_faults(fixture, hold, derived[0], derived[1], segments)
 
     def find_program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
-        """Yield one sentence where a tool of the program comes too near to a jaw's sides, or is inside a
-        jaw.
+        """Yield one sentence where a tool of the program comes too near to a jaw's sides, or runs into a jaw.
+
+        Stops after the first fault.
         """
         program, jaws = self.query.program, self.jaws
         if program is None:
@@ -213,7 +217,10 @@ class JawJudge:
                         return
 
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
-        """Return whether the convex hull of an outline has a straight edge; arcs are sampled."""
+        """Return whether the convex hull of an outline has a straight edge.
+
+        Arcs are sampled, so an edge counts only where it is longer than any chord between samples.
+        """
         points = np.array([point for one in segments for point in sample_segment(one)])
         hull = np.array(find_hull_corners([(float(x), float(y)) for x, y in points.round(9)]))
         sides = np.hypot(*(np.roll(hull, -1, axis=0) - hull).T)
@@ -349,8 +356,8 @@ class JawJudge:
             yield "what stands above the jaws", hold.above, max(self.height - top, 0.0)
 
     def derive_ratios(self, hold: JawHold) -> Iterator[tuple[str, float]]:
-        """Yield (key, value) of the figures of quality that follow from the hold's own fields and the
-        query.
+        """Yield (key, derived value) of those figures of quality that follow from the hold's own fields and
+        the query.
         """
         yield "grip", hold.grip
         yield "contact_area", hold.contact_area
@@ -365,10 +372,11 @@ class JawJudge:
     def stop_points(
         self, hold: JawHold, segments: Sequence[Segment]
     ) -> tuple[list[tuple[float, float, float]], float]:
-        """Return the points where the work stop may push, and 1.0 where it pushes along +x or -1.0 along -x.
+        """Return (points, sign): where the work stop may push, and 1.0 where it pushes along +x, -1.0 along
+        -x.
 
-        The points are the extreme ones at heights 0 and the jaws' top, in mm in the jaws' frame; [] without a
-        stop.
+        The points are the part's extreme ones, at height 0 and at the height of the jaws' top, in mm in the
+        jaws' frame; [] without a stop.
         """
         if hold.stop is None:
             return [], 1.0
@@ -385,8 +393,12 @@ class JawJudge:
     ) -> Iterator[str]:
         """Yield one sentence where the written jaw force for a load differs from the derived one.
 
-        ``number`` counts loads from 1; ``need`` is the written force in N, None where no force is said to
-        suffice. Yields nothing where the method does not converge.
+        Yields nothing where the method does not converge.
+
+        Parameters
+        ----------
+        number : of the load, from 1, for the message.
+        need : the written force in N; None where the file says that no force suffices.
         """
         low, high = load.directions
         turns = (
@@ -435,10 +447,10 @@ SAMPLES = 256
 
 
 def rank_cautions(hold: JawHold) -> tuple[bool, bool, bool]:
-    """Return the sort key of a hold, better ones first.
+    """Return the sort key of a hold; False sorts first and is better.
 
-    It says whether a jaw touches corners alone, whether a jaw cannot press all over, and whether some load
-    needs more jaw force than the vise has.
+    It is (a jaw touches corners alone, a jaw cannot press all over its contact, a load needs more jaw force
+    than the vise has).
     """
     needs = [need for need in hold.forces_needed if need is not None]
     strong = hold.max_force is None or not needs or max(needs) <= hold.max_force
@@ -476,8 +488,9 @@ def compute_segment_box(segment: Segment) -> tuple[float, float, float, float]:
 
 
 def find_grip(lies: Sequence[JawContact], top: float, least: float) -> list[JawContact]:
-    """Return the contacts cut to heights 0 to ``top`` and at least ``least`` mm high:
-    the stretches, or if none, the points.
+    """Return the contacts cut to heights 0 to ``top`` mm that are then at least ``least`` mm high.
+
+    Two cases: (a) if any of them is a stretch, the stretches only; (b) otherwise the points.
     """
     cut = [JawContact(one.low, one.high, max(one.bottom, 0.0), min(one.top, top), one.face) for one in lies]
     high = [one for one in cut if one.top - one.bottom >= least - 1e-9]
@@ -517,10 +530,11 @@ def are_alike(mine: Sequence[Rectangle], theirs: Sequence[Rectangle]) -> bool:
 
 
 def measure_hull_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """Return the distance between the convex hulls of points (N, 2) and (M, 2),
-    or minus the depth of their overlap.
+    """Return the distance between the convex hulls of points (N, 2) and (M, 2); negative where the hulls
+    overlap.
 
-    It is the signed distance of the origin from the hull of all differences.
+    A negative result is minus the depth of the overlap. It is the signed distance of the origin from the hull
+    of all differences of points.
     """
     differences = [(float(x), float(y)) for x, y in (one[:, None] - other[None]).reshape(-1, 2).round(12)]
     hull = find_hull_corners(differences)

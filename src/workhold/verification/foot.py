@@ -1,7 +1,7 @@
-"""The foot of a part on a plate, by another way than the search's: areas and moments from Green's theorem.
+"""The foot of a part on a plate, by another method than the search's: areas and moments from Green's theorem.
 
-What a square of a grid has of the foot is the sum, over the sides of the outline, of what lies between each side,
-cut off at the square's lower and upper edge, and the lower edge. Pressures are derived from second moments.
+The area of the foot within a square of a grid is a sum over the sides of the outline: of the areas between
+each side, cut off at the square, and the square's lower edge. Pressures are derived from second moments.
 """
 
 from __future__ import annotations
@@ -28,12 +28,16 @@ GAUSS = ((0.5 - sqrt(3) / 6, 0.5), (0.5 + sqrt(3) / 6, 0.5))
 
 
 class Foot:
-    """A foot of some loops of segments, with material on their left, in the plate's frame.
+    """The foot of a part: the area, bounded by loops of segments with material on their left, on which it
+    stands.
+
+    All is in the plate's frame, in mm.
 
     Attributes
     ----------
-    sides : (N, 4) x, y from and to of the chords.
-    area, centre, second : the area in mm², the centre (2,), and the second moments (2, 2) over the area about it.
+    sides : (N, 4) start x, y and end x, y of each of the N chords of the loops.
+    area, centre, second : the area in mm², the centre of area (2,), and the second moments (2, 2) about the
+        centre.
     hull : the corners of the convex hull, counter-clockwise.
     """
 
@@ -49,9 +53,11 @@ class Foot:
         return self.sides[:, :2].min(axis=0), self.sides[:, :2].max(axis=0)
 
     def compute_moments(self, low: Array, high: Array) -> tuple[float, Array, Array]:
-        """Return area, centre (2,) and second moments (2, 2) over the area of the foot's part in a box.
+        """Return (area, centre (2,), second moments (2, 2) about that centre) of the part of the foot within
+        a box.
 
-        ``low`` and ``high`` are the box's corners (2,). Without area the centre and the moments are NaN.
+        ``low`` and ``high`` are the box's corners (2,). Where the box has no area of the foot, centre and
+        moments are NaN.
         """
         total = np.zeros(6)
         for x0, y0, x1, y1 in self.sides:
@@ -63,16 +69,18 @@ class Foot:
         return area, np.array([x, y]), np.array([[xx - x * x, xy - x * y], [xy - x * y, yy - y * y]])
 
     def compute_pressures(self, middle: Array) -> Array:
-        """Return the pressures (H,) in 1/mm² at the hull's corners, linear in x
-        and y, of a unit force acting at (2,).
+        """Return the pressures (H,) in 1/mm² at the H corners of the hull under a unit force at the point
+        ``middle`` (2,).
+
+        The pressure is assumed linear in x and y over the foot.
         """
         slope = np.linalg.solve(self.second, middle - self.centre)
         return np.asarray((1.0 + (np.array(self.hull) - self.centre) @ slope) / self.area)
 
     def make_pressing_jaw(self, friction: float, centre: Array) -> PressingJaw:
-        """Return the plate below the foot as a jaw that presses upward.
+        """Return the plate below the foot, in the form of a jaw that presses upward.
 
-        Wrenches are about ``centre`` (3,); ``friction`` is the coefficient of friction.
+        Moments of its wrenches are about ``centre`` (3,). ``friction`` is the coefficient of friction.
         """
         rows, acting = list[Array](), list[Array]()
         for (x, y), (far_x, far_y) in zip(self.hull, [*self.hull[1:], self.hull[0]], strict=True):
@@ -91,8 +99,8 @@ class Foot:
         return PressingJaw(up, rubbing, friction * np.maximum(local, 0.0) * areas)
 
     def make_cells(self) -> tuple[Array, Array]:
-        """Return the centres (C, 2) and areas (C,) of the foot's parts in the
-        squares of a grid; slivers are left out.
+        """Return (centres (C, 2), areas (C,)) of the C pieces into which a square grid cuts the foot; slivers
+        are left out.
         """
         low, high = self.extent
         counts = np.ceil((high - low) / sqrt(self.area / CELLS)).astype(int)
@@ -109,11 +117,11 @@ class Foot:
 
 
 def integrate_under(x0: float, y0: float, x1: float, y1: float, low: Array, high: Array) -> Array:
-    """Return the integrals (6,) of 1, x, y, xx, xy, yy over the area between the
-    box's lower edge and a directed side.
+    """Return the integrals (6,) of 1, x, y, xx, xy, yy over the area between a directed side and the box's
+    lower edge.
 
-    The side from (x0, y0) to (x1, y1) is cut off at the box; the result is negative where x falls along the
-    side.
+    The side runs from (x0, y0) to (x1, y1) and is cut off at the box with the corners ``low`` and ``high``.
+    The integrals are negative where x falls along the side.
     """
     out = np.zeros(6)
     if x0 == x1:

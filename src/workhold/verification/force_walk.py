@@ -1,16 +1,18 @@
-"""What a program's tools ask of a fixture, by a walk along its moves with bounds.
+"""Forces that a program's tools ask of a fixture, by a walk along its moves with bounds.
 
-All moves are walked, not those that remain in the search. What is linear in the load is, for the worst
-direction at a place p of the tip, a function V(p) of the place; see :meth:`ForceWalk.evaluate_at`. Moves stand in
-blocks with a circle around each: V changes by at most F |c| per mm. Blocks that cannot hold the greatest
-value are left. On an arc of the radius r every direction's value has a second derivative of at most
+All moves are walked, not those that remain in the search. A value a g_x + b g_y + c m that is linear in the
+load (force g, moment m) has at a place p of the tip, for the worst direction of the force, a largest value
+V(p); see :meth:`ForceWalk.evaluate_at`. Moves are grouped in blocks, with a circle around each block. V
+changes by at most F |c| per mm, F being the force. Blocks that cannot hold the greatest value are left out.
+On an arc of radius r the value of each direction has a second derivative of at most
 
     M = F (3 |c| r + u)
 
-in the angle, u being the size of the coefficients of the force there: the place's and the direction's own
-derivatives are at most r and 1. So V is at most M w^2 / 8 above the greater of its values at the ends of a
-stretch of the angle w. Stretches are halved until that says enough. Numbers are doubles: the rounding and the
-uncertainty of the coefficients are added to the result. The forces that a file states are held to these.
+in the angle, u being the size of the force's coefficients there: the derivatives of the place and of the
+direction are at most r and 1. So on a stretch of angle w, V is at most M w^2 / 8 above the greater of its
+values at the ends. Stretches are halved until this bound is close enough. Numbers are doubles: the rounding
+and the uncertainty of the coefficients are added to the result. The forces that a file states are compared
+with these.
 """
 
 from __future__ import annotations
@@ -49,17 +51,18 @@ SIXTY = pi / 3
 
 @frozen(eq=False)
 class ForceWalk:
-    """The stretches of a program's moves that press on the part.
+    """The R stretches of a program's moves on which tools press on the part, in B blocks of successive
+    stretches.
 
     Parameters
     ----------
     walk : where the moves go.
     forces : on all moves, and the stretches.
-    move : (R,) numbers of the moves of which the stretches are.
-    first : (B,) where blocks of them begin.
-    center, reach : (B, 2) and (B,) circles around blocks, in mm.
+    move : (R,) for each stretch, the number of the move that it belongs to.
+    first : (B,) for each block, the index of its first stretch.
+    center, reach : (B, 2) and (B,) centre and radius of a circle around each block, in mm.
     force, torque : (B,) the largest of each block.
-    far : no point of the path is farther from the origin, in mm.
+    far : largest distance in mm of a point of the path from the part's origin.
     """
 
     walk: ToolWalk
@@ -103,14 +106,17 @@ class ForceWalk:
     def find_worst(
         self, a: arb, b: arb, c: arb, known: float = 0.0, line: object = None, tool: object = None
     ) -> arb:
-        """Return the largest a g_x + b g_y + c m of a tool along the path, or ``known`` if that is larger.
+        """Return the largest value of a g_x + b g_y + c m over all tool forces along the path, or ``known``
+        if larger.
 
-        Forces are in N, moments about the part's origin in N mm; NaN where a coefficient is not finite.
+        (g_x, g_y) is the force of a tool in N, and m its moment about the part's origin in N mm. The result
+        is NaN where a, b or c is not finite.
 
         Parameters
         ----------
-        known : 0 or more, because the tool may do nothing as well; what is less does not matter.
-        line, tool : of the program, the moves to look at; None for all.
+        known : a value of 0 or more (0 stands for a tool that does nothing); only larger ones are sought.
+        line, tool : the program line and tool number whose moves are searched; ``line`` None searches all
+            moves.
         """
         if not all(one.is_finite() for one in (a, b, c)):
             return arb(float("nan"))
@@ -128,8 +134,9 @@ class ForceWalk:
         return arb(found, spare + ROUNDED * size + FINE * found)
 
     def search(self, a: float, b: float, c: float, known: float) -> float:
-        """Return the largest value over all blocks, or ``known`` if larger; blocks
-        with the largest bounds come first.
+        """Return the largest value of a g_x + b g_y + c m over all blocks, or ``known`` if larger.
+
+        Blocks with the largest bounds are searched first.
         """
         x, y = a - self.center[:, 1] * c, b + self.center[:, 0] * c
         bounds = self.force * (np.hypot(x, y) + abs(c) * self.reach) + abs(c) * self.torque
@@ -142,8 +149,10 @@ class ForceWalk:
         return found
 
     def look(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
-        """Return the largest value on the stretches ``rows``, to a bound_relative_errors ``FINE``, or ``found`` if
-        larger.
+        """Return the largest value of a g_x + b g_y + c m on the stretches with indices ``rows``, or
+        ``found`` if larger.
+
+        The relative error of the result is at most ``FINE``.
         """
         moves, low, high = (
             self.move[rows],
@@ -173,10 +182,12 @@ class ForceWalk:
         return found
 
     def evaluate_at(self, moves: IntArray, share: Array, a: float, b: float, c: float) -> Array:
-        """Return the largest value (R,) over all load directions, at a share (0 to 1) of each move.
+        """Return for each of R moves the largest value (R,) of a g_x + b g_y + c m over all allowed load
+        directions.
 
-        The coefficients of a force at a place p are (a - p_y c, b + p_x c). The worst direction is the
-        allowed one nearest to that vector. The torque T adds |c| T, whichever way the tool turns.
+        The tool is at the given share (0 to 1) of each move. At a place p the value is (a - p_y c, b + p_x c)
+        times the force vector, so the worst direction is the allowed one nearest to that vector. The torque T
+        adds |c| T, because the tool may turn either way.
         """
         x, y = self.walk.compute_places_at(moves, share).T
         x, y = a - y * c, b + x * c
@@ -256,8 +267,9 @@ def judge_program_forces(
 
 
 def find_entry_fault(said: Any) -> str:
-    """Return the fault of a program-force entry, as words that follow "the
-    forces of its program"; "" for none.
+    """Return what is wrong with the form of a program-force entry; "" if nothing is.
+
+    The words follow "the forces of its program" in a message.
     """
     if not isinstance(said, dict) or any(key not in said for key in KEYS):
         return f"do not have {', '.join(KEYS)}"
@@ -279,10 +291,16 @@ def judge_place(
     worst: arb,
     spare: arb,
 ) -> Iterator[Finding]:
-    """Yield a finding where the named line, tool and contact do not reach the worst value.
+    """Yield a finding where the line, tool and contact that the file names do not reach the worst value.
 
-    ``functions`` are the coefficients of the load for each contact, ``own`` what each contact has without
-    load, and ``spare`` the relative tolerance.
+    Parameters
+    ----------
+    said : the file's entry, with "line", "tool" and "element" (the contact's name).
+    names : of the contacts.
+    functions : for each contact the coefficients (a, b, c) of its force per unit of load.
+    own : for each contact the value without any load.
+    worst : the worst value as derived.
+    spare : relative tolerance.
     """
     if said["line"] is None:
         return

@@ -1,12 +1,14 @@
-"""The jaw force that a load asks for between two flat jaws, by another way than the search's.
+"""The jaw force that a load asks for between two flat jaws, by another method than the search's.
 
-A jaw's pressures are sums of a few with unit force, and its friction is a sum of what each of them lets its cells bear.
-So the wrenches of a jaw with unit force are a convex set, of which a motion of the part (a twist) finds the point that
-works most against it. The least force is found by such points alone: a linear program in six equations to which a
-point is added for the prices of the last one, until none helps (column generation). It is solved by the revised
-simplex method with bases of six columns. Nothing of the search's program is used.
+A jaw's pressures are sums of a few extreme pressures with unit force, and its friction is a sum of what each
+of them lets its cells bear. So the wrenches of a jaw with unit force are a convex set. A motion of the part
+(a twist) finds the point of this set that does most work on it. The least force is found by such points
+alone: a linear program in six equations, to which a point is added for the dual prices of the last solution,
+until none helps (column generation). It is solved by the revised simplex method with bases of six columns.
+Nothing of the search's program is used.
 
-Reference: G. B. Dantzig, P. Wolfe, *Decomposition principle for linear programs*, Operations Research 8 (1960).
+Reference: G. B. Dantzig, P. Wolfe, *Decomposition principle for linear programs*, Operations Research 8
+(1960).
 """
 
 from __future__ import annotations
@@ -44,8 +46,9 @@ class UnsettledError(Exception):
 
 
 def find_hull_corners(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the corners of the convex hull counter-clockwise from the leftmost
-    (gift wrapping); sorted if below three.
+    """Return the corners of the convex hull of points, counter-clockwise from the leftmost (gift wrapping).
+
+    Fewer than three points are returned sorted.
     """
     left = sorted(set(points))
     if len(left) < 3:
@@ -67,7 +70,7 @@ def find_hull_corners(points: Sequence[tuple[float, float]]) -> list[tuple[float
 
 
 def compute_area_moments(rectangles: Sequence[Rectangle]) -> tuple[float, Array, Array]:
-    """Return the area of rectangles, its centre (2,), and its second moments (2, 2) about the centre.
+    """Return (area, centre (2,), second moments (2, 2) about the centre) of rectangles taken together.
 
     Where all rectangles have zero width, lengths take the place of areas.
     """
@@ -83,9 +86,10 @@ def compute_area_moments(rectangles: Sequence[Rectangle]) -> tuple[float, Array,
 
 
 def list_extreme_pressures(patch: JawPatch) -> tuple[Array, list[tuple[float, float]]]:
-    """Return the extreme linear pressures of unit force and the corners of the patch's hull.
+    """Return (rows (R, 3), corners) of the R extreme linear pressures of unit force on a patch, and its
+    hull's corners.
 
-    The rows (R, 3) give p = (1, x, z) · row. Each pressure vanishes along one side of the hull.
+    Each row gives a pressure p = row · (1, x, z), which vanishes along one side of the hull.
     """
     area, centre, _ = compute_area_moments(patch.rectangles)
     corners = find_hull_corners(
@@ -108,9 +112,9 @@ def list_extreme_pressures(patch: JawPatch) -> tuple[Array, list[tuple[float, fl
 
 
 def compute_resultant_points(patch: JawPatch) -> Array:
-    """Return the points (R, 2) as (x, z) in mm at which the resultants of the extreme pressures act.
+    """Return the points (R, 2), as (x, z) in mm, at which the resultants of the R extreme pressures act.
 
-    They are the centre plus the second moments times the pressure's slope.
+    Each is the patch's centre plus its second moments times the pressure's slope.
     """
     pressures, _ = list_extreme_pressures(patch)
     _, centre, second = compute_area_moments(patch.rectangles)
@@ -119,12 +123,13 @@ def compute_resultant_points(patch: JawPatch) -> Array:
 
 @frozen(eq=False)
 class PressingJaw:
-    """The wrenches that a jaw can exert with unit force.
+    """The wrenches that a jaw can exert with unit force: R extreme pressures, and friction at C cells of its
+    patch.
 
     Parameters
     ----------
-    pressing : (R, 6) wrenches of its extreme pressures.
-    rubbing : (C, 16, 6) wrenches of unit friction at each of C cells of the patch, in 16 directions.
+    pressing : (R, 6) wrenches of the extreme pressures.
+    rubbing : (C, 16, 6) wrenches of a unit of friction at each cell, in 16 directions.
     bearing : (R, C) the largest friction at each cell under each extreme pressure.
     """
 
@@ -134,7 +139,10 @@ class PressingJaw:
 
     @classmethod
     def from_patch(cls, patch: JawPatch, y: float, way: float, friction: float) -> PressingJaw:
-        """Return the jaw at y mm with a patch; ``way`` is 1 or -1 as it presses along +y or -y."""
+        """Return the jaw that presses on a patch in the plane at ``y`` mm.
+
+        ``way`` is 1 where it presses along +y, -1 along -y; ``friction`` is the coefficient of friction.
+        """
         pressures, _ = list_extreme_pressures(patch)
         acting = compute_resultant_points(patch)
         pressing = compute_wrenches(
@@ -161,7 +169,9 @@ class PressingJaw:
         return cls(pressing, rubbing, friction * np.maximum(local, 0.0) * np.array(areas))
 
     def find_best_wrench(self, twist: Array) -> tuple[float, Array]:
-        """Return the largest work with a twist (6,) of any wrench of unit force, and that wrench (6,)."""
+        """Return (work, wrench (6,)) for the wrench of unit force that does most work on a motion ``twist``
+        (6,).
+        """
         works = self.rubbing @ twist
         chosen = works.argmax(axis=1)
         friction = self.bearing @ np.take_along_axis(works, chosen[:, None], axis=1)[:, 0]
@@ -172,8 +182,9 @@ class PressingJaw:
 
 
 def compute_wrenches(points: Array, force: tuple[float, float, float]) -> Array:
-    """Return the wrenches (N, 6) of one force at points (N, 3): force in N,
-    then moments divided by ``LENGTH``.
+    """Return the wrenches (N, 6) of the same ``force`` at each of N points (N, 3).
+
+    Columns: the force in N, then its moments about the origin in N mm divided by ``LENGTH``.
     """
     forces = np.tile(force, (len(points), 1))
     x, y, z = points.T
@@ -190,7 +201,7 @@ class HeldBetweenJaws:
     Parameters
     ----------
     fixed, moving : the jaws.
-    free : (K, 6) wrenches of unit forces that cost nothing: of parallels and the stop.
+    free : (K, 6) wrenches of K unit forces of parallels and the stop, which cost no jaw force.
     """
 
     fixed: PressingJaw
@@ -215,9 +226,11 @@ class HeldBetweenJaws:
         stop: Sequence[tuple[float, float, float]],
         stop_way: float,
     ) -> HeldBetweenJaws:
-        """Return the part held between two patches at y = 0 and y = ``opening``.
+        """Return the part held between two patches, the fixed one at y = 0 and the moving one at y =
+        ``opening`` mm.
 
-        ``stop`` holds the points where a work stop pushes, along +x (``stop_way`` 1) or -x (-1).
+        ``friction`` is the coefficient of friction. ``stop`` holds the points where a work stop pushes, along
+        +x (``stop_way`` 1) or -x (-1).
         """
         feet = [
             (end, y, 0.0)
@@ -236,13 +249,14 @@ class HeldBetweenJaws:
     def compute_needed_force(
         self, point: tuple[float, float, float], force: tuple[float, float, float], moment: float
     ) -> float | None:
-        """Return the least jaw force in N that holds a force in N at a point and a
-        moment about z; None if none suffices.
+        """Return the least jaw force in N that holds a load; None if no jaw force does.
+
+        The load is a force in N at a point, and a moment about z in N mm.
 
         Raises
         ------
         UnsettledError
-            Where the method comes to no end.
+            When the method does not converge.
         """
         load = compute_wrenches(np.array([point]), force)[0]
         load[5] += moment / LENGTH
@@ -250,15 +264,15 @@ class HeldBetweenJaws:
         return None if found is None else found[0]
 
     def answer(self, load: Array) -> tuple[float, Array] | None:
-        """Return the least jaw force in N for a load (6,), and its dual prices
-        (6,); None where no force suffices.
+        """Return (least jaw force in N for a load (6,), dual prices (6,)); None where no force suffices.
 
-        Every load asks for at least -prices · load. Moments are divided by :data:`LENGTH`.
+        The prices give a lower bound for any other load: it needs at least -prices · load. Moments of the
+        load are divided by :data:`LENGTH`.
 
         Raises
         ------
         UnsettledError
-            Where the method comes to no end.
+            When the method does not converge.
         """
         size = float(np.abs(load).max())
         if size == 0.0:
@@ -267,8 +281,9 @@ class HeldBetweenJaws:
         return None if least is None else (max(least[0], 0.0) * size, least[1])
 
     def solve_least_cost(self, side: Array) -> tuple[float, Array] | None:
-        """Return the least jaw force of wrenches that sum to ``side`` (6,), and the
-        dual prices (6,); None if infeasible.
+        """Return (least jaw force, dual prices (6,)) for wrenches of the contacts that sum to ``side`` (6,).
+
+        Returns None where no wrenches of the contacts sum to it.
 
         Raises
         ------
@@ -305,10 +320,11 @@ class HeldBetweenJaws:
         return float(costs @ amount), prices
 
     def find_entering_wrench(self, prices: Array, is_first: bool) -> tuple[float, Array, float]:
-        """Return the column with the largest reduced gain at prices (6,): its
-        gain, its wrench (6,) and its cost.
+        """Return (reduced gain, wrench (6,), cost) of the wrench with the largest reduced gain at dual prices
+        (6,).
 
-        ``is_first`` says that the first phase is on, in which the moving jaw's force costs nothing.
+        The cost is 1 for a wrench of the moving jaw, else 0. In the first phase (``is_first``) the gain is
+        computed without costs.
         """
         found = []
         for jaw, cost in ((self.fixed, 0.0), (self.moving, 0.0 if is_first else 1.0)):

@@ -1,9 +1,11 @@
-"""The jaw force that a program's tools ask for between two flat jaws, derived by another way than the search's.
+"""The jaw force that a program's tools ask for between two flat jaws, derived by another method than the
+search's.
 
-Prices that answer one load bound what every other asks for from below. So the load of the whole path that is worth most
-at these prices is found in closed form, and answered itself; its prices lead on to a harder one, until none is. That is
-done from many prices, among them those of the line that a file names. What is found is asked for indeed. A harder load
-that no ascent comes upon would be missed.
+The least jaw force for one load comes with dual prices, and these bound from below what every other load asks
+for. So the load along the path with the greatest bound at these prices is found in closed form and answered
+itself. Its prices lead on to a harder load, until there is none (an ascent). Ascents start from many prices,
+among them those of loads in the line that a file names. So the force that is found is certainly asked for,
+but a harder load that no ascent reaches would be missed.
 """
 
 from __future__ import annotations
@@ -35,17 +37,17 @@ SIXTY = pi / 3
 
 @frozen(eq=False)
 class PressingPath:
-    """The places of a program's path where tools press on a part, in the frame of the jaws.
+    """N places of a program's path where tools press on a part, in the frame of the jaws.
 
     Parameters
     ----------
-    move : (N,) numbers of the program's moves.
-    point : (N, 3) in mm, from what moments are taken about.
-    against : (N,) direction against the feed, in radians.
+    move : (N,) the number of the program's move at each place.
+    point : (N, 3) in mm, from the point that moments are taken about.
+    against : (N,) direction opposite to the feed, in radians.
     force, torque : (N,) in N and N mm, with the safety factor.
-    axial : (N, 2) along -z, in N, with the safety factor.
-    spread : half the range of directions about against the feed, in radians.
-    still : a wrench (6,) that acts besides.
+    axial : (N, 2) two bounds of the force along -z, in N, with the safety factor.
+    spread : half the range of force directions about ``against``, in radians; pi for any direction.
+    still : a wrench (6,) added to that of every tool, such as the weight's.
     """
 
     move: IntArray
@@ -63,8 +65,9 @@ class PressingPath:
     ) -> PressingPath:
         """Return the sampled places of a program's path at which tools press on the part, in the jaws' frame.
 
-        ``height`` is the part's in mm; ``safety`` multiplies forces and torques. The program must state
-        forces.
+        ``height`` is the part's in mm; ``safety`` multiplies forces and torques. ``centre`` (3,) is the point
+        that moments are taken about, and ``still`` (6,) a wrench added to that of every tool. The program
+        must state forces.
         """
         walk, forces, moves = make_walk(program), program.forces, program.moves
         assert forces is not None
@@ -101,7 +104,7 @@ class PressingPath:
         )
 
     def select_moves(self, moves: IntArray) -> PressingPath:
-        """Return the places whose move is among these move numbers."""
+        """Return only those places that belong to the given move numbers."""
         own = np.isin(self.move, moves)
         return PressingPath(
             self.move[own],
@@ -115,11 +118,11 @@ class PressingPath:
         )
 
     def compute_wrench(self, place: int, turn: float, pull: float, twist: float) -> Array:
-        """Return the wrench (6,) of a tool at a place: its radial force at the angle
-        ``turn`` in radians, pull and twist.
+        """Return the wrench (6,) of the tool at the place with index ``place``, with the constant wrench
+        ``still`` added.
 
-        ``pull`` is the axial force along -z in N, ``twist`` the torque in N mm; moments are divided by
-        ``LENGTH``.
+        ``turn`` is the direction of the radial force in radians, ``pull`` the axial force along -z in N, and
+        ``twist`` the torque in N mm. Moments are divided by ``LENGTH``.
         """
         force = float(self.force[place])
         x, y, z = self.point[place].tolist()
@@ -128,8 +131,10 @@ class PressingPath:
         return np.asarray(row + self.still)
 
     def find_dearest_load(self, prices: Array) -> Array:
-        """Return the load (6,) of the whole path with the greatest -prices · load,
-        a lower bound of its jaw force in N.
+        """Return the load (6,) along the path with the greatest -prices · load.
+
+        At that load's own prices, or any other, this product is a lower bound of the jaw force in N that it
+        needs.
         """
         x, y, z = self.point.T
         a, b, c, k, m, n = -prices / np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])
@@ -147,10 +152,10 @@ class PressingPath:
         return self.compute_wrench(place, float(turn[place]), float(pull[place]), twist)
 
     def find_hardest_force(self, held: HeldBetweenJaws, starts: list[Array]) -> float | None:
-        """Return the largest jaw force in N found by ascents from some prices; None
-        where no jaw force holds some load.
+        """Return the largest jaw force in N found by ascents, one from each of the dual prices ``starts``.
 
-        Each ascent alternates between the dearest load at given prices and that load's own prices.
+        An ascent finds the dearest load at given prices, then goes on with that load's own prices. Returns
+        None where no jaw force holds some load.
         """
         worst, known = 0.0, set[bytes]()
         for prices in starts:
@@ -168,7 +173,9 @@ class PressingPath:
         return worst
 
     def list_tried_loads(self) -> Iterator[Array]:
-        """Yield loads (6,) at the first, middle and last place in ``TRIED`` directions each."""
+        """Yield loads (6,) at the first, middle and last place of the path, in ``TRIED`` directions at each
+        place.
+        """
         for place in sorted({0, len(self.move) // 2, len(self.move) - 1}):
             for number in range(TRIED):
                 turn = float(self.against[place]) + self.spread * (2.0 * number / TRIED - 1.0)
@@ -191,10 +198,12 @@ def find_program_force_faults(
 
     Parameters
     ----------
-    need : as it is written; None where nothing is.
+    need : the statement of the file; None where there is none.
     held : the part between the jaws.
     height : of the part, in mm.
     safety : factor on the loads.
+    frame : the point (3,) that moments are taken about, and a wrench (6,) that acts besides the tools.
+    force_name : what messages call the force.
     """
     path = PressingPath.from_program(program, fixture, height, safety, *frame)
     if (need is None) != (not len(path.move)):

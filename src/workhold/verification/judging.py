@@ -1,16 +1,15 @@
-"""What is warned of in a fixture and counts against it, and whether fixtures are listed in that order.
+"""Warnings and penalties of a fixture, and whether fixtures are listed in the right order.
 
 Both are rules of docs/quality.md. Warnings and penalties are counted in balls. The file's numbers may be off,
 so a figure may lie on either side of the number that decides; then the ball holds both counts.
 
-In the order ("Which comes first") fixtures that are none for a workshop come last. In the usual one a
-warning, steps of the effective error and the angle come before figures (``verification.choose_first_toolkit``). Every
-figure but the last
-counts to two significant digits, the last to nine decimals; what is equal stands in the order of types,
-holes, orientations and faces. Fixtures whose seating is known come first, its warnings counting as those of
-quality do. Equal ones among them stand as they would without it. A figure is written rounded, and that
-rounding may carry it over the edge between two counts. So each is looked at a little to either side. The
-order of ``listing.ranking`` is not used.
+The order ("Which comes first"): fixtures that are unfit for a workshop come last. In the usual order a
+warning, steps of the effective error and the angle come before figures (``verification.first_choice``). Every
+figure but the last counts to two significant digits, the last to nine decimals. Equal fixtures stand in the
+order of types, holes, orientations and faces. Fixtures whose seating is known come first, and warnings of the
+seating count as those of quality do. A figure is written rounded, and that rounding may carry it over the
+edge between two counts, so a range around each figure is counted. The order of ``listing.ranking`` is not
+used.
 """
 
 from __future__ import annotations
@@ -74,7 +73,8 @@ __all__ = [
 
 
 def find_main_direction(faces: Sequence[Side]) -> arb:
-    """Return the direction in degrees of the straight faces that have most length parallel or square to them.
+    """Return the main direction in degrees: that of the straight faces with most length parallel or square to
+    them.
 
     Among about equal candidates the longest face counts, then the first. It is 0 (the drawing's x) where
     there is no straight face, or where different directions have about as much length. Candidates are
@@ -106,10 +106,10 @@ def find_main_direction(faces: Sequence[Side]) -> arb:
 
 
 def compute_tilt(pose: BallPose, direction: arb) -> arb:
-    """Return the angle in degrees from the part's main direction to the nearest
-    axis of the jaws; 0 if within the limit.
+    """Return the angle in degrees between the part's main direction and the nearest axis of the jaws.
 
-    ``direction`` is the main direction in degrees in the part's frame.
+    It is 0 up to the limit ``SQUARE_TILT``. ``direction`` is the main direction in degrees in the part's
+    frame.
     """
     angle = pose.theta * 180 / arb.pi() + direction
     off = abs(angle - 90 * round(float(angle.mid()) / 90))
@@ -118,9 +118,9 @@ def compute_tilt(pose: BallPose, direction: arb) -> arb:
 
 
 def count_if_above(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
-    """Return the least and greatest possible count, 0 or 1, of a value above a limit.
+    """Return (least, greatest) possible count, each 0 or 1, of a value that counts where it is above a limit.
 
-    ``part`` is the value's bound_relative_errors error; ``HAIR`` is added as an absolute one.
+    ``part`` is the relative error of the value; ``HAIR`` is its absolute error.
     """
     spare = HAIR + part * abs(value)
     above = value - limit
@@ -142,11 +142,12 @@ def count_warnings(
     bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT),
     states_bending: bool = True,
 ) -> arb:
-    """Return the number of warnings of a fixture, as a ball where rounding decides.
+    """Return the number of warnings of a fixture, as a ball that holds every possible number where rounding
+    decides.
 
-    Each of these counts: a contact near an edge, a weak closure, a strong peg, a large location error, and,
-    at a known jaw force, a peg that loses contact, too high a pin stress, and too large a movement by bent
-    pins.
+    Warnings are: each contact near an edge, a weak closure, a strong peg, and a large location error. At a
+    known jaw force there are three more: a peg that loses contact, a large pin stress, a large movement of
+    the part by bent pins.
 
     Parameters
     ----------
@@ -155,8 +156,9 @@ def count_warnings(
     off : sum of the tolerances in mm.
     jaw_force : in N; None where none is given.
     part : relative error of the file's figures.
-    bending : largest stress in MPa, and farthest movement in mm by bent pegs.
-    states_bending : whether the file states how far pegs bend; an older file may have counted that or not.
+    bending : limits of pin stress in MPa and of that movement in mm.
+    states_bending : whether the file states how far pegs bend. An older file does not, and its number of
+        warnings may or may not include those of bending.
     """
     pairs = [count_if_above(-edge, -NEAR_EDGE, part) for edge in edges]
     pairs.append(count_if_above(-figures["closure_margin"], -WEAK_CLOSURE, part))
@@ -172,10 +174,10 @@ def count_warnings(
 
 
 def compute_penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) -> arb:
-    """Return the penalty points for location error (rounded up), tilt, a strong peg and a small face.
+    """Return the sum of the penalty points for location error, tilt, a strong peg and a small face.
 
-    ``off`` is the sum of the tolerances and ``diameter`` the part's, in mm; ``part`` is the figures' relative
-    error.
+    Points for the location error are rounded up. ``off`` is the sum of the tolerances and ``diameter`` the
+    part's, in mm; ``part`` is the relative error of the figures.
     """
     points = [(0, 0)]
     if off > 0:
@@ -204,23 +206,25 @@ MORE_IS_BETTER = {figure.key: figure.more_is_better for figure in RANKED}
 
 @frozen(eq=False)
 class OrderJudge:
-    """The sort keys that precede the figures in a query's usual order."""
+    """The sort keys that precede the figures in the usual order of a query."""
 
     query: Query
     effective: EffectiveJudge
 
     def rank_first_keys(self, fixture: Fixture, figures: Mapping[str, float]) -> list[Range]:
-        """Return three keys, each as (least, greatest): has a warning, steps above
-        the least error, class of the angle.
+        """Return three sort keys, each as (least, greatest): has a warning (0 or 1), steps above the least
+        effective error, class of the angle.
         """
         warned = float(figures.get("warnings", 0.0) > HAIR)
         low, high = classify_angle(fixture.pose.theta_deg)
         return [(warned, warned), self.effective.count_error_steps(fixture), (low, high)]
 
     def find_least_error_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
-        """Return a sentence where the written least effective error is missing or wrong, else "".
+        """Return a sentence where the written least effective error is missing or wrong; "" where it is
+        right.
 
-        ``is_whole`` says that all fixtures found are listed; otherwise only too large a value is a fault.
+        ``is_whole`` says that all fixtures found are listed. Otherwise an unlisted fixture may have the least
+        error, so only too large a written value is a fault.
         """
         if not fixtures:
             return ""
@@ -266,8 +270,8 @@ def find_order_faults(
 
     Parameters
     ----------
-    least : the least effective error of all in mm, as written; None where none is.
-    is_whole : whether all that was found is listed.
+    least : least effective error in mm among all fixtures found, as written; None where it is not written.
+    is_whole : whether all fixtures found are listed.
     is_chosen : whether somebody chose the listed fixtures, so that the best may be missing.
     """
     usual = query.without_seating
@@ -283,8 +287,8 @@ def find_order_faults(
     off = query.tolerance.peg + query.tolerance.face
 
     def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
-        """Return the sort key of a fixture as ranges, with these figures in
-        the order that ``asked`` asks for.
+        """Return the sort key of a fixture with these figures, as ranges, in the order of the query
+        ``asked``.
         """
         first = judge.rank_first_keys(fixture, figures) if judge is not None and asked.has_house_order else []
         return [
@@ -351,7 +355,10 @@ def count_seating_warnings(seating: Seating) -> int:
 
 
 def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
-    """Yield (least, greatest) of each figure's rounded sort value, in ranking order; smaller is better."""
+    """Yield (least, greatest) of the rounded sort value of each figure, in the order of ``ranking``.
+
+    Smaller sorts first: figures where more is better have their sign reversed.
+    """
     for place, key in enumerate(ranking, 1):
         value = -figures[key] if MORE_IS_BETTER[key] else figures[key]
         if isinf(value):
@@ -368,7 +375,7 @@ def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> 
 
 
 def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
-    """Return whether a fixture certainly precedes another equally good one."""
+    """Return whether, of two equally good fixtures, ``one`` certainly stands before ``other``."""
     (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
         rank(fixture, hardware) for fixture in (one, other)
     )
@@ -380,10 +387,10 @@ def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
 def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     """Return the sort key of equally good fixtures: (type, directions and holes; angle in radians; faces).
 
-    Without a wall and with one moving carrier, a fixture is first turned so that it clamps along -x. Then
-    columns count from the first peg of each carrier, rows from the lowest of all. If both jaws are alike and
-    hold as many pegs, a fixture turned by half a turn or more is taken half a turn back. All other fixtures
-    count by the holes in which they stand.
+    Two cases: (a) without a wall and with one moving carrier, the fixture is first turned so that its clamp
+    pushes along -x. Then columns count from the first peg of each carrier, and rows from the lowest row of
+    all. If both jaws are alike and hold as many pegs, a fixture whose angle is half a turn or more is turned
+    back by half a turn. (b) All other fixtures are sorted by the columns and rows of their holes as written.
     """
     ways = [list(WAYS).index(name) for name in list_directions(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
@@ -424,11 +431,11 @@ def make_peg_key(peg: Peg) -> tuple[int, int, int]:
 
 
 def rank_unfit(fixture: Fixture, off: float) -> Range:
-    """Return (least, greatest) of a number that is 1.0 for a fixture unfit
-    for a workshop and 0.0 for a fit one.
+    """Return (least, greatest) of a number that is 1.0 for a fixture unfit for a workshop and 0.0 for a fit
+    one.
 
-    Both differ where rounding decides; they are (0.0, 1.0) where the file lacks the figures. ``off`` is the
-    sum of the tolerances of peg and face, in mm.
+    The two numbers are equal unless rounding decides; they are (0.0, 1.0) where the file lacks the figures.
+    ``off`` is the sum of the tolerances of peg and face, in mm.
     """
     margin, error = (fixture.quality.get(key) for key in ("closure_margin", "location_error"))
     if margin is None or error is None:
@@ -439,10 +446,10 @@ def rank_unfit(fixture: Fixture, off: float) -> Range:
 
 
 def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
-    """Return whether row ``one`` sorts before row ``other``; None where they are equal.
+    """Return whether the sort key ``one`` is before ``other``; None where they are equal.
 
-    At the first entry whose ranges are not equal numbers, True means that the range of ``one`` is certainly
-    less.
+    The first entry at which the ranges are not the same single number decides. True means that there the
+    range of ``one`` is certainly less; False that it is not.
     """
     for (low, high), (least, most) in zip(one, other, strict=True):
         if high < least:

@@ -56,12 +56,12 @@ __all__ = [
 
 @frozen
 class SeatingClaim:
-    """The seating of a fixture.
+    """The seating that a file states for a fixture.
 
     Parameters
     ----------
-    fields : as they are written.
-    seating : their meaning in the model, which works out again what follows from other fields.
+    fields : the fields as they are written.
+    seating : the same as a ``Seating`` of the model, which derives some values from others again.
     """
 
     fields: Mapping[str, Any]
@@ -74,7 +74,9 @@ class SeatingClaim:
 
 
 def make_claim(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> SeatingClaim:
-    """Return the seating claim of fixture ``number`` (from 1) from the fields of its file.
+    """Return the seating claim of fixture ``number`` (from 1) from the fields of its seating in the file.
+
+    ``path`` and ``number`` are for messages.
 
     Raises
     ------
@@ -88,7 +90,8 @@ def make_claim(fields: Any, pose: Pose, query: Query, path: Path | str, number: 
 def add_seating_claims(
     fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result"
 ) -> list[Fixture]:
-    """Return the fixtures with each seating (fields, or a ``Seating``) replaced by a ``SeatingClaim``.
+    """Return the fixtures with their seatings as ``SeatingClaim``; given are fields of a file or a
+    ``Seating``.
 
     Raises
     ------
@@ -115,14 +118,14 @@ DECIMALS = 10
 
 @frozen(eq=False)
 class FixturesInColumns(Sequence[Fixture]):
-    """The fixtures of a file in columns, made one by one when asked for, in the holes of a toolkit.
+    """The fixtures of a file in columns, as a sequence that makes each fixture when it is asked for.
 
-    The pegs of each stand in the order of its type.
+    The pegs of each fixture stand in holes of ``toolkit``, in the order of its type.
 
     Raises
     ------
     InputError
-        When one of them is of no type, or has a number that is none.
+        When a fixture has an unknown type or a value that is no number.
     """
 
     columns: Columns
@@ -296,7 +299,8 @@ def read_listing(path: str | Path) -> WrittenListing:
 
 
 def make_friction_fixtures(taken: Any, query: Query) -> list[Fixture]:
-    """Return the fixtures of flat jaws, or of straps, from their parsed parts.
+    """Return the fixtures of flat jaws or of straps; ``taken`` is what ``read_head_and_fixtures`` returned as
+    fixtures.
 
     Raises
     ------
@@ -309,10 +313,10 @@ def make_friction_fixtures(taken: Any, query: Query) -> list[Fixture]:
 
 
 def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[AnyHoldPart] | Columns, list[Any]]:
-    """Return the head of a file, its fixtures (or columns), and the seatings of
-    the first ones of a file in columns.
+    """Return (head of a file, its fixtures or columns, seatings).
 
-    The seatings are [] for a file of lines, whose fixtures hold their own.
+    The seatings are those of the first fixtures of a file in columns; [] for a file with a fixture in each
+    line, where each fixture holds its own.
     """
     try:
         if is_archive(path):
@@ -340,7 +344,7 @@ def complete_fixtures(
     query: Query,
     path: Path,
 ) -> Sequence[Fixture]:
-    """Return the fixtures with their clamps' travels and their seating claims.
+    """Return the fixtures, with the travels of their clamps and their seating claims added.
 
     ``seatings`` are those of the first fixtures of a file in columns.
 
@@ -371,8 +375,9 @@ def complete_fixtures(
 
 
 def find_missing_keys(head: Head) -> list[str]:
-    """Return one sentence for each key that the file's form needs and that is
-    missing, so that a default would be read.
+    """Return one sentence for each key that the file's form requires and the head lacks.
+
+    For such a key a reader would silently take the default.
     """
     # Of a vise and a toolkit one is enough, a missing account is named in any case, and a fit decides
     # nothing. A departure counts in the tolerance of the faces, which is there.
@@ -420,10 +425,12 @@ def read_counts_by_type(
 ) -> Mapping[str, int]:
     """Return the numbers of fixtures by type; ``usual`` where ``counts`` is None.
 
+    ``key`` names the numbers in messages.
+
     Raises
     ------
     InputError
-        When the types are not exactly ``types``.
+        When the keys are not exactly ``types``.
     """
     counts = usual if counts is None else counts
     if counts is None or set(counts) != set(types):
@@ -434,9 +441,9 @@ def read_counts_by_type(
 
 
 def find_turned_loops(loops: Sequence[Any], query: Query) -> list[str]:
-    """Return one sentence for each loop, counted from 0, that does not have the material on its left.
+    """Return one sentence for each loop, numbered from 0, that does not have the material on its left.
 
-    Such a loop is read in reverse, which makes the numbers of its segments ambiguous.
+    A reader reverses such a loop, which makes the numbers of its segments ambiguous.
     """
     return [
         f"loop {index} does not have the material on its left"

@@ -1,7 +1,7 @@
-"""How far pegs bend, in balls and from the file alone (docs/quality.md, "Pins bend").
+"""How far pegs bend, in ball arithmetic and from the file alone (docs/quality.md, "Pins bend").
 
-Each peg in a hole of a plate is a cantilever of round section, pressed at the middle of the run of heights over
-which it can press on its face. Of ``statics.pins`` nothing is used.
+Each peg in a hole of a plate is a cantilever of round section. It is pressed at the middle of the range of
+heights over which it can press on its face. Of ``statics.pins`` nothing is used.
 """
 
 from __future__ import annotations
@@ -46,11 +46,10 @@ class PegBeam:
 
 
 def make_beams(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
-    """Return the beam of each contact of a fixture; an entry is None for a
-    clamp's tip or a wall, which do not bend.
+    """Return a list with a beam for each contact of a fixture, or None for a contact that does not bend.
 
-    Returns None where the pegs' heights are unknown, where a peg has no radius, or where there is no beam at
-    all.
+    Contacts that do not bend are a clamp's tip and a wall. Returns None instead of a list where the pegs'
+    heights are unknown, a peg has no radius, or no contact bends.
     """
     if not query.knows_heights:
         return None
@@ -73,7 +72,7 @@ def find_stated_force(query: Query) -> arb:
 
 
 def find_run(number: int, point: tuple[float, float], query: Query) -> tuple[arb, arb] | None:
-    """Return the heights in mm, from and to, over which a peg can press on a face; None where none are known.
+    """Return (from, to), the heights in mm over which a peg can press on a face; None where they are unknown.
 
     ``number`` is the face's number, ``point`` the peg's centre in the part's frame.
     """
@@ -98,7 +97,10 @@ def find_run(number: int, point: tuple[float, float], query: Query) -> tuple[arb
 
 
 def compute_share_along(segment: Segment, point: tuple[float, float]) -> float:
-    """Return a point's position along a segment: 0 at its start, 1 at its end, beyond these outside it."""
+    """Return a point's position along a segment: 0 at the segment's start, 1 at its end.
+
+    Beyond the start it is below 0, beyond the end above 1.
+    """
     x, y = point
     if isinstance(segment, Line):
         (ax, ay), (bx, by) = segment.start, segment.end
@@ -113,9 +115,9 @@ def compute_share_along(segment: Segment, point: tuple[float, float]) -> float:
 
 
 def interpolate_cubic(rows: Rows, share: float, end: int) -> float:
-    """Return the lower (``end`` 1) or upper (``end`` 2) height of a run at a share of its segment.
+    """Return the lower (``end`` 1) or upper (``end`` 2) height in mm at a share of a segment.
 
-    Rows are (share, low, high). Every four rows define a cubic, evaluated by Neville's scheme.
+    Each row is (share, low, high). Every four rows define a cubic, evaluated by Neville's scheme.
     """
     first = 0
     while first + 6 < len(rows) and rows[first + 3][0] < share:

@@ -65,8 +65,8 @@ MOST_STEPS = 12
 
 
 def enclose_zero(system: System, start: Sequence[float]) -> list[arb] | None:
-    """Return a proven enclosure of the one zero near ``start``; None where it
-    cannot be proven at the current precision.
+    """Return proven balls for the one zero of ``system`` near ``start``; None where the precision does not
+    prove it.
 
     Newton's method on midpoints finds the zero, and Krawczyk's theorem proves it. The box around it has a
     radius of 2^(-bits/2).
@@ -94,8 +94,10 @@ def enclose_zero(system: System, start: Sequence[float]) -> list[arb] | None:
 
 
 def enclose_written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
-    """Return a ball of all poses within ``AGREEMENT`` of the written pose and of the written travels in
-    mm.
+    """Return a ball (an enclosure) of all poses whose numbers differ from the written ones by at most
+    ``AGREEMENT``.
+
+    ``travels`` are the written travels in mm.
     """
     off = arb(0, AGREEMENT)
     theta = (written.theta_deg + off) * arb.pi() / 180
@@ -105,9 +107,10 @@ def enclose_written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
 
 
 def judge_gaps(touching: Sequence[tuple[str, BallContact, int]], around: BallPose) -> Iterator[Finding]:
-    """Yield a refuting finding for each contact that no pose near the written one can bring into touch.
+    """Yield a definite finding for each contact that certainly does not touch, at any pose near the written
+    one.
 
-    ``touching`` holds (name, contact, face number); ``around`` is the ball of poses.
+    ``touching`` holds (name, contact, face number); ``around`` is the ball of poses near the written one.
     """
     for name, contact, face in touching:
         off = contact.side.compute_gap(contact.compute_center_in_part(around)) - contact.radius
@@ -118,10 +121,10 @@ def judge_gaps(touching: Sequence[tuple[str, BallContact, int]], around: BallPos
 def prove_pose(
     contacts: Sequence[BallContact], written: Pose, travels: Mapping[str, float]
 ) -> tuple[BallPose | None, list[Finding]]:
-    """Return the proven solution of the contact equations near the file's pose, or
-    None, and findings against the file.
+    """Return (pose, findings against the file), where the pose solves the contact equations near the file's
+    pose.
 
-    ``travels`` are those of the file in mm, by name.
+    The pose is a proven enclosure, or None where it is not proven. ``travels`` are the file's in mm, by name.
     """
     values = [written.theta_deg, written.x, written.y, *travels.values()]
     zero = enclose_zero(partial(evaluate_contact_system, contacts), [radians(written.theta_deg), *values[1:]])
@@ -169,8 +172,8 @@ def find_broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRul
 
 
 def find_untouched_face(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return a sentence on the first face that the query asks to touch and the
-    fixture does not touch; "" for none.
+    """Return a sentence on the first face that the query requires and the fixture does not touch; "" for
+    none.
     """
     if not query.restrictions.touch:
         return ""
@@ -184,7 +187,9 @@ def find_untouched_face(fixture: Fixture, query: Query, hardware: ToolkitRules) 
 
 
 def find_imprecision(fixture: Fixture, query: Query) -> str:
-    """Return a sentence where the fixture's written location error exceeds the limit asked for; else ""."""
+    """Return a sentence where the fixture's written location error is above the query's limit; "" where it is
+    not.
+    """
     most, error = query.max_location_error, fixture.quality.get("location_error", inf)
     if most is None or error <= most + AGREEMENT:
         return ""
@@ -192,8 +197,8 @@ def find_imprecision(fixture: Fixture, query: Query) -> str:
 
 
 def find_faces_without_band(workpiece: Workpiece) -> set[int]:
-    """Return the numbers of the faces with a segment over which the solid has
-    no upright face; empty for a prism.
+    """Return the numbers of the faces that have a segment at which the solid has no upright face; empty for a
+    prism.
     """
     bands = workpiece.numbered.bands
     return {
@@ -204,9 +209,10 @@ def find_faces_without_band(workpiece: Workpiece) -> set[int]:
 
 
 def find_avoided_faces(query: Query) -> set[int]:
-    """Return the numbers of the faces to avoid, in all outlines.
+    """Return the numbers of the faces that no peg may touch, in all outlines of the part.
 
-    A face of another outline counts where it comes from the same face of the solid as an avoided segment.
+    A face of a further outline is avoided where it comes from the same face of the solid as an avoided
+    segment.
     """
     avoid, every = set(query.restrictions.avoid), query.workpiece.numbered
     if query.workpiece.outlines and every.over:
@@ -218,8 +224,10 @@ def find_avoided_faces(query: Query) -> set[int]:
 def find_restriction_broken_at_wall(
     fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]
 ) -> str:
-    """Return a sentence where the part lies on a wall with an avoided face, or a
-    wall stands in a keep-out zone; else "".
+    """Return a sentence where an avoided face lies on a wall, or a wall stands in a keep-out zone; "" where
+    neither does.
+
+    ``avoided`` are the numbers of the avoided faces.
     """
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     for wall in hardware.walls:
@@ -237,7 +245,9 @@ def find_restriction_broken_at_wall(
 
 
 def map_peg_to_part(fixture: Fixture, peg: Peg) -> Point:
-    """Return a peg's centre in the part's frame in mm, computed in balls independently of ``Pose``."""
+    """Return a peg's centre in the part's frame in mm, in ball arithmetic; independent
+    of the class ``Pose``.
+    """
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     return turn_vector(make_exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)
 
@@ -271,11 +281,11 @@ def compute_zone_distance(zone: Zone, point: Point) -> arb:
 
 
 def compute_turn_around(sides: Sequence[Side], point: Point) -> arb:
-    """Return the angle in radians that a closed chain of sides turns around a
-    point not on it: 2 pi inside, 0 outside.
+    """Return the angle in radians by which a closed chain of sides winds around a point not on it: 2 pi
+    inside, 0 outside.
 
-    A side turns as its chord does, and an arc by a whole turn more or less when the point lies between it and
-    its chord.
+    An arc winds around the point by as much as its chord, or by one whole turn more or less where the point
+    lies between arc and chord.
     """
     total = arb(0)
     for side in sides:

@@ -95,8 +95,9 @@ def read_fixture(item: Any) -> Fixture:
 
 
 def add_flat_directions(fixture: Fixture, flats: Any) -> Fixture:
-    """Return a fixture with the directions in degrees of its pegs' flats, one
-    per peg in a hole, None for no flat.
+    """Return a fixture with the directions of its pegs' flats added.
+
+    ``flats`` holds one direction in degrees per peg in a hole, None for a peg without a flat.
     """
     standing = [place for place, peg in enumerate(fixture.pegs) if not peg.is_on_wall]
     if not isinstance(flats, list) or len(flats) != len(standing):
@@ -109,8 +110,9 @@ def add_flat_directions(fixture: Fixture, flats: Any) -> Fixture:
 
 
 def add_working_forces(fixture: Fixture, pair: ClampPair) -> Fixture:
-    """Return a fixture with a pair of clamps and its peg forces at the working
-    ratio, per unit of both clamps' forces.
+    """Return a fixture with its pair of clamps and its peg forces added.
+
+    The forces are those at the working ratio of the clamps' forces, per unit of the sum of both.
     """
     ratio = pair.working_ratio
     forces = [(one + ratio * other) / (1 + ratio) for one, other in pair.reactions]
@@ -150,7 +152,10 @@ def read_quality(item: Mapping[str, Any]) -> dict[str, float]:
 
 
 def read_two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:
-    """Return two numbers of a JSON object; from index ``least`` on, null stands for inf."""
+    """Return the two numbers of a JSON list under ``key``; from index ``least`` on, null stands for inf.
+
+    The default of ``least`` allows no null.
+    """
     values = item.get(key)
     if not isinstance(values, list) or len(values) != 2:
         raise UnusableError.from_entry(item, key, "two numbers")
@@ -162,8 +167,8 @@ def read_two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple
 
 
 def read_wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
-    """Return the forces of the two ends of the contact with a wall, each as (under clamp 1, under clamp
-    2).
+    """Return two pairs, one for each end of the contact with a wall: (force per unit of clamp 1, force per
+    unit of clamp 2).
     """
     forces = wall.get("forces")
     if not isinstance(forces, list) or len(forces) != 2:
@@ -172,8 +177,9 @@ def read_wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
 
 
 def read_wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
-    """Return the two ends of the contact with a wall as pegs; their forces
-    are 0 with two clamps (``is_pair``).
+    """Return the two ends of the contact with a wall as pegs.
+
+    With two clamps (``is_pair``) their forces are 0, because they follow from the reactions.
     """
     if not isinstance(item, dict):
         raise UnusableError("its wall is not given by places, segments and forces")
@@ -202,8 +208,8 @@ def read_wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
 def read_peg(item: Mapping[str, Any], directions: list[str]) -> Peg:
     """Return a peg from its JSON object.
 
-    ``directions`` are those of the fixture: none for jaws, one that holds for its clamp, or two, where each
-    clamp states its own.
+    ``directions`` are the fixture's clamp directions. There are none for jaws. With one direction it is that
+    of the clamp; with two, the object of each clamp states its own.
     """
     if not directions:
         column, row, segment = (read_whole_number(item, key) for key in ("column", "row", "segment"))

@@ -1,18 +1,19 @@
-"""Fixtures of a list whose pegs stand in the same pattern: held twice, or missing among each other's seats.
+"""Fixtures of a list whose pegs stand in the same pattern: listed twice, or missing among the seats of each
+other.
 
-Two fixtures are the same (model: "When two fixtures are the same") with the same place of the workpiece among
+Two fixtures are the same (model: "When two fixtures are the same") if the workpiece has the same place among
 the same pattern of holes. Lattice steps, names of pegs and the half turn that leaves the toolkit as it is
-make no difference. Nor do the names of faces: the pose says what is touched.
+make no difference. Nor do the numbers of faces: the pose says what is touched.
 
-Which rotations carry a workpiece onto itself is derived from the marks of its faces alone. They keep the mean
-of the faces' middles. Rotations of order n carry the faces that are not about this point in cycles of n, so n
-divides their number. Each such part of a turn is tried, the smallest first. A drawing symmetric to ``SAME``
-counts as symmetric. Of one that misses this by about as much, nothing can be said.
+Which rotations carry a workpiece onto itself is derived from the marks of its faces (middle, ends and radius)
+alone. They keep the mean of the faces' middles. A rotation of order n carries the faces that are not centred
+on this point in cycles of n, so n divides their number. Each such divisor is tried, the largest first. A
+drawing symmetric to within ``SAME`` counts as symmetric; for one that misses this by about as much, nothing
+can be said.
 
 Glossary
 --------
-pattern : the holes of a fixture in a form in which equal fixtures have equal ones, with the place of the
-    workpiece.
+pattern : the holes of a fixture in a form that is equal for equal fixtures, with the place of the workpiece.
 stance : how the pegs of a fixture stand to each other. Fixtures of one stance are on the same pegs, and each
     is among the seats of the others.
 """
@@ -58,13 +59,14 @@ CERTAIN, PERHAPS = 0.25, 4.0
 
 @frozen
 class PartRotations:
-    """The rotations of a workpiece onto itself.
+    """The rotations that carry a workpiece onto itself.
 
     Parameters
     ----------
-    order : how many there are at most with the identity; 1 for concentric circles, which turn at every angle.
-    center : the point in mm that they keep.
-    is_certain : whether there certainly are as many.
+    order : the largest possible number of them, with the identity; 1 for concentric circles, which any turn
+        keeps.
+    center : the point in mm that they keep in its place.
+    is_certain : whether ``order`` is certainly their number.
     """
 
     order: int
@@ -91,10 +93,10 @@ class PartRotations:
 
 
 def list_face_marks(face: Segment) -> list[complex]:
-    """Return a face's middle, start, end and radius as complex numbers; the radius
-    is negative if concave, 0 if straight.
+    """Return [middle, start, end, radius] of a face as complex numbers.
 
-    A whole circle has its centre three times.
+    The radius is negative if the face is concave, and 0 if it is straight. A whole circle has its centre in
+    place of the three points.
     """
     radius = face.sign * face.radius if isinstance(face, Arc) else 0.0
     points = (
@@ -106,10 +108,11 @@ def list_face_marks(face: Segment) -> list[complex]:
 
 
 def count_rotations(marks: NDArray[np.complex128], off: float) -> int:
-    """Return the largest order n such that a turn by 1/n carries every mark
-    to within ``off`` mm of another one.
+    """Return the largest order n such that a turn by 1/n carries every mark onto another one, to within
+    ``off`` mm.
 
-    The marks (N, 5) are taken about 0; the last column is the outline's number, which a turn does not change.
+    The marks (N, 5) are complex, turned about 0; their last column is the outline's number, which a turn does
+    not change.
     """
     outer = marks[np.abs(marks[:, 0]) > off]
     orders = (n for n in range(len(outer), 1, -1) if len(outer) % n == 0)
@@ -117,8 +120,10 @@ def count_rotations(marks: NDArray[np.complex128], off: float) -> int:
 
 
 def has_image(one: NDArray[np.complex128], order: int, marks: NDArray[np.complex128], off: float) -> bool:
-    """Return whether the turn by 1/``order`` carries the mark ``one`` (5,) to
-    within ``off`` mm of a row of marks (N, 5).
+    """Return whether the turn by 1/``order`` carries a mark onto some row of ``marks`` (N, 5), to within
+    ``off`` mm.
+
+    ``one`` (5,) is the mark, with the outline's number last.
     """
     turned = one * np.array([*[np.exp(2j * pi / order)] * 3, 1.0, 1.0])
     return bool((np.abs(marks - turned).max(axis=1) <= off).any())
@@ -130,15 +135,15 @@ TURNED = 4 * SAME
 
 @frozen(eq=False)
 class KnownFixtures:
-    """The fixtures of a list looked at so far.
+    """The fixtures of a list that were added so far.
 
     Parameters
     ----------
-    hardware : what they stand on.
+    hardware : the rules of their toolkit.
     rotations : angles in radians of the rotations of the workpiece onto itself, the identity left out.
-    center : the point in mm that they keep.
-    sets : of each type, how many sets the fixtures form when those that a rotation carries into each other
-        count once.
+    center : the point in mm that these rotations keep.
+    sets : by type, the number of fixtures when those that a rotation carries into each other count once.
+    known : by pattern, the (index, place) of each fixture added.
     """
 
     hardware: ToolkitRules
@@ -153,10 +158,11 @@ class KnownFixtures:
         return cls(hardware, turning.angles, turning.center)
 
     def add(self, index: int, fixture: Fixture) -> int | None:
-        """Add a fixture that is not refuted, and return the index of an earlier equal one, or None.
+        """Add a fixture that is not refuted; return the index of an earlier fixture that is the same, or
+        None.
 
-        Also counts ``sets``: a fixture that is new, and no rotation of an earlier one, adds one to its type's
-        count.
+        ``sets`` grows by one for the fixture's type where the fixture is new and no rotation of an earlier
+        one.
         """
         first, alone = self.find(fixture), True
         for key, place in list_patterns(fixture, self.hardware):
@@ -183,9 +189,9 @@ class KnownFixtures:
 
 
 def list_patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Place]]:
-    """Yield each (pattern, place) of a fixture: equal patterns and places mean the same fixture.
+    """Yield the (pattern, place) pairs of a fixture; fixtures that have a pair in common are the same.
 
-    There are two where half a turn of the toolkit gives the same pattern, and none where the pegs are not
+    Yields two pairs where half a turn of the toolkit gives the same pattern, and none where the pegs are not
     those of a fixture.
     """
     there = {peg.carrier for peg in fixture.pegs}
@@ -200,12 +206,12 @@ def list_patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Ke
 
 
 def make_pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, Place]:
-    """Return the pattern and place as they are (sign 1) or after half a turn of
-    the toolkit (-1), which swaps two jaws.
+    """Return (pattern, place of the workpiece): as listed for ``sign`` 1, after half a turn of the toolkit
+    for -1.
 
-    Columns count from the first peg of each carrier, rows from the lowest peg; beside a wall rows keep their
-    numbers. Clamps are given by direction and line; the lines are left out where one listed pair stands for
-    all of its seat.
+    The half turn swaps two jaws. Columns count from the first peg of each carrier, rows from the lowest peg;
+    beside a fixed wall the pattern also holds the lowest row. Clamps are given by direction and line; the
+    line is left out where one listed pair stands for all pairs of its seat.
     """
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices][::sign]
     lowest = min(sign * peg.row for group in groups for peg in group)
@@ -253,8 +259,10 @@ SAME_SEAT = 1e-5
 
 
 def find_pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
-    """Yield one sentence for the first fixture that stands on a seated fixture's
-    pegs but is not among its listed seats.
+    """Yield one sentence for the first fixture that is missing among the listed seats of another fixture on
+    equal pegs.
+
+    Only fixtures with a stated seating have listed seats.
     """
     if not query.toolkit.closes_at_once:
         return
@@ -293,10 +301,11 @@ class PegStance:
 
     Parameters
     ----------
-    key : what fixtures share that differ by a shift and by the travel of what moves.
-    anchor : in mm, the first peg that stands still; where only a wall does, its point below the first peg.
-    apart : how far in mm the first that moves is from it, along the way on which the travel grows.
-    met : at how many mm of that a clamp's tip would be in one that stands still.
+    key : equal for fixtures whose pegs differ only by a shift and by the travel of the moving ones.
+    anchor : in mm, the first fixed peg; where only a wall is fixed, the wall's point below the first peg.
+    apart : distance in mm from the anchor to the first moving peg, along the direction in which the travel
+        grows.
+    met : the same distance for each fixed peg that stands in the way of a clamp's tip.
     """
 
     key: tuple[Any, ...]
@@ -306,7 +315,7 @@ class PegStance:
 
 
 def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
-    """Return how the placed pegs of a fixture stand to each other; some carrier must move."""
+    """Return how the placed pegs of a fixture stand to each other; some carrier of the toolkit must move."""
     by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.find_carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]
@@ -317,11 +326,11 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
     ux, uy = carrier.travel.unit
 
     def along(peg: Peg) -> float:
-        """Return how far a peg is from the first one along the direction of travel, in mm."""
+        """Return how far in mm a peg is from the anchor along the direction of travel."""
         return (peg.x - first_x) * ux + (peg.y - first_y) * uy
 
     def across(peg: Peg) -> float:
-        """Return how far a peg is from the first one to the left of the direction of travel, in mm."""
+        """Return how far in mm a peg is from the anchor, to the left of the direction of travel."""
         return (peg.y - first_y) * ux - (peg.x - first_x) * uy
 
     places = [(peg.x - first_x, peg.y - first_y) for peg in still]
@@ -343,8 +352,9 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
 
 
 def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:
-    """Return whether a seat is an unmirrored fixture seat with this pose and
-    this difference, to ``SAME_SEAT``.
+    """Return whether a seat has the kind "fixture", is not mirrored, and has this pose and this difference.
+
+    Pose and difference agree to ``SAME_SEAT``.
     """
     turn = (seat["pose"]["theta_deg"] - pose["theta_deg"] + 180.0) % 360.0 - 180.0
     away = max(abs(seat["pose"][name] - pose[name]) for name in ("x", "y"))

@@ -1,4 +1,4 @@
-"""Three locators that fix the pose by themselves, and two clamps that press the part against them, in balls.
+"""Three locators that alone fix the pose, and two clamps that press the part on them, in ball arithmetic.
 
 Let w_i = (n_i, q_i x n_i) be the wrenches of the locators, and W = [w_1 w_2 w_3]. Per unit of force on the
 face of a clamp with the wrench w the locators take up a = -W^-1 w. Per unit of the clamp's own force they
@@ -71,7 +71,7 @@ CLAMPS = ("clamp 1", "clamp 2")
 
 @frozen(eq=False)
 class LocatorWrenches:
-    """Three locators.
+    """Three locators, by the points where they touch.
 
     Parameters
     ----------
@@ -93,8 +93,10 @@ class LocatorWrenches:
         )
 
     def make_push(self, contact: BallContact, pose: BallPose) -> ClampPush:
-        """Return the reactions to a clamp at a pose; the clamp pushes along -n, and
-        clamps against its direction of travel.
+        """Return how the three locators react to a clamp at a pose.
+
+        The clamp presses along -n, n being the face's outward normal, and clamps by moving against its travel
+        direction.
         """
         point = contact.compute_center_in_part(pose)
         normal = contact.side.compute_outward_normal(point)
@@ -145,12 +147,14 @@ class ClampPush:
 
     @property
     def most(self) -> arb:
-        """The largest absolute locator force per unit of force on the clamp's face."""
+        """The largest size of a locator force, per unit of force on the clamp's face."""
         return find_largest([abs(entry) for entry in self.taken])
 
     @cached_property
     def alone(self) -> arb:
-        """The least locator force as a share of all forces: above 0 where the clamp holds the part alone."""
+        """The least locator force divided by the sum of 1 and all sizes of locator forces; above 0 where this
+        clamp alone holds the part.
+        """
         a, b, c = self.taken
         return a.min(b).min(c) / (1 + abs(a) + abs(b) + abs(c))
 
@@ -175,7 +179,9 @@ class ClampForceRatio:
 
     @property
     def freedom(self) -> arb:
-        """The angle in degrees between its ends, negative where no ratio is in it."""
+        """The width in degrees of the interval, its ends taken as angles; negative where the interval is
+        empty.
+        """
         low, high = self.angles
         return (high - low) * 180 / arb.pi()
 
@@ -188,9 +194,10 @@ class ClampForceRatio:
 
 
 def find_ratio(one: ClampPush, other: ClampPush) -> ClampForceRatio | None:
-    """Return the interval of force ratios in which all locators are pressed by two clamps.
+    """Return the interval of f2/f1, the second clamp's force over the first's, in which all locators are
+    pressed.
 
-    It may be empty (``freedom`` negative). Returns None where it is uncertain whether a reaction counts as 0.
+    It may be empty (negative ``freedom``). Returns None where it is uncertain whether a reaction counts as 0.
     """
     low, high = arb(0), None
     for first, second in zip(one.reactions, other.reactions, strict=True):
@@ -207,19 +214,22 @@ def find_ratio(one: ClampPush, other: ClampPush) -> ClampForceRatio | None:
 
 
 def round_tiny_reaction_to_zero(reaction: arb) -> arb | None:
-    """Return 0 for a reaction smaller than ``NO_REACTION`` in size, else the
-    reaction; None where that is uncertain.
+    """Return 0 for a reaction smaller in size than ``NO_REACTION``, else the reaction itself.
+
+    Returns None where the precision does not decide between the two.
     """
     size = abs(reaction)
     return arb(0) if size < NO_REACTION else reaction if size > NO_REACTION else None
 
 
 def compute_closure_margin(one: ClampPush, other: ClampPush) -> arb:
-    """Return the closure margin: the largest least entry of null vectors of all five wrenches that sum to 1.
+    """Return the closure margin: over all null vectors of the five wrenches with sum 1, the largest least
+    entry.
 
-    It is 0 where the wrenches do not close. Null vectors are (1 - s) (a1, 1, 0) + s (a2, 0, 1), scaled. Over
-    0 <= s <= 1 every entry is linear before scaling, so the least entry is greatest where two entries are
-    equal. Two entries whose difference may be constant are skipped, because another two then decide.
+    It is 0 where the wrenches do not close. With a_i the locator forces ``taken`` of each clamp, the null
+    vectors are (1 - s) (a_1, 1, 0) + s (a_2, 0, 1), scaled to sum 1. Before scaling every entry is linear in
+    s, 0 <= s <= 1, so the least entry is greatest where two entries are equal. Pairs of entries whose
+    difference may be constant are skipped, because another pair then decides.
     """
     ends = list(zip((*one.taken, arb(1), arb(0)), (*other.taken, arb(0), arb(1)), strict=True))
     best = arb(0)
@@ -247,7 +257,8 @@ class SeatBalance:
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
     seat : the locators; the ends of a wall's contact count as two.
     pushes : both clamps.
-    known_ratio : the interval of the clamps' force ratio; None where it is uncertain whether a reaction counts as 0.
+    known_ratio : the interval of the clamps' force ratio; None where it is uncertain whether a reaction
+        counts as 0.
     """
 
     points: Sequence[Point]
@@ -305,8 +316,8 @@ class SeatBalance:
             )
 
     def judge_closure(self) -> Iterator[Finding]:
-        """Yield a finding where at no ratio of the clamps' forces all locators are
-        pressed, or where that is uncertain.
+        """Yield a finding where no ratio of the clamps' forces presses all locators, or where it is uncertain
+        whether any does.
         """
         if self.known_ratio is None:
             yield Finding(False, "a locator's force is exactly at the edge of what counts as none")
@@ -350,20 +361,24 @@ class SeatBalance:
 
     @cached_property
     def inverse(self) -> list[list[arb]] | None:
-        """The inverse (3 x 3) of the rows (n, q x n) of the locators; None where it may be singular."""
+        """The inverse (3, 3) of the matrix with rows (n, q x n), one for each locator; None where it may be
+        singular.
+        """
         return invert_matrix([list(wrench) for wrench in self.seat.wrenches])
 
     @property
     def responses(self) -> list[list[arb]]:
-        """The force of each of the five pegs per unit of load: one row each for
-        g_x, g_y and the moment; 0 for clamps.
+        """Three rows: the force of each of the five pegs per unit of g_x, of g_y and of the moment of a load.
+
+        The forces of the two clamps are 0.
         """
         return [[*row, arb(0), arb(0)] for row in self.inverse or ()]
 
     def judge_numbers(self, pair: ClampPair, names: Sequence[str]) -> Iterator[Finding]:
-        """Yield a finding for each reaction, and each end of the ratio's interval, that differs in the file.
+        """Yield a finding for each reaction and each end of the force ratio's interval that differs from the
+        file.
 
-        ``names`` are those of the pegs.
+        ``pair`` holds the file's numbers, ``names`` the names of the pegs.
         """
         part = bound_relative_error(self.forces)
         for name, said, derived in zip(names, pair.reactions, self.reactions, strict=True):

@@ -76,13 +76,14 @@ BESIDE = 1e-3
 
 @frozen(eq=False)
 class BoltHole:
-    """Where a clamp may be bolted.
+    """A hole in which a clamp may be bolted.
 
     Parameters
     ----------
-    column, row : of the hole; the one along its line is None for a clamp that is its tip alone.
-    place, stroke : of the hole and to the tip, in mm.
-    sure : whether it certainly may be bolted there.
+    column, row : of the hole; for a clamp that is its tip alone, the number along the clamp's line is None.
+    place : of the hole on the plate, in mm.
+    stroke : distance in mm from the hole to the tip.
+    sure : whether the clamp certainly may be bolted there.
     """
 
     column: int | None
@@ -98,9 +99,11 @@ class SeatClamp:
 
     Parameters
     ----------
-    direction, line, face : in which it pushes, on which row or column, on what.
-    tip : on the plate, in mm.
-    push : what it does.
+    direction : in which it pushes, such as "-x".
+    line : number of the row or column along which it moves.
+    face : number of the face that it pushes on.
+    tip : centre of its tip on the plate, in mm.
+    push : how the locators react to it.
     holes : where it may be bolted.
     sure : whether it certainly keeps all rules of its own.
     """
@@ -131,11 +134,13 @@ class SeatOnPlate:
 
     Parameters
     ----------
-    query, hardware, outline : what is asked, of what toolkit, and what clamps meet of the workpiece.
+    query : what is asked.
+    hardware : the rules of its toolkit.
+    outline : what clamps touch of the workpiece.
     pegs : those in holes that stand still: three, or one beside a wall.
     locators : their contacts by name.
-    pose : the solution, in which the first travel is 0.
-    seat : their wrenches, a wall's with them.
+    pose : the proven pose; its first travel is 0.
+    seat : wrenches of the locators, and of the ends of a wall's contact.
     """
 
     query: Query
@@ -177,8 +182,9 @@ class SeatOnPlate:
         return self.hardware.tips[direction].peg_radius
 
     def list_pairs(self, directions: Sequence[str]) -> Iterator[SeatPair]:
-        """Yield the pairs of clamps in two directions that hold the part at
-        this seat, uncertain pairs included.
+        """Yield each pair of clamps, one in each of two directions, that holds the part at this seat.
+
+        Pairs of which that is uncertain are included.
         """
         one, other = directions
         found = {direction: self.list_clamps(direction) for direction in dict.fromkeys(directions)}
@@ -197,10 +203,9 @@ class SeatOnPlate:
                 yield SeatPair(freedom, margin, sure and ratio is not None)
 
     def list_clamps(self, direction: str) -> list[SeatClamp]:
-        """Return all clamps that may push in a direction and do not hold the
-        part alone, uncertain ones included.
+        """Return all clamps that may push in a direction here; clamps that hold the part alone are left out.
 
-        They are in the order of faces, then of lines.
+        Uncertain ones are included. They are sorted by face, then by line.
         """
         found: list[SeatClamp] = []
         avoided = find_avoided_faces(self.query) | find_faces_without_band(self.query.workpiece)
@@ -215,10 +220,10 @@ class SeatOnPlate:
         return found
 
     def list_lines(self, side: Side, direction: str) -> list[int]:
-        """Return the numbers of the rows (clamps along x) or columns (along y)
-        on which a tip may touch a side.
+        """Return the numbers of the rows (for clamps along x) or columns (along y) on which a clamp's tip may
+        touch a side.
 
-        Only lines that fit on the plate together with the seat's pegs are returned.
+        A line must fit on the plate together with the seat's pegs.
         """
         upright = direction.endswith("y")
         axis = self.compute_axis(upright)
@@ -236,21 +241,25 @@ class SeatOnPlate:
         return [line for line in range(low, high + 1) if self.hardware.fits(noun, [*numbers, line])]
 
     def compute_axis(self, upright: bool) -> Point:
-        """Return the unit vector in the part's frame across the lines: the plate's x
-        if ``upright`` (columns), else its y.
+        """Return a unit vector in the part's frame: the plate's x axis if ``upright``, else the plate's y
+        axis.
+
+        It is square to the lines: columns if ``upright``, else rows.
         """
         way = (1.0, 0.0) if upright else (0.0, 1.0)
         return turn_vector(make_exact_point(*way), self.pose.cosine, -self.pose.sine)
 
     def shift(self, upright: bool) -> arb:
-        """Return the distance in mm, across the lines, of the part's origin
-        from column 0 (``upright``) or row 0.
+        """Return the plate coordinate in mm of the part's origin: x from column 0 if ``upright``, else y from
+        row 0.
         """
         x, y = self.lattice.offset
         return self.pose.x - x if upright else self.pose.y - y
 
     def list_clamps_on_line(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
-        """Yield the clamps on a row or column that touch a side and do not certainly break a rule."""
+        """Yield the clamps on a row or column that touch a side; those that certainly break a rule are left
+        out.
+        """
         upright, radius = direction.endswith("y"), arb(self.find_tip_radius(direction))
         if isinstance(side, ArcSide) and not side.compute_offset_radius(radius) > 0:
             return
@@ -269,8 +278,8 @@ class SeatOnPlate:
                 yield clamp
 
     def make_clamp(self, contact: BallContact, face: int, line: int, direction: str) -> SeatClamp | None:
-        """Return the clamp whose tip is at a contact; None where it certainly breaks a rule or has no
-        hole.
+        """Return the clamp whose tip is at a contact; None where it certainly breaks a rule or there is no
+        hole for it.
         """
         margin = self.query.contact_margin
         touches = decide_verdict(judge_touching("a clamp", contact, face, self.pose, self.outline, margin))
@@ -295,10 +304,9 @@ class SeatOnPlate:
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 
     def is_passed(self, tip: BallContact, hole: BallContact) -> bool | None:
-        """Return whether the program's tools keep clear of a clamp body from its tip to
-        a hole; None where that is uncertain.
+        """Return whether the program's tools keep clear of a clamp body that reaches from its tip to a hole.
 
-        Returns True where the query has no program to check.
+        True where the query has no program to check; None where it is uncertain.
         """
         if self.query.passed is None:
             return True
@@ -316,10 +324,10 @@ class SeatOnPlate:
         return True if near.low > program.clearance + IN_DOUBT else None
 
     def list_bolt_holes(self, contact: BallContact, line: int, direction: str) -> Iterator[BoltHole]:
-        """Yield the holes in which a clamp with its tip at a contact may be
-        bolted, regardless of the other clamp.
+        """Yield the holes in which a clamp with its tip at a contact may be bolted, regardless of the other
+        clamp.
 
-        A clamp without a stroke yields one entry, its tip.
+        For a clamp without a stroke, which is its tip alone, there is one entry: the tip.
         """
         upright, rules = direction.endswith("y"), self.hardware.stroke
         if rules.span is None:
@@ -345,8 +353,8 @@ class SeatOnPlate:
     def list_hole_choices(
         self, one: SeatClamp, other: SeatClamp
     ) -> Iterator[tuple[BoltHole, BoltHole, bool]]:
-        """Yield (hole of one, hole of the other, certain) for each choice in which two
-        clamps fit the plate and keep clear.
+        """Yield (hole of ``one``, hole of ``other``, is certain) for each choice in which both clamps fit on
+        the plate and keep clear of each other.
         """
         apart = arb(self.find_tip_radius(one.direction)) + self.find_tip_radius(other.direction) - HAIR
         for first, second in product(one.holes, other.holes):
@@ -368,10 +376,10 @@ class SeatOnPlate:
         pose: BallPose,
         balance: SeatBalance,
     ) -> Iterator[Finding]:
-        """Yield a finding where the clamps are not bolted with the least total
-        travel, or another pair is better.
+        """Yield findings against the fixture's pair of clamps.
 
-        Also yields one where the number of pairs that the fixture stands for is wrong.
+        Three faults: the clamps are not bolted with the least total travel; another pair of the seat is
+        better; the stated number of pairs of the seat is wrong.
         """
         if self.hardware.stroke.span is not None:
             yield from self.judge_strokes(fixture, contacts, pose)
@@ -448,9 +456,7 @@ def count_pairs_at_seat(
 
 
 def decide_verdict(findings: Iterable[Finding]) -> bool | None:
-    """Return True without findings, False if one is definite (a rule is
-    broken), None if all are only uncertain.
-    """
+    """Return True if there are no findings, False if any finding is definite, None if all are uncertain."""
     doubt = False
     for finding in findings:
         if finding.definite:

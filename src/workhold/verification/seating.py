@@ -1,18 +1,22 @@
 """Proof of the seating that a result states for a fixture, from the outline, the pegs and its numbers alone.
 
-Of a seat its pose, difference and contacts are given. Stated contacts are derived anew from the outline. Each
-must touch to ``AGREEMENT``, checked in balls, and no peg may be in the part. Forces h >= 0 along the normals
-must balance on the part, while those of the pegs that move add up to one along their way. So a stated seat or
-pass that is none is refuted. That none is missing cannot be seen from a file.
+For each seat (a pose in which the part can come to rest on the pegs) the file gives the pose, the difference
+of travel and the contacts. The contacts are derived anew from the outline: each must touch to ``AGREEMENT``
+(in ball arithmetic), and no peg may be in the part. Forces h >= 0 along the normals must balance on the part,
+while those of the pegs that move add up to one along their way. So a stated seat or pass that is no seat or
+pass is refuted. A file does not show whether a seat is missing.
 
-The stop is where what moves comes to rest without the part. Doubles suffice to ask whether pegs are clear of
-the part, and whether it covers the same place.
+The stop is where the moving carrier comes to rest without the part. Doubles are exact enough to test whether
+pegs are clear of the part, and whether the part covers the same place.
 
 Glossary
 --------
 local : a place in the part's own frame, as drawn, also where the part is turned over (x to -x).
-wrench : force on the part along x and y, moment about its centre in parts of its arm, and share of the pegs
+wrench : force on the part along x and y, moment about its centre divided by its arm, and share of the pegs
     that move, along their way.
+cage : the poses from which the part still settles in its seat.
+pass : the pose at which the part first gets out of the cage as the jaws open.
+placing : how far from its seat the part may be put in.
 """
 
 from __future__ import annotations
@@ -61,12 +65,12 @@ Array = NDArray[np.float64]
 
 @frozen
 class PartPlacement:
-    """How a part lies.
+    """Where a part lies.
 
     Parameters
     ----------
     theta_deg, x, y : its pose, in degrees and mm.
-    mirrored : whether it is turned over first, x to -x in its own frame.
+    mirrored : whether it is turned over before that, x to -x in its own frame.
     """
 
     theta_deg: float
@@ -80,14 +84,15 @@ class PartPlacement:
         return cls(pose["theta_deg"], pose["x"], pose["y"], mirrored)
 
     def turn_vector(self, way: Point) -> Point:
-        """Return a vector of the part's frame in the toolkit's frame, in balls;
-        a mirrored part is flipped first.
+        """Return a vector of the part's frame in the toolkit's frame, in ball arithmetic.
+
+        Of a mirrored part x becomes -x before the turn.
         """
         sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
         return turn_vector((-way[0], way[1]) if self.mirrored else way, cosine, sine)
 
     def map_vector_to_part(self, way: Point) -> Point:
-        """Return a vector of the toolkit's frame in the part's frame, in balls."""
+        """Return a vector of the toolkit's frame in the part's frame, in ball arithmetic."""
         sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
         x, y = turn_vector(way, cosine, -sine)
         return (-x, y) if self.mirrored else (x, y)
@@ -107,15 +112,15 @@ class PartPlacement:
 
 @frozen
 class StatedContact:
-    """A contact of a seat or a pass.
+    """A contact of a seat or a pass, as the file states it.
 
     Parameters
     ----------
-    peg : its number.
-    at, normal : in the toolkit's frame, in mm from its origin, where the part is touched, and the outward
-        unit normal there.
-    off : how far in mm the peg is from touching, at most.
-    is_inside : whether what is touched is the inside of a face, or a corner.
+    peg : its index among the fixture's pegs.
+    at : where the part is touched, in the toolkit's frame in mm.
+    normal : the outward unit normal of the part there, in the toolkit's frame.
+    off : largest possible distance in mm of the peg from touching.
+    is_inside : whether the point touched is inside a face, between its ends, or is a corner.
     """
 
     peg: int
@@ -128,9 +133,10 @@ class StatedContact:
 def make_wall_contact(
     outline: BallOutline, contact: Mapping[str, int], place: PartPlacement
 ) -> StatedContact:
-    """Return a stated contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc.
+    """Return a stated contact with a wall along x at y = 0: of a corner, or of the lowest point of a convex
+    arc.
 
-    Where it names neither, ``off`` is inf.
+    Where ``contact`` names neither a corner nor such an arc, ``off`` is inf.
     """
     number, down, is_corner = contact["peg"], make_exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
@@ -154,10 +160,10 @@ def make_peg_contact(
     center: tuple[float, float],
     radius: float,
 ) -> StatedContact:
-    """Return a stated contact of a face or a corner with a round peg; centre and
-    radius in mm in the toolkit's frame.
+    """Return a stated contact of a face or a corner with a round peg.
 
-    Where it names no face of the outline, ``off`` is inf.
+    ``center`` and ``radius`` are the peg's in the toolkit's frame, in mm. Where ``contact`` names no face of
+    the outline, ``off`` is inf.
     """
     number, (x, y), face = contact["peg"], center, contact.get("face")
     local = place.map_vector_to_part(make_exact_point(x - place.x, y - place.y))
@@ -179,11 +185,11 @@ def make_peg_contact(
 def find_touching_faults(
     contacts: Sequence[StatedContact], on_wall: Sequence[int], wall: str
 ) -> Iterator[str]:
-    """Yield a verb phrase ("has a contact twice") for each fault of stated contacts.
+    """Yield a verb phrase (such as "has a contact twice") for each fault of stated contacts.
 
-    Faults are a contact that does not touch, one stated twice, and ends of the wall that do not start with
-    the first. ``on_wall`` holds the numbers of the pegs that are ends of the contact with the wall named
-    ``wall``.
+    Faults are a contact that does not touch, a contact stated twice, and contacts with a wall that do not
+    start with its first end. ``on_wall`` holds the indices of the pegs that are ends of the contact with the
+    wall, and ``wall`` is the wall's name.
     """
     ends = [one.peg for one in contacts if one.peg in on_wall]
     if ends != list(on_wall[: len(ends)]):
@@ -198,10 +204,10 @@ def find_touching_faults(
 
 
 def find_stop(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float | None:
-    """Return the travel in mm at which the moving carrier stops without the
-    part; None where nothing stops it.
+    """Return the travel in mm at which the moving carrier comes to rest when there is no part; None if
+    nothing stops it.
 
-    ``separation`` is the travel in mm at which the pegs have their places.
+    ``separation`` is the travel in mm at which the pegs have their written places.
     """
     moved = [peg for peg in pegs if toolkit.find_carrier(peg.carrier).travel is not None]
     still = [peg for peg in pegs if peg not in moved and toolkit.find_carrier(peg.carrier).contact.is_placed]
@@ -230,10 +236,10 @@ PRESSES = 1e-9
 
 
 def can_balance(wrenches: Array, spare: float = 1e-9) -> bool:
-    """Return whether factors of 0 or more make the wrenches (4, K) sum to (0, 0, 0, 1), to within ``spare``.
+    """Return whether wrenches times factors of 0 or more can sum to (0, 0, 0, 1), to within ``spare``.
 
-    The fourth row is the share of the moving pegs. If some factors do, then those of at most four independent
-    wrenches do (Caratheodory's theorem).
+    ``wrenches`` (4, K) has a column for each; the fourth row is the share of the moving pegs. By
+    Caratheodory's theorem it is enough to try sets of at most four independent wrenches.
     """
     target = np.array([0.0, 0.0, 0.0, 1.0])
     if not np.isfinite(wrenches).all():
@@ -256,15 +262,15 @@ POINTS, CORNERS = 8, 64
 
 @frozen(eq=False)
 class FloatOutline:
-    """The segments of a part.
+    """The segments of a part in doubles: L lines, A arcs.
 
     Parameters
     ----------
-    lines : (L, 4) start and end.
-    arcs : (A, 5) centre, radius, direction of the middle and half the sweep.
-    points : (M, 2) on all of them.
+    lines : (L, 4) start x, y and end x, y.
+    arcs : (A, 5) centre x, y, radius, direction of the middle and half the sweep, in radians.
+    points : (M, 2) points sampled on all segments.
     edges : (E, 4) start and end of the edges of a polygon close to the outline.
-    arm : largest distance in mm of a point of the outline from the centre.
+    arm : largest distance in mm of a point of the outline from the part's centre.
     """
 
     lines: Array
@@ -332,8 +338,9 @@ class FloatOutline:
         return found
 
     def is_free(self, pegs: Array, radii: Array, place: PartPlacement) -> bool:
-        """Return whether no disc with a centre (N, 2) in the toolkit's frame and a
-        radius (N,) in mm overlaps the placed part.
+        """Return whether no peg overlaps the placed part.
+
+        ``pegs`` (N, 2) are the centres in the toolkit's frame and ``radii`` (N,) the radii, in mm.
         """
         points = place.map_points_to_part(pegs)
         return bool((self.measure_distances(points) >= radii).all() and not self.contains(points).any())
@@ -348,8 +355,8 @@ class FloatOutline:
         return np.asarray((crosses & right).sum(axis=1) % 2 == 1)
 
     def measure_farthest(self, one: PartPlacement, other: PartPlacement) -> float:
-        """Return the largest distance in mm of the outline placed as ``one``
-        from the outline placed as ``other``.
+        """Return the largest distance in mm of a point of the outline placed as ``one`` from the outline
+        placed as ``other``.
         """
         return float(self.measure_distances(other.map_points_to_part(one.place_points(self.points))).max())
 
@@ -376,17 +383,18 @@ class SeatingJudge:
 
     @cached_property
     def outline(self) -> BallOutline:
-        """The part in balls."""
+        """The outline of the part in ball arithmetic."""
         return BallOutline.from_workpiece(self.query.workpiece)
 
     @cached_property
     def rough(self) -> FloatOutline:
-        """The part in doubles."""
+        """The outline of the part in doubles."""
         return FloatOutline.from_segments(self.outline.segments, self.query.workpiece)
 
     def find_fault(self, fixture: Fixture) -> str:
-        """Return the first fault of a fixture's stated seating, a sentence without
-        full stop; "" for none or no seating.
+        """Return the first fault of a fixture's stated seating as a sentence without full stop.
+
+        Returns "" where there is no fault, or no seating is stated.
         """
         claim: SeatingClaim | None = fixture.seating
         if claim is None:
@@ -465,8 +473,9 @@ class StatedSeating:
         yield from self.pass_faults(mine)
 
     def find_seat_faults(self, seat: Mapping[str, Any], own: Mapping[str, Any]) -> Iterator[str]:
-        """Yield a verb phrase ("lies beyond the stop") for each fault of a seat;
-        ``own`` is the fixture's own seat.
+        """Yield a verb phrase (such as "lies beyond the stop") for each fault of a seat.
+
+        ``own`` is the seat in which the part has its pose in the fixture.
         """
         apart = seat["jaw_separation"] - own["jaw_separation"]
         if abs(apart - seat["difference"]) > ROUNDED:
@@ -493,8 +502,9 @@ class StatedSeating:
             yield "is no equilibrium of its contacts"
 
     def is_own(self, contact: Mapping[str, int]) -> bool:
-        """Return whether a contact of the fixture's own seat is one of the fixture: on
-        the peg's face, or at its end on a wall.
+        """Return whether a contact of the fixture's own seat is also a contact of the fixture.
+
+        It is one if it is on the face that the peg touches, or on a wall at the peg's place.
         """
         peg = self.fixture.pegs[contact["peg"]]
         if contact["peg"] not in self.on_wall:
@@ -509,14 +519,14 @@ class StatedSeating:
 
     @cached_property
     def ends(self) -> list[Point]:
-        """For each peg of the fixture its centre, and for each end on a wall the point
-        that touches, in the toolkit's frame.
+        """For each peg its centre, or for an end of the contact with a wall the point that touches, in the
+        toolkit's frame.
         """
         contacts = self.judge.hardware.make_contacts(self.fixture, self.judge.outline)
         return [contact.place(BallPose.from_written(self.fixture.pose)) for contact in contacts]
 
     def name_seat(self, seat: Mapping[str, Any]) -> str:
-        """Return the kind that the contacts of a seat make it: "curved", "pocket", "corner" or "fixture"."""
+        """Return the kind of a seat as its contacts imply it: "curved", "pocket", "corner" or "fixture"."""
         contacts = seat["contacts"]
         if len(contacts) < 4:
             return "curved"
@@ -554,10 +564,10 @@ class StatedSeating:
             yield "stop is not where what moves is stopped without the part"
 
     def counts_as_wrong(self, place: int, seat: Mapping[str, Any]) -> bool:
-        """Return whether a seat (at index ``place``) counts as wrong: the part does not
-        cover its place in the fixture there.
+        """Return whether the seat with index ``place`` counts as wrong: there the part does not cover its
+        place in the fixture.
 
-        Seats beyond the opening that the query asks about do not count.
+        Seats beyond the opening that the query asks about, or beyond ``seating.most``, do not count.
         """
         seating, query = self.claim.seating, self.judge.query
         if seating.seats[place].is_own or seat["same_place"]:
@@ -569,9 +579,8 @@ class StatedSeating:
     def pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
         """Yield one clause for each fault of the stated pass, cage and placing.
 
-        The cage holds the poses from which the part still settles in its seat, the pass is the pose at which
-        it first gets out of the cage as the jaws open, and placing is how far off its place the part may be
-        put in.
+        Cage: the poses from which the part still settles in its seat. Pass: the pose at which the part first
+        gets out of the cage as the jaws open. Placing: how far from its seat the part may be put in.
         """
         fields = self.fields
         opening, top, cage, placing = (fields[key] for key in ("capture_opening", "pass", "cage", "placing"))
@@ -609,8 +618,8 @@ class StatedSeating:
                 yield f"the cage leaves out the seat or its pass in {name}"
 
     def find_friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
-        """Yield one clause where the part can stick short of its seat below the
-        stated friction, or cannot just above it.
+        """Yield one clause where the part can stick before its seat at less than the stated friction, or
+        cannot just above it.
         """
         place = PartPlacement.from_pose(own["pose"])
         contacts = [self.make_contact(contact, place, 0.0) for contact in own["contacts"]]
@@ -621,7 +630,7 @@ class StatedSeating:
             yield "the part cannot stick at the sticking friction"
 
     def can_stick(self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float) -> bool:
-        """Return whether some three of four contacts can balance within their friction cones.
+        """Return whether some three of the four contacts can balance with forces inside their friction cones.
 
         ``friction`` is the coefficient of friction.
         """
@@ -638,8 +647,10 @@ class StatedSeating:
         return x, y
 
     def find_peg_center(self, number: int, apart: float) -> tuple[float, float]:
-        """Return the centre of a peg once its travel has grown by ``apart`` mm
-        from the fixture's; fixed pegs stay.
+        """Return the centre of a peg, in the toolkit's frame in mm, with the travel ``apart`` mm larger than
+        in the fixture.
+
+        Fixed pegs do not move.
         """
         peg, by = self.fixture.pegs[number], apart * self.moving[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
@@ -657,16 +668,17 @@ class StatedSeating:
                 yield f"has the part in the {wall.noun}"
 
     def covers_own_place(self, place: PartPlacement) -> bool | None:
-        """Return whether the placed part covers the same area as in the fixture; None
-        where it is too near the limit to say.
+        """Return whether the part placed at ``place`` covers the same area as in the fixture; None where
+        rounding decides.
         """
         away = self.judge.rough.measure_farthest(place, self.lying)
         is_near = SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
         return None if is_near else away < SAME_PLACE
 
     def make_contact(self, contact: Mapping[str, int], place: PartPlacement, apart: float) -> StatedContact:
-        """Return a contact of the placed part in balls, the travel grown by ``apart`` mm from the
-        fixture's.
+        """Return a stated contact of the placed part in ball arithmetic.
+
+        The travel is ``apart`` mm larger than in the fixture.
         """
         number = contact["peg"]
         if number in self.on_wall:
@@ -679,11 +691,11 @@ class StatedSeating:
     def make_wrenches(
         self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float = 0.0
     ) -> Array:
-        """Return the wrenches (4, K) of unit normal forces, each with ``friction``
-        times that force along the tangent.
+        """Return the wrenches (4, K) of K contacts, each of a unit normal force and ``friction`` times it
+        along the tangent.
 
-        Rows: force x and y, moment about the part's centre over its arm, and share of the moving pegs along
-        their way.
+        Rows: force x and y, moment about the part's centre divided by the part's arm, and share of the moving
+        pegs along their way.
         """
         cx, cy = self.locate_center(place)
         columns = []
@@ -699,7 +711,9 @@ class StatedSeating:
     def are_forces_balanced(
         self, contacts: Sequence[StatedContact], place: PartPlacement, forces: Sequence[float]
     ) -> bool:
-        """Return whether stated forces balance and those of the moving pegs add up to 1 along their way."""
+        """Return whether the stated forces are in balance, none pulls, and those of the moving pegs sum to 1
+        along their way.
+        """
         left = self.make_wrenches(contacts, place) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
 

@@ -1,10 +1,11 @@
-"""Whether forces stand on the stretches of a program's moves on which its tools meet the stock.
+"""Whether a program's forces act on just those stretches of its moves on which its tools meet the stock.
 
-A file states the stretches. Along them the tool's disc has to meet the stock all the way, and beside them
-nowhere. Moves are walked between bounds. On a piece of a move that lies within its sagitta of its chord, the
-distance from a straight edge of the border is at most that of the chord's ends and at least that of the
-chord; from a bent edge it is that of the middle, give or take half the way. Pieces that say too little are
-halved, until what is in doubt is within ``OFF`` of touching.
+A file states the stretches. Along each the tool's disc must meet the stock all the way, and beside them
+nowhere. Moves are cut into pieces, and for each piece bounds of the distance from the stock's border are
+computed. A piece lies within its sagitta of its chord. Its distance from a straight edge of the border is at
+most that of the chord's ends and at least that of the chord. Its distance from an arc of the border is that
+of the piece's middle, plus or minus half the piece's length. Pieces for which the bounds decide nothing are
+halved, until all that is undecided is within ``OFF`` of touching.
 """
 
 from __future__ import annotations
@@ -71,8 +72,10 @@ class BorderEdge:
         return np.asarray(np.where(np.abs(way) <= 2.0 * np.arctan(abs(self.bulge)), on_rim, ends))
 
     def measure_angle(self, points: Array) -> Array:
-        """Return the angles (N,) in radians of points (N, 2) about the centre, from
-        the middle of the arc, not wrapped.
+        """Return the angles (N,) in radians, seen from the arc's centre, of points (N, 2) from the middle of
+        the arc.
+
+        They are not wrapped to one turn.
         """
         chord = self.end - self.start
         # The middle of the arc is on the right of its chord where it runs counter-clockwise.
@@ -100,8 +103,8 @@ class StockGround:
 
     @classmethod
     def from_loops(cls, loops: Sequence[Array], is_block: bool) -> StockGround:
-        """Return the outline of outer loops (N, 3) with rows x, y, bulge, or
-        with ``is_block`` their bounding box.
+        """Return the outline of outer loops (N, 3) with rows x, y, bulge; with ``is_block`` their bounding
+        box instead.
         """
         found = []
         for loop in loops:
@@ -127,13 +130,13 @@ class StockGround:
     def bound_distances(
         self, one: Array, other: Array, middle: Array, half: Array, sagitta: Array
     ) -> tuple[Array, Array]:
-        """Return a lower and an upper bound (N,) in mm of the distance from the border,
-        for every point of N pieces of a path.
+        """Return (lower, upper) bounds (N,) in mm of the distance from the border of every point of each of N
+        path pieces.
 
         Parameters
         ----------
-        one, other, middle : (N, 2) both ends and the middle of each.
-        half, sagitta : (N,) half the way, and how far it leaves its chord.
+        one, other, middle : (N, 2) both ends and the middle of each piece.
+        half, sagitta : (N,) half the length of each piece, and its largest distance from its chord.
         """
         low, high = np.full(len(half), inf), np.full(len(half), inf)
         for loop in self.loops:
@@ -182,10 +185,11 @@ def find_stock_faults(query: Query) -> Iterator[str]:
 
 
 def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, float, float, bool]]:
-    """Yield (move, first share, last share, meets) for the ranges of the moves ``acts`` to be checked.
+    """Yield (move, first share, last share, meets) for the ranges of the moves ``acts`` that are to be
+    checked.
 
-    ``meets`` is True where the file says that the tool meets the stock, False for the ranges between at whose
-    heights it could.
+    ``meets`` is True where the file says that the tool meets the stock. It is False for the other ranges in
+    which the tool's height would allow that.
     """
     forces, stock, moves = program.forces, program.stock, program.moves
     assert forces is not None and stock is not None
@@ -215,11 +219,11 @@ def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, 
 def find_wrong_piece(
     walk: ToolWalk, ground: StockGround, move: IntArray, first: Array, last: Array, within: Mask
 ) -> int:
-    """Return the number of a move that meets the stock elsewhere than
-    ``within`` says; -1 where there is none.
+    """Return the number of a move that contradicts ``within``; -1 where none does.
 
-    The ranges (N,) run from share ``first`` to share ``last`` of each ``move``. Ranges too short to halve
-    count as right, ranges still undecided after ``MOST_HALVINGS`` halvings as wrong.
+    Each of the N ranges runs from share ``first`` to share ``last`` of ``move``. ``within`` (N,) says whether
+    the tool should meet the stock all along the range, or nowhere in it. Ranges too short to halve count as
+    right, ranges still undecided after ``MOST_HALVINGS`` halvings as wrong.
     """
     program = walk.program
     stock, moves = program.stock, program.moves

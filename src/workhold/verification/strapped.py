@@ -1,4 +1,5 @@
-"""Seats under straps, derived anew: poses in balls, the push by hand, where straps stand, and the force they need.
+"""Seats under straps, derived anew: poses in balls, the push by hand, where straps stand, and the force they
+need.
 
 A seat is proven from its holes and faces alone, in ball arithmetic. Straps and push are derived from the loops of the
 part, and the force from another method (``verification.jaw_forces``) with the foot's moments from Green's theorem.
@@ -66,7 +67,7 @@ KERN_SLACK = 1e-6
 
 @frozen(eq=False)
 class StrapJudge:
-    """Derives the fixtures of a query whose toolkit has straps."""
+    """Judge of the fixtures of a query whose toolkit has straps: derives them anew."""
 
     query: Query
     seen: dict[tuple[object, ...], int] = field(factory=dict, init=False)
@@ -93,7 +94,7 @@ class StrapJudge:
 
     @cached_property
     def request(self) -> SupportRequest:
-        """The faces that tips and plate may touch."""
+        """The faces that the straps' tips and the plate may touch."""
         known, query = self.query.part_height, self.query
         return evolve(
             SupportRequest.from_workpiece(
@@ -106,7 +107,11 @@ class StrapJudge:
         )
 
     def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
-        """What is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
+        """Yield one sentence, without full stop, for each fault of a fixture.
+
+        ``place`` is the fixture's index in the list, from 0. The fixture is stored in ``seen``, so that a
+        later equal one counts as a fault.
+        """
         hold = fixture.hold
         if not isinstance(hold, StrappedHold):
             yield "it is not held by straps"
@@ -147,7 +152,10 @@ class StrapJudge:
             yield from self.find_strap_faults(fixture, hold)
 
     def make_keys(self, fixture: Fixture) -> list[tuple[object, ...]]:
-        """Return the keys of a seat, and after half a turn where that makes no other seat."""
+        """Return the keys of a seat; fixtures with a key in common are the same seat.
+
+        There is a second key, after half a turn, where half a turn leaves the toolkit as it is.
+        """
         plate, pose = self.query.toolkit.plates[0], fixture.pose
         column, row = (min(getattr(peg, name) for peg in fixture.pegs) for name in ("column", "row"))
         holes = sorted((peg.column - column, peg.row - row) for peg in fixture.pegs)
@@ -164,7 +172,9 @@ class StrapJudge:
         return list(out)
 
     def find_seat_faults(self, fixture: Fixture) -> Iterator[str]:
-        """Yield the faults of three locators that should touch their faces inside and fix the pose."""
+        """Yield the faults of the three locators: each must touch its face between the ends, and all must fix
+        the pose.
+        """
         outline, hardware = self.outline, self.hardware
         contacts = hardware.make_contacts(fixture, outline)
         touching = [
@@ -196,7 +206,9 @@ class StrapJudge:
                     yield f"locator {peg.hole} stands in a keep-out zone"
 
     def tool_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Whether the tools of the program pass locators, straps and supports, by a walk along its moves."""
+        """Yield one sentence for each locator, strap or support to which a tool of the program comes too
+        near.
+        """
         if self.query.passed is None:
             return
         program, height = self.query.passed
@@ -211,7 +223,11 @@ class StrapJudge:
                 )
 
     def list_strap_elements(self, fixture: Fixture, hold: StrappedHold) -> Iterator[HoldingElement]:
-        """Yield bars from the faces they press on, bolts with heels from below, and supports below the part."""
+        """Yield what straps and supports take up, in the part's frame.
+
+        For each strap they are the bar, upward from the face under its tip, and the bolt with its heel; for
+        each support a disc below the part.
+        """
         back, radius = fixture.pose.inverse, self.straps.tip_radius
         plate = self.query.toolkit.plates[0]
         raised = self.raised if self.straps.is_over_supports else 0.0
@@ -231,7 +247,11 @@ class StrapJudge:
             yield HoldingElement(name, name, (x, y), (x, y), self.request.pad_radius, 0.0)
 
     def push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Whether the push by hand is on the outline, near enough to square, and presses all locators."""
+        """Yield the faults of the push by hand.
+
+        It must be at the outline, near enough to square to it, and press the part against all three locators,
+        with the written shares. Yields nothing where no push is written.
+        """
         push = hold.push
         if push is None:
             return
@@ -259,7 +279,9 @@ class StrapJudge:
             yield "the push by hand presses locators otherwise than is written"
 
     def find_strap_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Yield the faults of straps: their places, how they press the part flat, and their written force."""
+        """Yield the faults of the straps: of their places, of how they press the part down, and of their
+        written forces.
+        """
         if not hold.straps:
             return
         if len(hold.straps) != self.straps.count:
@@ -291,7 +313,9 @@ class StrapJudge:
         yield from self.find_force_faults(fixture, hold, foot)
 
     def support_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Whether the part lies on three supports that may stand there, with each tip over one of them."""
+        """Yield the faults of the three supports: where they stand, and whether each strap's tip is over one
+        of them.
+        """
         plate, holes = self.query.toolkit.plates[0], hold.supports
         if len(set(holes)) != SUPPORTS or len(holes) != SUPPORTS:
             yield "it does not lie on supports in three holes"
@@ -321,7 +345,11 @@ class StrapJudge:
             yield "the straps alone tip the part over its supports"
 
     def place_faults(self, fixture: Fixture, strap: Strap) -> Iterator[str]:
-        """Whether the bolt of a strap stands free in a hole, and its tip on the part's face with the foot below."""
+        """Yield the faults of a strap's place, as words that follow "strap 1".
+
+        Its bolt must be in a free hole, clear of the part, and its tip on the part's upper face with the foot
+        below it.
+        """
         straps, plate, workpiece = self.straps, self.query.toolkit.plates[0], self.query.workpiece
         bolts, (column, row) = straps.bolts, strap.hole
         if not (0 <= column < (bolts.columns or inf) and 0 <= row < (bolts.rows or inf)):
@@ -368,7 +396,9 @@ class StrapJudge:
         return Foot([[pose.carry(segment) for segment in loop] for loop in some])
 
     def find_force_faults(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> Iterator[str]:
-        """Yield a fault for each load that asks for another force than the written one."""
+        """Yield a fault for each load, and for the program, whose derived force differs from the written
+        force.
+        """
         if len(hold.clamp_needed_each) != len(self.query.loads):
             yield f"{len(hold.clamp_needed_each)} forces are written for {len(self.query.loads)} loads"
             return
@@ -407,7 +437,7 @@ class StrapJudge:
     def make_held_part(
         self, fixture: Fixture, hold: StrappedHold, foot: Foot
     ) -> tuple[HeldBetweenJaws, Array]:
-        """Return the part between plate and tips, and the centre (3,) that moments are taken about."""
+        """Return (part held between plate and tips, centre (3,) that moments are taken about)."""
         centre = np.array([*foot.centre, 0.0])
         below = self.below(hold, foot, centre)
         raised = self.raised if self.straps.is_over_supports else 0.0
@@ -433,11 +463,13 @@ class StrapJudge:
 
     @property
     def raised(self) -> float:
-        """How high in mm supports carry the part above the plate; 0 where nobody says."""
+        """The height in mm of the supports, which carry the part above the plate; 0 where it is not given."""
         return (self.query.toolkit.supports or SupportPads()).height or 0.0
 
     def below(self, hold: StrappedHold, foot: Foot, centre: Array) -> PressingJaw:
-        """What presses upward below the part: the plate on its foot, or three supports, each at a point."""
+        """Return what presses upward below the part: the plate on the foot, or the three supports, each at a
+        point.
+        """
         if not self.straps.is_over_supports:
             return foot.make_pressing_jaw(find_friction_coefficient(self.query.friction, "plate"), centre)
         plate = self.query.toolkit.plates[0]
@@ -448,14 +480,18 @@ class StrapJudge:
         return PressingJaw(compute_wrenches(at, (0.0, 0.0, 1.0)), rubbing, coefficient * np.eye(SUPPORTS))
 
     def compute_weight_wrench(self, foot: Foot, centre: Array) -> Array:
-        """The wrench (6,) of the part's weight, at the middle of its foot."""
+        """Return the wrench (6,) of the part's weight, which acts at the centre of its foot."""
         down = compute_wrenches(np.array([[*foot.centre, 0.0]]) - centre, (0.0, 0.0, -1.0))[0]
         return np.asarray((self.query.weight or 0.0) * down)
 
     def find_needed_force(
         self, held: HeldBetweenJaws, load: Load, pose: Pose, centre: Array, weight: Array
     ) -> float | None:
-        """Return the force of each strap in N that a load asks for; None where none is enough."""
+        """Return the least force in N of each strap that holds a load; None where no force suffices.
+
+        ``centre`` (3,) is the point that moments are taken about, ``weight`` (6,) the wrench of the part's
+        weight.
+        """
         height = self.query.part_height if load.height is None else load.height
         turn, factor = radians(pose.theta_deg), self.query.safety_factor
         low, high = (radians(one) for one in load.directions)
@@ -475,7 +511,7 @@ class StrapJudge:
         return most
 
     def find_order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
-        """A fault for a fixture that what comes first puts before the one before it."""
+        """Yield one sentence for the first fixture that belongs before its predecessor in the list."""
         rows = [classify_hold(one.hold) for one in fixtures if isinstance(one.hold, StrappedHold)]
         for place, (before, after) in enumerate(pairwise(rows), 2):
             if after < before:
@@ -484,7 +520,9 @@ class StrapJudge:
 
 
 def classify_hold(hold: StrappedHold) -> int:
-    """Return the class that orders seats first: held, not looked at, not held, unfit."""
+    """Return the class by which seats are sorted: 0 held, 1 not looked at, 2 not held, 3 unfit for a
+    workshop.
+    """
     if hold.is_unfit:
         return 3
     if not hold.is_looked_at:
@@ -493,15 +531,17 @@ def classify_hold(hold: StrappedHold) -> int:
 
 
 def describe_force(force: float | None) -> str:
+    """Return a force in words, such as "250 N"; for None, words that no force is enough."""
     return "a force that none is enough for" if force is None else f"{force:.6g} N"
 
 
 def is_range(load: Load) -> bool:
+    """Return whether a load has a force with a range of directions."""
     return bool(load.force) and load.directions[1] > load.directions[0]
 
 
 def select_definite(findings: Iterator[Finding]) -> Iterator[str]:
-    """Yield the reasons of the findings that certainly refute."""
+    """Yield the reasons of those findings that are definite."""
     return (one.reason for one in findings if one.definite)
 
 
@@ -514,7 +554,11 @@ def compute_determinant(contacts: Sequence[BallContact], pose: BallPose) -> arb:
 
 
 def locate_contacts(fixture: Fixture, query: Query) -> tuple[list[tuple[float, float]], list[Array]]:
-    """Return where locators touch the part on the plate, and the unit directions in which they push."""
+    """Return (points, directions): where each locator touches the part, and the unit vector in which it
+    pushes the part.
+
+    Both are in the plate's frame, points in mm.
+    """
     faces = {face.number: face.segment for face in query.workpiece.numbered.faces}
     points, inward = list[tuple[float, float]](), list[Array]()
     for peg in fixture.pegs:
@@ -534,7 +578,11 @@ def locate_contacts(fixture: Fixture, query: Query) -> tuple[list[tuple[float, f
 
 
 def measure_slant(segment: Segment, point: tuple[float, float], direction_deg: float) -> float:
-    """Return the angle in degrees from a segment's inward normal at a point to a direction, counter-clockwise."""
+    """Return the angle in degrees, counter-clockwise, from a segment's inward normal at ``point`` to a
+    direction.
+
+    ``direction_deg`` is in degrees from x; the result is at least -180 and below 180.
+    """
     if isinstance(segment, Arc):
         away = np.array([point[0] - segment.center[0], point[1] - segment.center[1]])
         nx, ny = segment.sign * away / np.hypot(*away)
@@ -549,7 +597,7 @@ def measure_distance(point: tuple[float, float], loop: Sequence[Segment]) -> flo
 
 
 def is_inside(point: tuple[float, float], loops: Sequence[Sequence[Segment]]) -> bool:
-    """Whether a point is within an odd number of loops: by the turns of their chords about it."""
+    """Return whether a point is within an odd number of loops; arcs are replaced by 64 chords."""
     x, y = float(point[0]), float(point[1])
     count = 0
     for loop in loops:
@@ -568,5 +616,5 @@ def is_inside(point: tuple[float, float], loops: Sequence[Sequence[Segment]]) ->
 
 
 def get_running_sign(segment: Segment) -> float:
-    """Return 1 or -1: the sense in which a segment's parameter runs along it."""
+    """Return 1 where a segment's parameter grows from its start to its end, -1 where it falls."""
     return segment.sign if isinstance(segment, Arc) else 1.0

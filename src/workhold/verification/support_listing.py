@@ -1,15 +1,16 @@
-"""Whether a list of supports is complete: every three holes tried again, every place of the clamp bounded.
+"""Whether a list of supports is complete: all triples of holes are tried again, and all places of the clamp
+bounded.
 
-How far a point is inside a triangle changes by at most 1 mm for each mm that the point moves, and so does
-the room that the tip has. So the lesser of both, at the middle of a square cell, bounds it over the cell.
-Cells are divided until one has a place for the clamp, or none can have one. Faces are asked by their segments
-how large a disc lies on them.
-
-A hole or a place has a room: by how much, in mm, it keeps all its rules, negative where it breaks one.
+How far a point is inside a triangle changes by at most 1 mm for each mm that the point moves, and so does the
+room of the tip. So the lesser of both at the middle of a square cell bounds it over the whole cell. Cells are
+divided until some cell has a place for the clamp, or no cell can have one. How large a disc fits on a face is
+computed from the face's segments.
 
 Glossary
 --------
-sure, possible : of a hole or a triple, that it keeps its rules by more than rounding, or breaks none by more.
+room : of a hole or a place, the slack in mm of its tightest rule; negative where it breaks a rule.
+sure : of a hole or a triple, that it keeps its rules by more than rounding.
+possible : of a hole or a triple, that it breaks no rule by more than rounding.
 """
 
 from __future__ import annotations
@@ -54,11 +55,13 @@ PROBE = 1e-4
 
 @frozen(eq=False)
 class SupportPlaces:
-    """Where supports and the tip of their clamp may stand.
+    """Rules on where supports and the tip of their clamp may stand.
 
     Parameters
     ----------
-    query, fixture, request : part and toolkit, the planar fixture, and what is asked of supports and clamp.
+    query : part and toolkit.
+    fixture : the planar fixture.
+    request : what is asked of supports and clamp.
     """
 
     query: Query
@@ -83,7 +86,9 @@ class SupportPlaces:
         return float(x), float(y)
 
     def compute_pad_room(self, hole: Hole) -> float:
-        """Return the least slack in mm of a pad's rules in a hole, negative where it breaks one."""
+        """Return by how much in mm a pad in a hole keeps its tightest rule; negative where the pad breaks a
+        rule.
+        """
         asked, point = self.request, self.find_hole_place(hole)
         loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
         room = measure_room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
@@ -115,8 +120,8 @@ class SupportPlaces:
         ]
 
     def compute_tip_room(self, point: tuple[float, float]) -> float:
-        """Return the least slack in mm of the tip's rules at a point of the part's
-        frame, negative where it breaks one.
+        """Return by how much in mm the tip at a point of the part's frame keeps its tightest rule; negative
+        where it breaks one.
         """
         asked, room = self.request, -inf
         for level in self.top_levels:
@@ -139,11 +144,10 @@ class SupportPlaces:
         return room
 
     def classify_hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
-        """Return 0 where the part is under all of the tip, 1 where it is under the
-        tip's middle only, 2 where air is.
+        """Return how far the tip at a point hangs over air: 0 not at all, 1 at its rim only, 2 at its middle.
 
-        Middle and border of the tip may be over air by ``slack`` mm and yet count as over the part. Returns 0
-        where the point is on no upper face.
+        Air nearer than the tip's radius to the middle counts as at the rim; ``slack`` mm are added to that
+        distance. Returns 0 where the point is on no upper face.
         """
         for level in self.top_levels:
             if any(
@@ -155,8 +159,8 @@ class SupportPlaces:
         return 0
 
     def find_travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
-        """Return whether pegs and supports in these holes fit their plates,
-        and the opening in mm of what moves.
+        """Return (fits, opening): whether pegs and supports in these holes fit on their plates, and the
+        opening in mm.
 
         The opening is None where nothing moves, or where no opening avoids the blocked holes.
         """
@@ -223,13 +227,14 @@ class TopLevel:
 
 
 def split_borders(loop: Array) -> Loop:
-    """Return the segments of a loop (N, 3)."""
+    """Return the segments of a closed loop of vertices (N, 3) with rows x, y, bulge."""
     return tuple(make_loop_segments(np.asarray(loop)))
 
 
 def measure_gap(loops: Sequence[Loop], point: tuple[float, float]) -> float:
-    """Return the distance in mm of a point from the region to the left of the loops;
-    negative inside it, inf without loops.
+    """Return the distance in mm of a point from the region to the left of the loops.
+
+    It is negative inside the region, and inf without loops.
     """
     near = min((measure_distance_to_segment(point, one) for loop in loops for one in loop), default=inf)
     return -near if sum(count_turns_about(loop, point) for loop in loops) > 0 else near
@@ -267,7 +272,8 @@ class ClampCells:
     slack: dict[tuple[int, int, int], float] = field(factory=dict, init=False)
 
     def has_place(self, triangle: Array) -> bool | None:
-        """Return whether the clamp's tip can stand inside a triangle (3, 2) by more than rounding.
+        """Return whether there is a place inside a triangle (3, 2) where the clamp's tip keeps all rules by
+        more than rounding.
 
         Returns None where ``MOST_CELLS`` cells do not decide it.
         """
@@ -291,16 +297,17 @@ class ClampCells:
         return False
 
     def compute_tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
-        """Return the tip's slack in mm at the middle (x, y) of a cell (level, i, j), cached by cell."""
+        """Return the tip's slack in mm at (x, y), the middle of the cell (level, i, j); cached by cell."""
         if cell not in self.slack:
             self.slack[cell] = self.rules.compute_tip_room((x, y))
         return self.slack[cell]
 
 
 def measure_depth_inside(triangle: Array, x: float, y: float) -> float:
-    """Return the least signed distance in mm of a point from a triangle's side lines, positive inside.
+    """Return the signed distance in mm of a point (x, y) from the nearest of a triangle's side lines,
+    positive inside.
 
-    The triangle (3, 2) may turn either way.
+    The corners (3, 2) may be in either sense of rotation.
     """
     (ax, ay), (bx, by), (cx, cy) = triangle.tolist()
     turn = 1.0 if (bx - ax) * (cy - ay) > (by - ay) * (cx - ax) else -1.0
@@ -350,8 +357,8 @@ def find_missing_triples(
 def list_possible_triples(
     rules: SupportPlaces, holes: list[Hole]
 ) -> Iterator[tuple[list[Hole], Array, ClampCells]]:
-    """Yield (holes, corners (3, 2), cells) of each triple whose holes fit
-    the plates pairwise and span enough.
+    """Yield (holes, corners (3, 2), cells) of each triple whose holes fit on the plates in pairs and span a
+    large enough triangle.
     """
     if len(holes) < 3:
         return
@@ -379,10 +386,10 @@ def describe_hole(hole: Hole) -> str:
 
 
 def find_widest_clear_opening(toolkit: Toolkit, fixture: Fixture, holes: list[Hole]) -> float | None:
-    """Return the widest opening in mm at which no peg and no support is in a
-    blocked hole; None where there is none.
+    """Return the widest opening in mm at which no peg and no support stands in a blocked hole; None where
+    there is none.
 
-    All shifts of both jaws by whole columns, and of all rows together, are tried.
+    All shifts of each jaw by whole columns, and of all rows together, are tried.
     """
     plates = {plate.name: plate for plate in toolkit.plates}
     moving = next(plate for plate in plates.values() if plate.travel is not None)
@@ -431,8 +438,9 @@ def count_turns_about(segments: Loop, point: tuple[float, float]) -> int:
 
 
 def measure_room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
-    """Return the radius in mm of the largest disc about a point on a face and
-    outside all zones; negative off the face.
+    """Return the radius in mm of the largest disc about a point that lies on a face and outside all zones.
+
+    ``loops`` are those of the face. Negative where the point is off the face.
     """
     faces = sort_faces_by_size([split_borders(loop) for loop in loops])
     room = max((min(side * measure_reach(one, point) for one, side in face) for face in faces), default=-inf)
@@ -447,12 +455,12 @@ def measure_reach(loop: Loop, point: tuple[float, float]) -> float:
 
 
 def sort_faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
-    """Return for each face its loops as (loop, 1) for the outer border,
-    first, and (loop, -1) for each opening.
+    """Return a list of faces, each a list of (loop, sign): first (outer border, 1), then (opening, -1) for
+    each opening.
 
-    Loops are taken from the largest to the smallest. The first given loop is a border. Another loop is an
-    opening where a face lies on its left side, else a border if it runs counter-clockwise; otherwise it is
-    left out.
+    Loops are taken from the largest to the smallest. The first one is a border. Each other loop is one of
+    three: (a) an opening, where its left side lies on a face found so far; (b) otherwise a border, if it runs
+    counter-clockwise; (c) otherwise it is left out.
     """
     faces: list[list[tuple[Loop, int]]] = []
     sizes = [compute_signed_area(loop) for loop in loops]

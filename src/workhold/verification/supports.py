@@ -98,12 +98,12 @@ class SupportsJudge(SupportPlaces):
         return np.array(pushes)
 
     def solve_balances(self, supports: Array) -> Array:
-        """Return the support forces (K, 3, 7) per unit of each right side,
-        for each of K choices of band ends.
+        """Return the support forces (K, 3, 7) that balance each of 7 unit right sides, for K choices of band
+        ends.
 
-        Each peg presses at the lower or upper end of its band. The columns of the balance are the contacts.
-        Its rows are three forces, three moments, and the push on what moves (two rows with two clamps, so 8
-        in the last axis).
+        In each choice every peg presses at the lower or the upper end of its band. The unknowns are the
+        forces of the contacts. The 7 equations are three forces, three moments, and the push on what moves.
+        With two clamps there are two such pushes, so 8 equations and shape (K, 3, 8).
         """
         toolkit, count = self.toolkit, len(self.fixture.pegs)
         bands = self.request.list_peg_bands(count)
@@ -135,11 +135,10 @@ class SupportsJudge(SupportPlaces):
     def make_right_side(
         self, point: Sequence[float], force: Sequence[float], moment: Sequence[float], jaw: float
     ) -> Array:
-        """Return the right side (7,), or (8,) with two clamps, for a force at
-        a point, a moment and a jaw force.
+        """Return the right side (7,) of the balance under a force at a point, a moment and a jaw force.
 
-        Force and moment enter with reversed sign; the jaw force is split over two clamps at their working
-        ratio.
+        With two clamps it is (8,): the jaw force is split over them at their working ratio. Force and moment
+        enter with reversed sign.
         """
         pair = self.fixture.pair
         share = (
@@ -151,8 +150,8 @@ class SupportsJudge(SupportPlaces):
         return np.concatenate([-np.asarray(force, float), -turning, jaw * np.array(share)])
 
     def find_extremes(self, solved: Array) -> tuple[Array, Array]:
-        """Return the least (3,) and the greatest (3,) support forces in N without
-        the clamp, over all loads and heights.
+        """Return (least (3,), greatest (3,)) forces in N of the three supports without the clamp, over all
+        loads and heights.
         """
         least, most = np.full(3, inf), np.full(3, -inf)
         for load in self.loads:
@@ -204,10 +203,10 @@ class SupportsJudge(SupportPlaces):
         yield from self.find_figure_faults(part, supports)
 
     def find_figure_faults(self, part: ReadTriple, supports: Array) -> Iterator[str]:
-        """Yield one sentence for each figure of a triple that is not the derived
-        one, and for a better clamp place.
+        """Yield one sentence for each figure of a triple that differs from the derived one, or for a better
+        place of the clamp.
 
-        ``supports`` (3, 2) are the places of its supports in the part's frame.
+        ``supports`` (3, 2) are the places of the triple's supports in the part's frame.
         """
         solved = self.solve_balances(supports)
         least, most = self.find_extremes(solved) if self.loads else (np.zeros(3), np.zeros(3))
@@ -260,8 +259,8 @@ class SupportsJudge(SupportPlaces):
         return max(self.classify_hanging_at((x, y), AGREEMENT) for x, y in places)
 
     def make_order_key(self, part: ReadTriple) -> tuple[int, int, int]:
-        """Return the sort key of a triple ahead of its figures: falls over, lacks
-        the place asked for, class of the tip.
+        """Return the part of a triple's sort key that precedes its figures: (falls over, lacks the place
+        asked for, class of the tip).
         """
         falls = int(part.standing < -AGREEMENT)
         given = self.request.point if part.given is not None else None
@@ -275,11 +274,11 @@ class SupportsJudge(SupportPlaces):
     def find_better_places(
         self, part: ReadTriple, supports: Array, solved: Array, least: Array
     ) -> Iterator[str]:
-        """Yield one sentence for the first point of a grid over the triangle
-        where the clamp is better placed.
+        """Yield one sentence for the first grid point inside the triangle at which the clamp is better placed
+        than written.
 
-        A place over the part is better than one over air; else a smaller clamp force or a longer arm is
-        better.
+        A place over the part is better than one over air. Among places of one class a smaller clamp force or
+        a longer arm is better.
         """
         highest = self.classify_hanging(part)
         for i, j in product(range(1, GRID), repeat=2):
@@ -301,12 +300,16 @@ class SupportsJudge(SupportPlaces):
 
 
 def differs(written: float | None, own: float) -> bool:
-    """Return whether a number is None, or differs from the derived one by more than ``AGREEMENT``."""
+    """Return whether a written number is missing (None), or differs from the derived one by more than
+    ``AGREEMENT``.
+    """
     return written is None or abs(written - own) > AGREEMENT * max(1.0, abs(own))
 
 
 def compare_figures(name: str, figures: ReadFigures, known: dict[str, float]) -> Iterator[str]:
-    """Yield one sentence for each figure that is not the derived one; ``name`` is that of the clamp point."""
+    """Yield one sentence for each written figure that differs from the derived one; ``name`` is the clamp
+    point's, for messages.
+    """
     for key, value in known.items():
         if differs(getattr(figures, key), value):
             yield f"{key} at the {name} point is {value:.9g}, and is written as {getattr(figures, key)}"
@@ -336,10 +339,10 @@ def compute_area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, floa
 
 
 def find_band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
-    """Yield one sentence for each peg whose written band of heights is not that
-    of the solid's faces that it touches.
+    """Yield one sentence for each peg whose written band of heights differs from the band of the solid's face
+    it touches.
 
-    Yields nothing without a solid or without bands.
+    Yields nothing where there is no solid or no band is written.
     """
     bands, numbered = request.bands, query.workpiece.numbered
     if query.workpiece.solid is None or bands is None:

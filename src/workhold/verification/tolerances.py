@@ -125,10 +125,10 @@ class Finding:
 
 
 def judge_slack(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
-    """Yield nothing when a slack is certainly positive, else one finding.
+    """Yield nothing where a slack is certainly positive, else one finding.
 
-    It is definite, with the words ``broken``, where the slack is certainly negative; else undecided, with the
-    words ``edge``, or ``broken`` where ``edge`` is empty.
+    Two cases: (a) the slack is certainly negative: a definite finding with the words ``broken``; (b) that is
+    uncertain: an undecided finding with the words ``edge``, or ``broken`` where ``edge`` is empty.
     """
     if not slack > 0:
         definite = bool(slack < 0)
@@ -147,5 +147,5 @@ def judge_written_number(name: str, value: float, derived: arb, spare: arb) -> I
 
 
 def format_middle(value: arb) -> str:
-    """Return the middle of a ball with three significant digits, for messages."""
+    """Return the midpoint of a ball as text with three significant digits, for messages."""
     return f"{float(value.mid()):.3g}"

@@ -1,15 +1,17 @@
 """How near a program's tools come to what holds the part, by a walk along its moves with bounds.
 
-The moves of the tip are walked, not what the search makes of them. A stretch of a move lies within its
-sagitta of its chord. So the distance of the axis from an element is that of the chord to within the sagitta.
-Stretches that cannot hold the least distance are left. Others are halved, and so are those on which a
-cylinder comes down to the pegs or leaves them. Numbers are doubles: their rounding is far below what decides,
-``tolerances.AGREEMENT``.
+The moves of the tool tip are walked as the program has them, not as the search simplifies them. A stretch of
+a move lies within its sagitta of its chord, so its distance from an element is that of the chord to within
+the sagitta. Stretches that cannot hold the least distance are left out. Others are halved, and so are those
+on which a cylinder of the tool comes down to the pegs' height or leaves it. Numbers are doubles: their
+rounding is far below the tolerance that decides, ``tolerances.AGREEMENT``.
 
 Glossary
 --------
-element : a disc or a capsule, as the piece its middle line is with a radius, or a half plane.
-stretch : a part of a move, between two shares of it, with one cylinder of its tool.
+element : something that holds the part: a disc, a capsule (all within a radius of a middle line), or a half
+    plane.
+stretch : a part of a move, between two shares of it (0 to 1), with one cylinder of its tool.
+sagitta : the largest distance of a stretch from its chord.
 """
 
 from __future__ import annotations
@@ -49,18 +51,18 @@ MOST_HALVINGS = 200
 
 @frozen
 class HoldingElement:
-    """Something that holds the part, in the part's coordinates and mm.
+    """Something that holds the part, in the part's frame in mm: a disc, a capsule or a half plane.
 
     Parameters
     ----------
-    name : as messages call it.
-    place : what its place is called.
-    start, end : ends of its middle line; of a half plane a point on its border, and the unit vector away
+    name : its name in messages.
+    place : the name of its place.
+    start, end : ends of its middle line. For a half plane, a point on its border, and the unit vector away
         from it.
     radius : around the middle line; 0 for a half plane.
-    height : up to which it reaches.
-    is_half_plane : whether it is one.
-    low : from which height it reaches; 0 is from below.
+    height : of its upper end.
+    is_half_plane : whether it is a half plane.
+    low : height of its lower end; 0 means that it stands from below the part.
     """
 
     name: str
@@ -84,13 +86,13 @@ class NearestApproach:
 
 @frozen(eq=False)
 class PathStretches:
-    """N stretches.
+    """N stretches, each a part of a move with one cylinder of the move's tool.
 
     Parameters
     ----------
     move : (N,) numbers of moves.
-    first, last : (N,) shares of the move.
-    under, over, radius : (N,) heights of the cylinder's ends above the tip, and its radius.
+    first, last : (N,) shares of the move, from 0 to 1, at which each stretch begins and ends.
+    under, over, radius : (N,) heights of the cylinder's ends above the tip, and its radius, in mm.
     """
 
     move: IntArray
@@ -101,7 +103,7 @@ class PathStretches:
     radius: Array
 
     def take(self, chosen: NDArray[np.bool_] | IntArray) -> PathStretches:
-        """Return the stretches that a mask or indices choose."""
+        """Return only the stretches that a mask or indices select."""
         rest = (self.first, self.last, self.under, self.over, self.radius)
         return PathStretches(self.move[chosen], *(values[chosen] for values in rest))
 
@@ -120,7 +122,8 @@ class ToolWalk:
     Parameters
     ----------
     program : the program.
-    center, radius, turn, sweep : (M, 2) and (M,) centre, radius, start angle and swept angle in radians of round moves.
+    center, radius, turn, sweep : (M, 2) and (M,) centre, radius, start angle and swept angle in radians of
+        round moves.
     is_round, is_box : (M,) whether a move is an arc, and whether it may take any path in the box of its ends.
     """
 
@@ -181,15 +184,15 @@ class ToolWalk:
     def find_nearest(
         self, element: HoldingElement, line: object = None, tool: object = None
     ) -> NearestApproach:
-        """Return the least distance, less radii, of the tools from an element; inf
-        where none comes down to its height.
+        """Return bounds of the least clearance of an element from the tools; inf where no tool comes down to
+        its height.
 
-        The bounds are ``FINE`` mm apart at most, unless halving ends early. Without any approach the line is
+        The bounds are at most ``FINE`` mm apart, unless halving ends early. Without any approach the line is
         -1.
 
         Parameters
         ----------
-        line, tool : of the program, the moves to look at; None for all.
+        line, tool : the program line and tool number whose moves are searched; None for all.
         """
         found, at = inf, -1
         waiting, low, moves = self.list_stretches(), inf, self.program.moves
@@ -242,10 +245,10 @@ class ToolWalk:
     def measure_distances(
         self, stretches: PathStretches, element: HoldingElement, boxed: NDArray[np.bool_]
     ) -> tuple[Array, Array]:
-        """Return the distances (N,) in mm of the stretches' chords from an
-        element, and their sagittas (N,) in mm.
+        """Return (distances (N,), sagittas (N,)) in mm: of the stretches' chords from an element, and of the
+        stretches.
 
-        For ``boxed`` stretches the distance is that of the box of the move.
+        Where ``boxed`` (N,) is True, the distance is that of the bounding box of the move's ends.
         """
         move = stretches.move
         one, other = (
@@ -263,10 +266,10 @@ class ToolWalk:
         return off, sagitta
 
     def measure_chord_distances(self, one: Array, other: Array, element: HoldingElement) -> Array:
-        """Return the distances (N,) in mm of straight segments from an element's middle
-        line, or from a half plane (0 in it).
+        """Return the distances (N,) in mm of straight segments from an element's middle line or half plane.
 
-        The segments run from ``one`` (N, 2) to ``other`` (N, 2), and may be points.
+        The segments run from ``one`` (N, 2) to ``other`` (N, 2), and may be points. The distance is 0 in a
+        half plane.
         """
         start, end = np.array(element.start), np.array(element.end)
         if element.is_half_plane:
@@ -277,8 +280,9 @@ class ToolWalk:
         return np.where(do_cross(one, other, start, end), 0.0, least)
 
     def measure_box_distance(self, one: Array, other: Array, element: HoldingElement) -> float:
-        """Return the distance in mm of the box with two opposite corners from an
-        element's middle line or half plane.
+        """Return the distance in mm of a box from an element's middle line or half plane.
+
+        ``one`` and ``other`` are two opposite corners of the box.
         """
         (x0, y0), (x1, y1) = np.minimum(one, other), np.maximum(one, other)
         corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
@@ -306,10 +310,11 @@ def measure_pieces_to_point(one: Array, other: Array, point: Array) -> Array:
 
 
 def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.bool_]:
-    """Return (N,) whether each segment from ``one`` to ``other`` properly
-    crosses the segment from start to end.
+    """Return (N,) booleans: whether each of N segments properly crosses the segment from ``start`` to
+    ``end``.
 
-    Segments that only touch, or are parallel, do not cross.
+    The N segments run from ``one`` (N, 2) to ``other`` (N, 2). Segments that only touch, or are parallel, do
+    not cross.
     """
 
     def side(a: Array, b: Array, c: Array) -> Array:
@@ -327,9 +332,9 @@ def make_walk(program: Program) -> ToolWalk:
 
 
 def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return a sentence, without full stop, where a fixture and the program do not agree; "" for none.
+    """Return a sentence, without full stop, where a fixture and the program do not agree; "" where they do.
 
-    A tool comes too near, or the written clearance is missing, superfluous or wrong.
+    Two faults: a tool comes too near to the fixture; the written clearance is missing, superfluous or wrong.
     """
     said = fixture.quality.get(PROGRAM_FIGURE.key)
     if query.passed is None:
@@ -358,10 +363,9 @@ def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -
 def find_clearance_fault(
     fixture: Fixture, walk: ToolWalk, elements: Sequence[HoldingElement], least: NearestApproach
 ) -> str:
-    """Return a sentence where a file's statement of the nearest move is
-    wrong; "" where it is right or missing.
+    """Return a sentence where the file names a wrong nearest move; "" where it names the right one or none.
 
-    ``elements`` are what holds the part, and ``least`` the derived nearest approach.
+    ``elements`` are what holds the part, and ``least`` is the derived nearest approach.
     """
     said = fixture.passing
     if said is None:
@@ -382,10 +386,10 @@ def find_clearance_fault(
 
 
 def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iterator[HoldingElement]:
-    """Yield the walls, pegs and clamps that hold a part, in the part's frame and mm.
+    """Yield the walls, pegs and clamps that hold a part, in the part's frame in mm.
 
-    A peg whose body is wider below height 0 yields a second element. ``height`` is the top of those without
-    heights.
+    A peg whose body is wider below height 0 yields a second element. ``height`` is the top of elements that
+    have no heights of their own.
     """
     angle = radians(fixture.pose.theta_deg)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -421,9 +425,9 @@ def make_element_name(peg: Peg, hardware: ToolkitRules) -> str:
 
 
 def find_far_end(peg: Peg, carrier: Carrier) -> tuple[float, float]:
-    """Return the other end of a peg's middle line in the toolkit's frame, in mm.
+    """Return the end of a peg's middle line that is not at the peg's centre, in the toolkit's frame in mm.
 
-    For a clamp bolted in a hole it is that hole, else the peg's own centre.
+    For a clamp bolted in a hole it is that hole. For all other pegs it is the centre again.
     """
     if not carrier.has_body_behind:
         return peg.x, peg.y

@@ -70,12 +70,13 @@ Barrier = tuple[arb, arb]
 def measure_edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """Return the distances in mm along its path from a peg's centre to every barrier and end of the path.
+    """Return the distances in mm along a peg's path from the peg's centre to every barrier and end of the
+    path.
 
     The path runs ``radius`` mm from the side; ``beside`` are its barriers, the ranges in which the peg would
-    enter another side. Ends with ``smooth`` (start, end) True are tangent joints and left out. Distances are
-    negative within a barrier or beyond an end. Returns [] for a whole circle: nothing trims its path, since
-    whatever else there is lies beyond the material behind it.
+    enter another side. ``smooth`` says of start and end whether it is a tangent joint; such ends are left
+    out. Distances are negative within a barrier or beyond an end. Returns [] for a whole circle: nothing
+    trims its path, since everything else lies beyond the material behind it.
     """
     if isinstance(side, ArcSide) and side.whole:
         return []
@@ -120,8 +121,9 @@ def measure_feature(side: Side, radius: arb) -> arb:
 
 
 def compute_way_point(side: Side, radius: arb, place: arb) -> Point:
-    """Return the peg's centre at a place: arc length in mm along the path of
-    centres ``radius`` mm from a side.
+    """Return the centre of a peg at a place on its path, which runs ``radius`` mm from a side.
+
+    ``place`` is the arc length in mm along the path, from the start of the side.
     """
     if isinstance(side, LineSide):
         (x, y), (nx, ny) = side.start, side.normal
@@ -156,9 +158,7 @@ def find_entered_ranges(side: Side, radius: arb, other: Side, near: arb) -> list
 
 
 def find_crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Iterator[Point]:
-    """Yield where the path of the peg's centre may cross the curves at a
-    distance of ``near`` mm from another side.
-    """
+    """Yield the points where the path of the peg's centre may be exactly ``near`` mm from another side."""
     circles = [(other.start, near), (other.end, near)]
     if isinstance(other, ArcSide):
         circles += [(other.center, other.radius + near), (other.center, other.radius - near)]
@@ -171,7 +171,7 @@ def find_crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Ite
 
 
 def find_points_on_line(side: Side, radius: arb, normal: Point, level: arb) -> Iterator[Point]:
-    """Yield the points x of the peg centre's path with normal · x = level.
+    """Yield the points p of the peg centre's path with ``normal`` · p = ``level``.
 
     The path is not cut off at the side's ends. Yields nothing where line and path may be parallel.
     """
@@ -214,11 +214,11 @@ def find_points_on_circle(side: Side, radius: arb, center: Point, size: arb) -> 
 
 
 def find_points_on_ring(side: ArcSide, radius: arb, axis: Point, cosine: arb) -> Iterator[Point]:
-    """Yield the two points of an arc's path of centres whose direction from its
-    centre has this cosine with ``axis``.
+    """Yield the points of an arc's path of centres whose direction from the arc's centre makes a given angle
+    with ``axis``.
 
-    ``axis`` is a unit vector. The path is taken as a full circle; yields nothing where the cosine is
-    certainly above 1 in size.
+    ``axis`` is a unit vector and ``cosine`` the cosine of the angle. The path is taken as a full circle, so
+    there are two points. Yields nothing where the cosine is certainly above 1 in size.
     """
     square = 1 - cosine * cosine
     if not square < 0:
@@ -236,10 +236,10 @@ SHORTEST = HAIR / 1024
 def judge_touching(
     name: str, contact: BallContact, face: int, pose: BallPose, outline: BallOutline, margin: float
 ) -> Iterator[Finding]:
-    """Yield a finding where a peg lies less than ``margin`` mm inside the ends of its
-    path along a face, or enters the part.
+    """Yield a finding where a peg enters the part, or touches a face too near to an end of its path.
 
-    ``face`` is the number of the face touched; ``outline`` is what the peg must keep clear of.
+    Too near is less than ``margin`` mm inside the end. ``face`` is the number of the face touched;
+    ``outline`` is what the peg must keep clear of.
     """
     center = contact.compute_center_in_part(pose)
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
@@ -297,10 +297,11 @@ def runs_alongside(contact: BallContact, center: Point, side: Side) -> bool:
 
 
 def is_clear_within(contact: BallContact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
-    """Return whether a peg stays clear of all ``sides`` when it slides up to
-    ``reach`` mm either way along its face.
+    """Return whether a peg stays clear of all ``sides`` while it slides up to ``reach`` mm either way along
+    its face.
 
-    Returns None where that stays undecided. Pieces of the path that are not shown to be clear are halved.
+    Returns None where the precision does not decide it. Pieces of the path that are not shown to be clear are
+    halved.
     """
     pieces = [(arb(0), arb(reach))]
     looked_at = 0
@@ -329,11 +330,11 @@ def is_clear_within(contact: BallContact, center: Point, sides: Sequence[Side], 
 
 
 def bound_steepness(contact: BallContact, side: Side, around: Point) -> arb:
-    """Return an upper bound, at most 1, of the change of a side's clearance per
-    mm that the peg slides along its face.
+    """Return an upper bound, at most 1, of how much a side's clearance changes per mm that the peg slides
+    along its face.
 
-    The bound holds while the peg's centre is in the box ``around``. It is the cosine between the direction of
-    sliding and the vector from the side's nearest point to the centre.
+    The bound holds while the peg's centre is in the box ``around``. It is the cosine of the angle between the
+    direction of sliding and the vector from the side's nearest point to the peg's centre.
     """
     away = side.find_vector_away(around)
     if away is None:

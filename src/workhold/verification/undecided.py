@@ -1,13 +1,14 @@
 """Whether an undecided entry of a proof is a real place: four contacts, or two chords, that may exist.
 
 The entry names faces, holes and a range of orientations. In the workpiece's frame each peg's centre moves on
-the line or circle of its face, moved out by the peg radius. The first peg of a jaw also lies on that of any
-other one, moved back by the step between their holes. Where the two cross is found in balls, and so the
-centres of all pegs of the jaw are known. Every other peg must then touch its face, inside the ends. Pegs of
-two jaws must stand in rows as far apart as the entry says, and the smallest gap apart.
+the line or circle of its face, offset outward by the peg radius. Each other peg of a jaw gives such a curve
+for the jaw's first peg, if it is moved back by the step between their holes. Where two of these curves cross
+is computed in ball arithmetic, and so the centres of all pegs of the jaw are known. Each peg must then touch
+its face between the face's ends. Pegs of two jaws must stand in rows as far apart as the entry says, and at
+least the smallest gap apart.
 
-What certainly is not so anywhere in the range is a fault. Where ways run parallel nothing is said. An
-undecided entry need not be a solution: it may miss one by as much as pegs move within the range.
+A condition that certainly fails in the whole range is a fault. Where curves are parallel nothing is decided.
+An undecided entry need not be a solution: it may miss one by as much as pegs move within the range.
 """
 
 from __future__ import annotations
@@ -59,9 +60,9 @@ class TouchingPeg:
 
     Parameters
     ----------
-    side : what it touches.
+    side : the side touched.
     radius : the distance of its centre from the side in mm.
-    step : vector from the first peg to it in the workpiece's frame, in mm.
+    step : vector from the first peg of its jaw to it, in the workpiece's frame in mm.
     column : of its hole.
     loose : tolerance in mm of its place.
     """
@@ -89,8 +90,9 @@ def find_undecided_faults(entries: Sequence[UndecidedCandidate], query: Query) -
 
 
 def find_entry_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
-    """Return a verb phrase that says what is wrong with an entry of four contacts or two chords; "" for
-    none.
+    """Return a verb phrase that says what is wrong with an entry; "" where nothing is.
+
+    The entry has four contacts, or is a pair of chords.
     """
     fault = find_written_fault(entry, query, outline)
     if WALL_END not in query.toolkit.contacts:
@@ -102,10 +104,10 @@ def find_entry_fault(entry: UndecidedCandidate, query: Query, outline: BallOutli
 def split_into_single_entries(
     entry: UndecidedCandidate, query: Query
 ) -> Iterator[tuple[UndecidedCandidate, Query]]:
-    """Yield (entry, query) for each clamp of an entry with two clamps, as an
-    entry of a toolkit with that clamp alone.
+    """Yield (entry, query) for each clamp of an entry with two clamps, as if the toolkit had that clamp
+    alone.
 
-    An entry of a kind that is not asked for is yielded once, with a type that no query has.
+    An entry whose type or number of faces is not asked for is yielded once, with a type that no query has.
     """
     _, *directions = entry.type.split()
     alone = {one.direction: (one.name, way) for way in query.toolkit.ways for one in way.arrangements}
@@ -136,7 +138,9 @@ def split_into_single_entries(
 
 
 def is_of_chords(entry: UndecidedCandidate) -> bool:
-    """Return whether an entry is a pair of chords, each from the first peg to the second."""
+    """Return whether an entry is a pair of chords, each from the first to the second peg of a jaw, and not
+    four contacts.
+    """
     return entry.reason == GIVEN_UP
 
 
@@ -146,8 +150,8 @@ def find_arrangement(entry: UndecidedCandidate, query: Query) -> Arrangement:
 
 
 def turn_entry_along_x(entry: UndecidedCandidate, query: Query) -> tuple[UndecidedCandidate, list[Carrier]]:
-    """Return an entry turned so that its clamp moves in -x, and the carriers
-    of its four pegs turned likewise.
+    """Return an entry turned by quarter turns so that its clamp moves along -x, and the turned carriers of
+    its four pegs.
     """
     arrangement, carriers = find_arrangement(entry, query), query.toolkit.carriers
     if is_of_chords(entry) and arrangement.pegs != (2, 2):
@@ -165,15 +169,19 @@ def turn_entry_along_x(entry: UndecidedCandidate, query: Query) -> tuple[Undecid
 
 
 def group_pegs(entry: UndecidedCandidate, query: Query) -> list[list[int]]:
-    """Return the lists of peg numbers, from 0, whose holes count from the first
-    peg of the list; empty lists left out.
+    """Return lists of peg indices, from 0; in each list the holes are counted from the hole of the list's
+    first peg.
+
+    The lists are those of the two jaws, or of the locators and the clamp. Empty lists are left out.
     """
     first, count = 2 if is_of_chords(entry) else find_arrangement(entry, query).pegs[0], len(entry.faces)
     return [group for group in (list(range(first)), list(range(first, count))) if group]
 
 
 def find_written_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
-    """Return a verb phrase on an entry's type, reason, reach or face numbers that are wrong; "" for none."""
+    """Return a verb phrase where an entry's type, reason, reach or face numbers are wrong; "" where they are
+    right.
+    """
     if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.types]:
         return f"is of type {entry.type}, which is not asked for"
     if entry.reason not in REASONS:
@@ -186,15 +194,17 @@ def find_written_fault(entry: UndecidedCandidate, query: Query, outline: BallOut
 
 
 def find_count_fault(entry: UndecidedCandidate, query: Query) -> str:
-    """Return a verb phrase where an entry has not as many faces and holes as pegs; else ""."""
+    """Return a verb phrase where an entry's number of faces or holes is not its number of pegs; "" where both
+    are.
+    """
     count = 4 if is_of_chords(entry) else sum(find_arrangement(entry, query).pegs)
     numbers = (entry.faces, entry.columns, entry.rows)
     return "" if all(len(one) == count for one in numbers) else f"has not {count} faces and holes"
 
 
 def find_holes_fault(entry: UndecidedCandidate, query: Query) -> str:
-    """Return a verb phrase on holes that are counted wrongly, used twice, or span
-    more than the carrier has; "" for none.
+    """Return a verb phrase where holes are counted wrongly, used twice, or span more than the carrier; ""
+    otherwise.
     """
     entry, carriers = turn_entry_along_x(entry, query)
     for group in group_pegs(entry, query):
@@ -215,8 +225,8 @@ def find_holes_fault(entry: UndecidedCandidate, query: Query) -> str:
 
 
 def find_place_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
-    """Return a verb phrase where the pegs certainly cannot touch their faces
-    anywhere in the entry's range; else "".
+    """Return a verb phrase where the pegs certainly cannot touch their faces anywhere in the entry's range;
+    "" otherwise.
     """
     if entry.reach_deg is None and not is_of_chords(entry):
         return ""
@@ -274,9 +284,10 @@ def bound_outline_size(query: Query) -> float:
 
 
 def find_first_peg_places(group: Sequence[TouchingPeg]) -> list[Point] | None:
-    """Return the possible centres of a jaw's first peg, in the part's frame, when all its pegs touch.
+    """Return the possible centres of a jaw's first peg, in the part's frame, at which all pegs of the jaw
+    touch.
 
-    Returns None where the centre may be anywhere along a path, [] where it cannot be anywhere.
+    Returns None where the centre may be anywhere along a path, and [] where there is no such centre.
     """
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
@@ -299,8 +310,9 @@ def find_first_peg_places(group: Sequence[TouchingPeg]) -> list[Point] | None:
 
 
 def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Return whether the paths of two pegs' centres certainly are neither nearly
-    parallel lines nor concentric circles.
+    """Return whether the paths of two pegs' centres certainly do not run alongside each other.
+
+    False where they may be parallel lines or concentric circles, or nearly so.
     """
     a, b = one.side, other.side
     if isinstance(a, LineSide) and isinstance(b, LineSide):
@@ -312,7 +324,9 @@ def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
 
 
 def may_slide_with(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Return whether two pegs with parallel or concentric paths may touch their sides at once."""
+    """Return whether two pegs may touch their sides at the same time; their paths are
+    parallel or concentric.
+    """
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
         return (
@@ -340,8 +354,8 @@ def may_touch(peg: TouchingPeg, first: Point) -> bool:
 
 
 def find_places_on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) -> list[Point] | None:
-    """Return the possible centres of a peg whose row is ``up`` mm above the
-    peg at ``tail``, in the part's frame.
+    """Return the possible centres, in the part's frame, of a peg whose row is ``up`` mm above the row of the
+    peg at ``tail``.
 
     ``turn`` is (cosine, sine) of the orientation. Returns None where the peg's side runs along the row.
     """

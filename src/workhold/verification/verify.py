@@ -63,13 +63,13 @@ Verdict = Literal["proven", "refuted", "undecided"]
 
 @frozen
 class Ruling:
-    """What is shown of a fixture.
+    """The verdict on a fixture.
 
     Parameters
     ----------
     verdict : "proven" when every rule holds, "refuted" when one is broken, "undecided" otherwise.
     reason : one sentence for a fixture that is not proven, empty for one that is.
-    bits : the precision at which it was decided, or the highest tried.
+    bits : the precision in bits at which it was decided, or the highest tried.
     """
 
     verdict: Verdict
@@ -80,24 +80,25 @@ class Ruling:
 def verify_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, contact_margin: float = 0.0
 ) -> Ruling:
-    """Prove or refute one fixture from workpiece, toolkit, pegs and faces alone.
+    """Return the ruling on one fixture: proven, refuted or undecided, from workpiece, toolkit, pegs and faces
+    alone.
 
     Parameters
     ----------
-    fixture : as a result lists it; floats are taken as the rational numbers they are.
-    contact_margin : smallest distance in mm from a contact to the end of its feature.
+    fixture : as a result lists it; its floats are taken as the rational numbers they are.
+    contact_margin : smallest distance in mm from a contact to the end of its contact feature.
     """
     return Judge(Query(workpiece, toolkit, contact_margin=contact_margin)).rule_on(fixture)
 
 
 @frozen(eq=False)
 class Judge:
-    """Proves or refutes fixtures that a query asks for; see :func:`verify_fixture`.
+    """Judge of fixtures that a query asks for, which proves or refutes each; see :func:`verify_fixture`.
 
     Parameters
     ----------
     query : what is asked.
-    measures : by the bits of a precision, as far as known.
+    measures : figure measures made so far, by precision in bits.
     """
 
     query: Query
@@ -181,10 +182,10 @@ class Judge:
         measure: FigureMeasure,
         is_proven: bool,
     ) -> Iterator[Finding]:
-        """Yield a finding where a fixture's contacts do not close at a pose, or
-        written forces and figures are wrong.
+        """Yield a finding where a fixture's contacts do not close at a pose, or written forces and figures
+        are wrong.
 
-        ``is_proven`` says whether the pose is proven; some rules are skipped if not.
+        ``is_proven`` says whether the pose is proven. Where it is not, some rules are skipped.
         """
         hardware, pair = self.hardware, fixture.pair
         if pair is None:
@@ -222,8 +223,8 @@ class Judge:
         measure: FigureMeasure,
         balance: Balance | SeatBalance,
     ) -> Iterator[Finding]:
-        """Yield a finding for each force or figure of quality in the file that
-        differs from the one of a balance.
+        """Yield a finding for each force or figure of quality in the file that differs from the one derived
+        from ``balance``.
         """
         names, faces = self.hardware.names, self.hardware.number_shared_faces(fixture, contacts)
         stated = any(key in fixture.quality for key in PIN_KEYS)
@@ -234,8 +235,9 @@ class Judge:
 
 
 def judge_flats(fixture: Fixture, names: Sequence[str], contacts: Sequence[BallContact]) -> Iterator[Finding]:
-    """Yield a finding where a flat does not face its side, or the file states a
-    flat where there is none, or omits one.
+    """Yield a finding for each peg whose flat does not face its side.
+
+    Also yields one where the file states a flat for a peg without one, or omits a flat.
     """
     for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
         lies = contact.body is not None and isinstance(contact.side, LineSide)
@@ -281,15 +283,15 @@ class Unproven:
 
 @frozen
 class Verification:
-    """What is shown of a result.
+    """The verification of a result.
 
     Parameters
     ----------
     proven, refuted, undecided : numbers of fixtures.
-    unproven : those that are not proven, in the order of the file.
+    unproven : the fixtures that are not proven, in the order of the file.
     faults : what is wrong with the result as a whole, one sentence each, without a full stop.
     bits : the highest precision that was needed.
-    is_compared : whether the query was answered again, and the result compared with that.
+    is_compared : whether the query was answered again, and the result compared with that answer.
     """
 
     proven: int
@@ -312,9 +314,9 @@ class Verification:
 
 
 def list_not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
-    """Yield sentences on what a result alone cannot show, and answering its query again would.
+    """Yield sentences on what a result alone cannot show but answering its query again would show.
 
-    ``is_seated`` says that the result states seating.
+    ``is_seated`` says whether the result states seating.
     """
     left_out = "seats" if toolkit.travels > 1 else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
@@ -334,7 +336,10 @@ def ignore_progress(fraction: float, unproven: int) -> None:
 
 
 def verify(result: Result, progress: Progress = ignore_progress) -> Verification:
-    """Derive every fixture of a result again in balls, from workpiece, toolkit, pegs and faces alone.
+    """Return the verification of a result: each fixture is derived again in ball arithmetic, and proven or
+    refuted.
+
+    Nothing is used but the result's workpiece, toolkit, pegs and faces.
 
     Examples
     --------
@@ -349,7 +354,8 @@ def verify(result: Result, progress: Progress = ignore_progress) -> Verification
 
 
 def verify_file(path: str | Path, progress: Progress = ignore_progress) -> Verification:
-    """Derive every fixture of a result file again, and compare every number written; see :func:`verify`.
+    """Return the verification of a result file, in which every number is compared with the derived one; see
+    :func:`verify`.
 
     Raises
     ------
@@ -435,7 +441,8 @@ def verify_listing(listing: WrittenListing, progress: Progress = ignore_progress
 def find_distinct_faults(listing: WrittenListing, seen: KnownFixtures) -> Iterator[str]:
     """Yield one sentence for each stated number of distinct fixtures that contradicts the listed fixtures.
 
-    Fixtures found and not listed may each form a set of their own, or belong to one.
+    The number of sets among unlisted fixtures is not known: each may be a set of its own, or all may belong
+    to one.
     """
     for kind, counts in listing.counts.items():
         sets, distinct, others = seen.sets.get(kind, 0), listing.distinct[kind], listing.found[kind] - counts

@@ -1,4 +1,4 @@
-"""What the server answers, as plain data for JSON: lengths in mm, angles in degrees, forces in N."""
+"""Answers of the server as plain data for JSON: lengths in mm, angles in degrees, forces in N."""
 
 from __future__ import annotations
 
@@ -91,12 +91,12 @@ def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str
 
 
 def map_segments_to_faces(workpiece: Workpiece) -> dict[int, int]:
-    """Return for each number of a segment the number of its face."""
+    """Return, by number of each segment, the number of the face that it belongs to."""
     return {number: face.number for face in workpiece.faces for number in face.segments}
 
 
 def list_own_face_numbers(workpiece: Workpiece, role: str) -> list[int]:
-    """Return for each segment of a role's outline, in order, the number of its face.
+    """Return for each segment of the own outline of a role, in order, the number of its face.
 
     Numbers of own outlines follow those of the part.
     """
@@ -105,8 +105,8 @@ def list_own_face_numbers(workpiece: Workpiece, role: str) -> list[int]:
 
 
 def describe_own_outlines(workpiece: Workpiece) -> dict[str, Any]:
-    """Return the outlines of carriers with heights of their own,
-    by role, as plain data in the form that requests take.
+    """Return by role the outlines of carriers with heights of their own, as plain data in the form of
+    requests.
     """
     entries = make_own_outlines_entry(workpiece).get("outlines", {})
     return {
@@ -129,8 +129,10 @@ def describe_segment(segment: Segment, bulge: float) -> dict[str, Any]:
 
 
 def describe_face(number: int, segment: Segment) -> dict[str, Any]:
-    """Return a face as plain data; "size" is the length of a line
-    or the radius of an arc in mm, "concave" says it is hollow.
+    """Return a face as plain data.
+
+    "size" is the length of a line or the radius of an arc in mm; "concave" is True for an arc around which
+    the material lies, as around a hole.
     """
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
@@ -152,7 +154,7 @@ def describe_rows(
 ) -> list[dict[str, Any]]:
     """Return the fixtures of a table as rows of plain data, with the given ranks, one for each fixture.
 
-    ``holds`` says how flat jaws or straps hold the first of them.
+    ``holds`` are the holds by flat jaws or straps of the first fixtures; () for fixtures with pegs.
     """
     longest = find_edgeless_distance(workpiece, toolkit)
     fixtures = [make_fixture_of_row(table, toolkit, number, workpiece) for number in range(len(table))]
@@ -170,10 +172,10 @@ def describe_arrangements(toolkit: Toolkit) -> list[dict[str, str]]:
 
 
 def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float) -> dict[str, Any]:
-    """Return a fixture as a row of a list, without its rank,
-    with holes and settings as in the middle of its plate.
+    """Return a fixture as a row of a list, without its rank; holes and settings are those in the middle of
+    its plate.
 
-    "edgeless" is True where its edge distance is ``longest`` (mm), which stands for a part without an edge.
+    "edgeless" is True where the edge distance is ``longest`` (mm), which means that the part has no edge.
     """
     stands = move_fixture_by_holes(fixture, toolkit, find_move_to_middle(fixture, toolkit, workpiece))
     return {
@@ -193,8 +195,8 @@ def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longe
 
 
 def describe_hold(fixture: Fixture) -> dict[str, Any]:
-    """Return how flat jaws or straps hold a part,
-    as plain data of a result file's form, with warnings in words.
+    """Return how flat jaws or straps hold a part, as plain data in the form of result files, with warnings in
+    words.
     """
     hold = fixture.hold
     if not isinstance(hold, JawHold):
@@ -210,8 +212,9 @@ def describe_hold(fixture: Fixture) -> dict[str, Any]:
 
 
 def describe_straps(fixture: Fixture) -> dict[str, Any]:
-    """Return how straps hold a part, as plain data;
-    for a listed fixture with the steps to set it up and warnings.
+    """Return how straps hold a part, as plain data.
+
+    A listed fixture also has the steps to set it up, and warnings.
     """
     hold = fixture.hold
     assert isinstance(hold, StrappedHold)
@@ -248,12 +251,12 @@ def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
 def describe_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, size: tuple[float, float] = USUAL_SIZE
 ) -> dict[str, Any]:
-    """Return a fixture without its rank as plain data:
-    its row, its geometry, and a picture of ``size`` in page units.
+    """Return a fixture as plain data without its rank: its row, its geometry, and a picture of ``size`` in
+    page units.
 
-    All places are in the frame of the fixture as it is listed; adding ``placed`` (mm) moves it to the middle
-    of its plate. Each entry of "carriers" has the indices of its pegs, their radius in mm, and its clamping
-    direction.
+    All places are in the frame of the fixture as listed; adding ``placed`` (mm) moves them to the middle of
+    its plate. Each entry of "carriers" has the indices of the pegs on it, their radius in mm, and its
+    clamping direction.
     """
     move = find_move_to_middle(fixture, toolkit, workpiece)
     stands = move_fixture_by_holes(fixture, toolkit, move)
@@ -286,8 +289,9 @@ def describe_fixture(
 
 
 def describe_carriers(fixture: Fixture, seen: ShownSetUp) -> list[dict[str, Any]]:
-    """Return plates, then walls, then clamps as plain data:
-    indices of pegs, radius in mm, clamping direction or None.
+    """Return plates, then walls, then clamps as plain data.
+
+    Each has the indices of its pegs, their radius in mm, and its clamping direction or None.
     """
     numbers = defaultdict[str, list[int]](list)
     for number, peg in enumerate(fixture.pegs):
@@ -304,8 +308,9 @@ def describe_carriers(fixture: Fixture, seen: ShownSetUp) -> list[dict[str, Any]
 
 
 def describe_proof(proof: ProofReport) -> dict[str, Any]:
-    """Return the proof of a search as plain data:
-    the first :data:`MOST_UNDECIDED` undecided candidates, and their number.
+    """Return the proof of a search as plain data.
+
+    It has the first :data:`MOST_UNDECIDED` undecided candidates, and the number of all.
     """
     entry = make_proof_entry(proof)
     return {

@@ -51,9 +51,9 @@ def create_app(
     Parameters
     ----------
     limits : sizes, counts, times and memory that the server allows.
-    hosts : names it may be called by; only those of this machine by default.
-    token : a secret that every request must bring, or None.
-    origins : of other sites' pages that may use it; none by default.
+    hosts : names by which the server may be called; by default only those of this machine.
+    token : secret that every request must contain; None for none.
+    origins : origins of other sites' pages that may use the server; none by default.
     """
     limits = limits or ServerLimits()
 
@@ -111,7 +111,7 @@ async def redirect_to_method_page(request: Request) -> Response:
 
 
 async def send_static_file(request: Request, path: str) -> Response:
-    """Return a file of the page, 304 where the client has it, 404 where there is none."""
+    """Return a file of the page; status 304 where the client has it already, 404 where there is none."""
     file = get_state(request).files.get(path)
     if file is None:
         raise HTTPException(404, "There is no such page.")
@@ -122,7 +122,9 @@ async def send_static_file(request: Request, path: str) -> Response:
 
 
 def make_error_response(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
-    """Return an error as JSON: the sentence, and for status 400 the place in the drawing that it names."""
+    """Return an error as JSON: the sentence and, for status 400, the place in the drawing that the sentence
+    names.
+    """
     more = {"Retry-After": "1"} if status in (429, 503) else {}
     if status in (408, 413):
         more["Connection"] = "close"
@@ -134,7 +136,7 @@ def add_error_handlers(app: FastAPI) -> None:
     """Make the application answer every error with a status and one sentence."""
 
     def on(error_class: type[Exception], status: int) -> None:
-        """Answer errors of a class with a status and their own sentence."""
+        """Make the application answer errors of this class with ``status`` and the error's own sentence."""
 
         async def handler(request: Request, error: Exception) -> Response:
             return make_error_response(status, str(error) or "The search was stopped.")
@@ -148,7 +150,7 @@ def add_error_handlers(app: FastAPI) -> None:
     on(StoppedError, 409)
 
     async def refused(request: Request, error: Exception) -> Response:
-        """Return 400 with what pydantic finds wrong first."""
+        """Return 400 with the first fault that pydantic finds in a request."""
         assert isinstance(error, RequestValidationError)
         return make_error_response(400, explain_request_error(dict(error.errors()[0])))
 

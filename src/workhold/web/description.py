@@ -1,4 +1,4 @@
-"""The OpenAPI description of the server: what FastAPI makes, with its errors, shapes of answers and examples.
+"""The OpenAPI description of the server: FastAPI's own, completed by errors, shapes of answers and examples.
 
 Answers are made from plain data and are not checked again when they are sent; tests hold them to the shapes.
 Each operation has an example, which a test tries. Answers in it are shown in part: lists by their first
@@ -143,15 +143,15 @@ class JobAnswer(AnswerShape):
 
 @frozen
 class ApiExample:
-    """A request, and what is answered.
+    """An example of a request and its answer.
 
     Parameters
     ----------
-    path, query, headers : values of the address and of headers, by name.
-    body : JSON, or the text of a file.
-    status : of the answer.
-    answer : in part; None where it is no JSON and no text.
-    type : of the answer's content.
+    path, query, headers : values in the path, in the query and in headers, by name.
+    body : body as JSON, or as the text of a file.
+    status : status of the answer.
+    answer : parts of the answer; None where it is neither JSON nor text.
+    type : content type of the answer.
     """
 
     path: dict[str, Any] = field(factory=dict)

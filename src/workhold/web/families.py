@@ -1,4 +1,4 @@
-"""Families of parts over HTTP: what is asked, what a worker finds, and what is made of it."""
+"""Families of parts over HTTP: the request, the family that a worker finds, and its files."""
 
 from __future__ import annotations
 
@@ -68,13 +68,13 @@ class FamilyForm(Form):
 
 @frozen(eq=False)
 class FoundFamily:
-    """A family with its plans, and no more of its members' fixtures than those need.
+    """A family with its plans, and only those fixtures of its members that the plans need.
 
     Parameters
     ----------
-    family : without a table, and its members without patterns.
-    plans : at each point of the curve.
-    text : the family's file.
+    family : the family without its table, its members without patterns.
+    plans : plan at each point of the curve.
+    text : content of the family's file.
     """
 
     family: Family
@@ -106,8 +106,9 @@ class FoundFamily:
         }
 
     def choose_plan(self, setups: int | None) -> FamilyPlan:
-        """Return the plan with the most set-ups up to ``setups``,
-        the one with the fewest for None; InputError if there is none.
+        """Return the plan with the most set-ups, but at most ``setups``; for None the plan with the fewest.
+
+        Raises InputError if there is none.
         """
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
@@ -116,7 +117,7 @@ class FoundFamily:
 
 
 def find_family(payload: AskedQueries, order: TaskContext) -> FoundFamily:
-    """Return the family of the queries' parts; it reports ("progress", fraction, found)."""
+    """Return the family of the queries' parts; progress is reported as ("progress", fraction, found)."""
     from workhold.family.family import MemberRequest, make_family, write_family_json
 
     def progress(fraction: float, found: int) -> None:
@@ -154,7 +155,7 @@ def find_family(payload: AskedQueries, order: TaskContext) -> FoundFamily:
 
 
 def number_repeated_names(names: list[str]) -> list[str]:
-    """Return the names in order, with " (2)", " (3)" … behind those that occurred before.
+    """Return the names in order; a name that occurred before gets " (2)", then " (3)", … at its end.
 
     >>> number_repeated_names(["a", "b", "a"])
     ['a', 'b', 'a (2)']
@@ -167,7 +168,9 @@ def number_repeated_names(names: list[str]) -> list[str]:
 
 @frozen(eq=False)
 class FamilyPaper:
-    """An order of one of :data:`PAPERS`: the plan of at most so many set-ups, in a unit, of a day."""
+    """An order of one of :data:`PAPERS`, for the plan with at most a number of set-ups, with a unit and a
+    date.
+    """
 
     kind: str
     found: FoundFamily

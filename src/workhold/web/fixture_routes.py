@@ -89,7 +89,7 @@ class PaperForm(AddressForm):
     revision: Revision = None
 
     def to_sheet_question(self) -> SheetQuestion:
-        """Return what stands on the sheet, in mm; its day is today where none is asked for."""
+        """Return the contents of the sheet as a question, lengths in mm; without a date it has today's."""
         rows, unit = list_declarations(SheetQuestion), find_unit(self.unit)
         given = {
             row.name: convert_field_to_mm(row, value, unit)
@@ -99,9 +99,7 @@ class PaperForm(AddressForm):
 
 
 def convert_field_to_mm(row: Declaration, value: Any, unit: Unit) -> Any:
-    """Return the value of a sheet's field in mm,
-    where it is a length or a place; any other value unchanged.
-    """
+    """Return the value of a sheet's field in mm where it is a length or a place, else unchanged."""
     if row.form == "length" and value is not None:
         return unit.to_mm(value)
     return tuple(map(unit.to_mm, value)) if row.form == "place" and value is not None else value
@@ -118,9 +116,10 @@ def find_ranked_fixture(result: Result, rank: int) -> int:
 async def find_seating(
     request: Request, name: str, rank: int, revision: int | None
 ) -> tuple[Held, Seating | HandLoading]:
-    """Return the fixture with part and toolkit, and its seating, or for two clamps how it is put in by hand.
+    """Return the fixture with part and toolkit, and its seating; for two clamps how it is put in by hand
+    instead.
 
-    It is found once and kept with the job.
+    It is worked out at the first call and kept with the job.
     """
     job = find_job(request, name)
     result = get_job_result(job, revision)
@@ -267,8 +266,9 @@ async def warnings(
 
 
 def make_set_up_before(request: Request, form: FirstSideForm | None) -> Before | None:
-    """Return query and fixture of the set-up of the other side,
-    with the faces it cuts as faces to avoid; None for None.
+    """Return query and fixture of the set-up of the other side; None for None.
+
+    The faces that it cuts are among the query's faces to avoid.
     """
     if form is None:
         return None

@@ -71,15 +71,16 @@ class PaperOrder:
     Parameters
     ----------
     kind : one of :data:`KINDS`.
-    result : all fixtures for a sheet, which names the others; else one of no other.
-    rank, count : of the fixture, from 1, and how many there are.
-    question : what stands on a sheet or in a set-up.
-    unit : of lengths.
-    loads : instead of those of the result; None for those.
-    result_hash : of the result's file, or None where it is not known yet.
-    supports : what supports and clamp on top are asked for, and which set of them; None for none.
-    before : the set-up of the other side before; None for none.
-    shape : of the part, as its own file has it; None where a prism stands for it.
+    result : for a sheet the whole result, as the sheet names other fixtures; else a result with this fixture
+        only.
+    rank, count : rank of the fixture, from 1, and number of all fixtures.
+    question : contents of a sheet or a set-up.
+    unit : unit of lengths.
+    loads : loads used instead of the result's; None for the result's.
+    result_hash : hash of the result's file; None where it is not known yet.
+    supports : supports and clamp on top that are asked for, and the number of the set; None for none.
+    before : set-up of the other side before this one; None for none.
+    shape : shape of the part from its own file; None to show a prism.
     """
 
     kind: str
@@ -105,9 +106,7 @@ class PaperOrder:
         return self.result[self.index]
 
     def find_chosen_supports(self) -> ChosenSupports | None:
-        """Return the chosen set of the supports asked for;
-        None where none are asked for, or none hold the part.
-        """
+        """Return the chosen set of supports; None where no supports are asked for, or none hold the part."""
         if self.supports is None:
             return None
         asked = SupportsOrder(self.fixture, self.result.query, self.supports)
@@ -120,12 +119,12 @@ def has_step() -> bool:
 
 
 def make_paper(payload: PaperOrder, order: TaskContext) -> tuple[bytes, str | None]:
-    """Return the bytes of what was ordered, and the hash of the result's file if it was needed, else None."""
+    """Return the bytes of the paper ordered, and the hash of the result's file if it was needed, else None."""
     return KINDS[payload.kind][1](payload)
 
 
 def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Return a setup sheet and the hash of the result's file."""
+    """Return (content of a setup sheet, hash of the result's file)."""
     from workhold.drawing.sheet import draw_setup_sheet
     from workhold.model.first_side import compare_with_first_side
     from workhold.presenting.papers import make_pages_file
@@ -160,7 +159,7 @@ def compute_hash(result: Result) -> str:
 
 
 def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Return a set-up for CAM or a list of pins, and None."""
+    """Return (content of a set-up for CAM or of a list of pins, None)."""
     from workhold.presenting.papers import make_model_file
 
     ending = Path(order.kind).suffix
@@ -181,7 +180,7 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def make_picture_file(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Return a picture of the fixture as SVG, and None."""
+    """Return (picture of the fixture as SVG, None)."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.drawing.path_drawn import make_planned_path
     from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes
@@ -199,7 +198,7 @@ def make_picture_file(order: PaperOrder) -> tuple[bytes, str | None]:
 
 
 def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
-    """Return the fixture as a GLB file, and None."""
+    """Return (content of a GLB file with the fixture, None)."""
     from workhold.presenting.assembly import Assembly
 
     chosen = order.find_chosen_supports()
@@ -252,9 +251,9 @@ class ClosingOrder:
 
     Parameters
     ----------
-    held : the fixture.
+    held : the fixture with part and toolkit.
     seating : its seating.
-    form : where the part was put.
+    form : where the part was put, and how far the jaws are open.
     """
 
     held: Held
@@ -263,7 +262,7 @@ class ClosingOrder:
 
 
 def make_seating_sentences(held: Held, seating: Seating, unit: str) -> SeatingSentences:
-    """Return what writes sentences about a seating, with lengths in a unit."""
+    """Return an object that writes sentences about a seating, with lengths in the unit."""
     return SeatingSentences(seating, held[0], held[2], make_length_unit(held, unit))
 
 
@@ -275,8 +274,9 @@ def make_length_unit(held: Held, unit: str) -> LengthUnit:
 
 
 def find_seating(held: Held, order: TaskContext) -> Seating | HandLoading:
-    """Return the seating of a fixture, that of the result or worked out now;
-    for two clamps how the part is put in by hand.
+    """Return the seating of a fixture: that of the result, or else worked out here.
+
+    For two clamps, return how the part is put in by hand.
     """
     from workhold.seating.solver import SeatingSolver
 
@@ -288,13 +288,13 @@ def find_seating(held: Held, order: TaskContext) -> Seating | HandLoading:
 
 
 def describe_seating(held: Held, seating: Seating | HandLoading, unit: str) -> dict[str, Any]:
-    """Return a seating as plain data: a result file's fields and what they mean;
-    for two clamps ``by_hand`` only.
+    """Return a seating as plain data: the fields of a result file, and further fields below; for two clamps
+    only ``by_hand``.
 
-    ``own`` is the index in ``seats`` of the fixture's own seat. ``nearest`` are the indices of the wrong
-    seats that can be reached, by how close their readings are to its own. ``clamping`` is 1 where
+    ``own`` is the index in ``seats`` of the fixture's own seat; ``nearest`` are the indices of the wrong
+    seats within reach, the one whose reading is closest to the own one first. ``clamping`` is 1 where
     ``jaw_separation`` falls while the part is clamped, -1 where it rises. ``widest`` is how far in mm the
-    jaws open beyond where they hold the part, and ``done`` a word for opened. ``captions`` are lines of text
+    jaws open beyond where they hold the part, ``done`` a word for opened, and ``captions`` are lines of text
     for each seat.
     """
     if isinstance(seating, HandLoading):
@@ -319,7 +319,7 @@ def describe_seating(held: Held, seating: Seating | HandLoading, unit: str) -> d
 
 
 def close(payload: ClosingOrder, order: TaskContext) -> dict[str, Any] | None:
-    """Return the path, the ending and the words of a simulated closing; None once it was cancelled.
+    """Return the path, the ending and the words of a simulated closing; None if it was cancelled.
 
     "way" has rows [degrees, x, y, opening] in mm; "seat" is an index in the seating's seats, or None.
     """

@@ -75,8 +75,9 @@ class ToolkitRequest(Form):
 
 
 def restore_form(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
-    """Return the form of a toolkit with these fields, as pickle needs it;
-    ``is_named`` says that it has a title.
+    """Return the form of a toolkit with these fields; called by pickle.
+
+    ``is_named`` says that the form has a title.
     """
     forms = NAMED_FORMS if is_named else FORMS
     form: ToolkitRequest = forms[find_table(said["kind"]).noun](**said)
@@ -104,15 +105,15 @@ TYPES: Mapping[str, Any] = {
 
 
 def make_field_entry(row: ToolkitField) -> tuple[Any, Any]:
-    """Return the type and the default of a toolkit's field in a request."""
+    """Return (type, default) of a toolkit's field in a request."""
     return make_optional_entry(
         Annotated[int, Field(ge=1, le=row.most)] if row.form == "count" else TYPES[row.form], row
     )
 
 
 def make_kind_entry(kinds: tuple[str, ...]) -> tuple[Any, Any]:
-    """Return the type and the default of the field "kind";
-    where the usual kind is among ``kinds`` it may be left out.
+    """Return (type, default) of the field "kind", which may be left out where the usual kind is among
+    ``kinds``.
     """
     return (Name, USUAL) if USUAL in kinds else (Literal[kinds], ...)
 
@@ -207,8 +208,10 @@ class SearchForm(Form):
     )
 
     def to_query(self, toolkit: Toolkit, most_segments: int) -> Query:
-        """Return the query for a toolkit;
-        raise InputError for a part of more segments, and for what cannot be asked.
+        """Return the query for a toolkit.
+
+        Raises InputError for a part with more than ``most_segments`` segments, and for requirements that
+        cannot be asked.
         """
         loads = tuple(form.to_load() for form in self.loads)
         workpiece = self.workpiece.to_workpiece(most_segments)
@@ -240,7 +243,7 @@ class JobForm(SearchForm):
     every: bool = Field(default=False, description="find all fixtures, even where there are over 200,000")
 
     def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """Return one pair of "" and the query."""
+        """Return a single pair ("", query)."""
         query = self.to_query(self.toolkit.to_toolkit(), most_segments)
         return (("", evolve(query, **collect_given_values(self, OF_ONE))),)
 

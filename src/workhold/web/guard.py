@@ -34,24 +34,25 @@ class ServerLimits:
 
     Parameters
     ----------
-    upload_bytes : of a file with a part.
-    request_bytes : of any other request.
-    body_seconds : for a request to arrive.
-    uploads, client_uploads : files that may arrive at the same time, in all and from one address.
-    segments : of a part.
-    searches : searches at the same time, each in a process of its own.
-    desks : processes for everything that is quick: reading files, pictures, loads.
-    waiting : searches, or quick things, that may wait for a process.
-    jobs : searches of one address that are not over.
-    seconds : for one search; what was found by then is its result.
-    desk_seconds : for reading a file, a picture and the like.
-    memory_bytes, desk_memory_bytes : address space of a process that searches, and of one that does the rest.
-    fixtures : kept of one search, the best ones.
-    kept_jobs, kept_bytes : searches and bytes of their fixtures kept; the longest unused go first.
-    life_seconds : after the last use of a search until it is forgotten.
-    left_seconds : after which a job that its client has left is cancelled, where that was asked.
-    streams : streams of events at the same time.
-    connections, client_connections : at the same time, in all and from one address.
+    upload_bytes : most bytes of a file with a part.
+    request_bytes : most bytes of any other request.
+    body_seconds : seconds within which a request must arrive.
+    uploads, client_uploads : files that may arrive at the same time, from all addresses and from one.
+    segments : most segments of a part.
+    searches : number of searches at the same time, each in a process of its own.
+    desks : number of processes for everything that is quick: reading files, pictures, loads.
+    waiting : number of searches, and of quick tasks, that may wait for a process.
+    jobs : number of unfinished searches of one address.
+    seconds : time limit of a search; what it has found by then is its result.
+    desk_seconds : time limit for reading a file, a picture and the like.
+    memory_bytes, desk_memory_bytes : address space of a process that searches, and of one for quick tasks.
+    fixtures : most fixtures kept of one search, the best ones.
+    kept_jobs, kept_bytes : number of searches kept, and bytes of their fixtures; those unused for longest are
+        forgotten first.
+    life_seconds : seconds after its last use until a search is forgotten.
+    left_seconds : seconds after which a job is cancelled that its client has left, where that was asked for.
+    streams : number of streams of events at the same time.
+    connections, client_connections : connections at the same time, from all addresses and from one.
     """
 
     upload_bytes: int = 20_000_000
@@ -79,9 +80,9 @@ class ServerLimits:
 
 
 def compute_usual_memory(searches: int) -> int:
-    """Return the bytes of address space for each of ``searches`` searches that run at the same time.
+    """Return the bytes of address space for each of ``searches`` simultaneous searches.
 
-    It is 4 GiB or, where the machine has less for each, its share, but at least 1 GiB.
+    It is 4 GiB, or an equal share of the machine's memory where that is less, but at least 1 GiB.
     """
     try:
         memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
@@ -158,11 +159,11 @@ class Guard:
 
     Parameters
     ----------
-    app : what it stands before.
+    app : application that it protects.
     hosts : names of the server.
-    limits : of bytes and of the time a request may take to arrive.
-    token : a secret that every request must bring, or None.
-    origins : of other sites' pages that may use it.
+    limits : limits on bytes, and on the time a request may take to arrive.
+    token : secret that every request must contain; None for none.
+    origins : origins of other sites' pages that may use the server.
     """
 
     app: App
@@ -173,8 +174,8 @@ class Guard:
     arriving: Counter[str] = field(factory=Counter, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request that is refused,
-        and pass any other on to the application with limits on its body.
+        """Answer a request that is refused; pass any other request to the application, with limits on its
+        body.
         """
         if scope["type"] != "http":
             await self.app(scope, receive, send)
@@ -227,8 +228,8 @@ class Guard:
             self.arriving += Counter()
 
     def find_refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
-        """Return status and sentence for a request that is refused by its headers;
-        None for one that is let through.
+        """Return (status, sentence) for a request that its headers make inadmissible; None for an admissible
+        one.
         """
         host = headers.get("host", "")
         if not self.hosts.knows(host):
@@ -254,7 +255,7 @@ class Guard:
 
 
 def holds_token(token: str, headers: dict[str, str]) -> bool:
-    """Return whether the headers of a request hold the token, in the cookie or as a bearer's."""
+    """Return whether a request's headers contain the token, as a cookie or as a bearer token."""
     cookies = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
     offered = [value for name, _, value in cookies if name == COOKIE]
     kind, _, value = headers.get("authorization", "").partition(" ")
@@ -264,8 +265,9 @@ def holds_token(token: str, headers: dict[str, str]) -> bool:
 
 
 async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
-    """Answer a request without the token:
-    401, or a redirect that sets the cookie where the address holds the token.
+    """Answer a request without the token: status 401, or a redirect that sets the cookie.
+
+    The redirect is sent where the address of the request contains the token.
     """
     query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
     offered = query.get("token", [""])[0]
@@ -284,13 +286,13 @@ async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
 
 @define
 class LimitedBody:
-    """The body of a request, of which no more is taken than allowed.
+    """The body of a request, read up to a limit of bytes and of time.
 
     Parameters
     ----------
-    receive : the server's own.
-    most : bytes.
-    seconds : for all of it.
+    receive : the server's own function to receive messages.
+    most : most bytes.
+    seconds : time limit for the whole body.
     """
 
     receive: Receive

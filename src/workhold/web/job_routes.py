@@ -37,7 +37,7 @@ EMPTY = FixtureTable.make_empty()
 
 
 def find_job(request: Request, name: str) -> ServerJob:
-    """Return the job of a name, and note that it was used; answer 404 where there is none."""
+    """Return the job with a name, and note that it was used; answer 404 where there is none."""
     job = get_state(request).jobs.get(name)
     if job is None:
         raise HTTPException(404, "There is no such search (any more): search again.")
@@ -47,7 +47,7 @@ def find_job(request: Request, name: str) -> ServerJob:
 def get_job_result(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
     """Return the result of a search.
 
-    ``revision`` is the one that the caller has seen, None for any; ``when_over`` refuses the result of a
+    ``revision`` is the revision that the caller has seen, None for any; ``when_over`` refuses the result of a
     search that still runs. Answers 409 where there is no result (yet) or the revision has changed.
     """
     if job.compares:
@@ -172,7 +172,8 @@ async def events(
 
 
 def read_seen_version(text: str | None) -> int | None:
-    """Return the version of a job from the id of an event; None for anything that is no such id.
+    """Return the version of a job from the id of an event; None for text that is not such an id, and for
+    None.
 
     >>> read_seen_version("12"), read_seen_version("-1"), read_seen_version(None)
     (12, None, None)
@@ -181,8 +182,9 @@ def read_seen_version(text: str | None) -> int | None:
 
 
 async def yield_events(server: ServerState, job: ServerJob, sent: int | None) -> AsyncIterator[str]:
-    """Yield the events of a job until it is over or the server closes,
-    skipping the version ``sent``, which the client has.
+    """Yield the events of a job until it is over or the server closes.
+
+    The version ``sent``, which the client has already, is skipped.
     """
     watcher = asyncio.Event()
     job.watchers.add(watcher)
@@ -249,7 +251,8 @@ async def fixtures(
 
 
 def get_capture_range(result: Result, rank: int) -> dict[str, float | None] | None:
-    """Return {"opening": capture opening in mm} of a fixture; None where its seating is not known.
+    """Return {"opening": capture opening in mm} of the fixture of a rank; None where its seating is not
+    known.
 
     The opening is None where the part is never lost, however far the jaws open.
     """
@@ -301,7 +304,9 @@ async def result_csv(request: Request, name: str) -> Response:
 def download(
     job: ServerJob, text: Callable[[Result], Iterator[str]], ending: str, content_type: str
 ) -> Response:
-    """Return a file of a finished search's result as a stream to be saved; ``text`` yields its parts."""
+    """Return a file of a finished search's result, streamed and to be saved by the browser; ``text`` yields
+    its parts.
+    """
     result = get_job_result(job, when_over=True)
     headers = {"Content-Disposition": make_attachment_header(result.workpiece.name, ending)}
     return StreamingResponse(text(result), media_type=content_type, headers=headers)

@@ -2,7 +2,7 @@
 
 Glossary
 --------
-job : a search, a comparison of toolkits, or a family of parts, with what is known of it.
+job : a search, a comparison of toolkits, or a family of parts, with its state and what it has found.
 revision : a number that grows whenever the fixtures to show have changed.
 """
 
@@ -60,14 +60,15 @@ class ServerJob:
     Parameters
     ----------
     name : a random token.
-    request : what was asked for, as it came.
-    asked : the query, or those of a comparison and what their toolkits are called.
-    address : who asked.
+    request : the request as it came.
+    asked : the query; for a comparison, the queries and the names of their toolkits.
+    address : address of the client.
     kind : "design", "explore" for a comparison of toolkits, or "family" of several parts.
-    weight : about how many bytes of memory the request takes.
-    stops_when_left : whether the job is cancelled once nobody has asked for it or followed it for some time.
-    shape : of the part, where its file was sent for it.
-    best : how many of the fixtures listed are known to be the best of all, while the others are searched.
+    weight : estimate of the bytes of memory that the request takes.
+    stops_when_left : whether the job is cancelled once no client has asked for it or followed it for some
+        time.
+    shape : shape of the part, where its file was sent for that.
+    best : how many of the listed fixtures are known to be the best of all while the search continues.
     """
 
     name: str
@@ -112,7 +113,9 @@ class ServerJob:
 
     @property
     def size(self) -> int:
-        """Estimate of the bytes that the job keeps: request, shape, fixtures, and orders of the list."""
+        """Estimate of the bytes that the job keeps: request, shape, fixtures, and cached selections of the
+        list.
+        """
         kept = self.weight + estimate_shape_size(self.shape)
         kept += sum(found.index.nbytes + found.like.nbytes for found in self.orders.values())
         if self.result is None:
@@ -156,17 +159,16 @@ class ServerJob:
         }
 
     def keep_seating(self, key: tuple[int, int], seating: Seating | HandLoading) -> None:
-        """Keep the seating of a fixture under (revision, rank),
-        and forget the oldest where too many are kept.
+        """Keep the seating of a fixture under ``key``, (revision, rank).
+
+        The oldest one is dropped where too many are kept.
         """
         while len(self.seatings) >= SEATINGS_KEPT:
             self.seatings.pop(next(iter(self.seatings)))
         self.seatings[key] = seating
 
     def choose_entries(self, selection: ListSelection, result: Result) -> ShownEntries:
-        """Return the entries of the result that a selection chooses;
-        those of the last few selections are cached.
-        """
+        """Return the entries of the result that a selection chooses; recent selections are cached."""
         key = (self.revision, selection)
         if key not in self.orders:
             found = selection.choose_entries(result)
@@ -182,8 +184,8 @@ class JobRegistry:
 
     Parameters
     ----------
-    pool : of workers that search.
-    limits : how much of everything.
+    pool : workers that search.
+    limits : limits of the server.
     """
 
     pool: WorkerPool
@@ -218,7 +220,7 @@ class JobRegistry:
         sent_bytes: int = 0,
         stops_when_left: bool = False,
     ) -> ServerJob:
-        """Return a new job, begun in the background; ``sent_bytes`` is the length of its request.
+        """Return a new job, which runs in the background; ``sent_bytes`` is the length of its request.
 
         Raises TooManyError or BusyError as :meth:`refuse_more`.
         """
@@ -325,7 +327,7 @@ class JobRegistry:
         job.wake_watchers()
 
     async def explain(self, job: ServerJob) -> Explanation:
-        """Return why a job found no fixture; worked out once, and shared by all who ask.
+        """Return why a job found no fixture; computed once and shared by all callers.
 
         Raises
         ------
@@ -343,7 +345,7 @@ class JobRegistry:
             self.pool.cancel(job.task)
 
     def delete(self, name: str) -> None:
-        """Stop and forget the job of a name, if there is one."""
+        """Stop and forget the job with a name, if there is one."""
         job = self.by_name.pop(name, None)
         if job is None:
             return
@@ -376,7 +378,7 @@ class JobRegistry:
                 watcher.set()
 
     def free_memory(self) -> None:
-        """Arrange that memory of deleted jobs is given back soon, once for many of them."""
+        """Schedule one :meth:`give_back` for the memory of deleted jobs, unless one is scheduled already."""
         if self.freeing is None or self.freeing.done():
             self.freeing = asyncio.create_task(self.give_back())
 

@@ -28,17 +28,17 @@ Headers = list[tuple[bytes, bytes]]
 
 @frozen
 class AllowedOrigins:
-    """The origins whose pages may ask for anything, as their own page may.
+    """The origins of other sites whose pages may use the server as the server's own page does.
 
     Parameters
     ----------
-    names : such as ``https://shop.example``, as :func:`check_origin` writes them.
+    names : origins such as ``https://shop.example``, in the form that :func:`check_origin` returns.
     """
 
     names: Collection[str] = ()
 
     def allows(self, headers: Mapping[str, str]) -> bool:
-        """Return whether the header "origin" of a request is one of the names.
+        """Return whether the header "origin" of a request is one of the allowed origins.
 
         >>> AllowedOrigins(("https://shop.example",)).allows({"origin": "https://shop.example"})
         True
@@ -50,7 +50,9 @@ class AllowedOrigins:
         return method == "OPTIONS" and "access-control-request-method" in headers and self.allows(headers)
 
     def answer_preflight(self, headers: Mapping[str, str]) -> Headers:
-        """Return the headers that answer a preflight: methods and headers that such a page may send."""
+        """Return the headers that answer a preflight: the methods and headers that a page of an allowed
+        origin may send.
+        """
         may = [
             (b"access-control-allow-methods", METHODS.encode()),
             (b"access-control-allow-headers", ASKED.encode()),
@@ -62,10 +64,10 @@ class AllowedOrigins:
         return may
 
     def make_sharing_headers(self, headers: Mapping[str, str]) -> Headers:
-        """Return the headers with which a browser hands the answer to the page;
-        only "vary" for an origin not allowed.
+        """Return the headers with which a browser hands the answer to the page.
 
-        The list is empty where no origin is allowed at all.
+        For an origin that is not allowed it is only "vary"; where no origin is allowed at all the list is
+        empty.
         """
         if not self.names:
             return []

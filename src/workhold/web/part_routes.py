@@ -114,9 +114,7 @@ OF_ALL_FILES = ("unit", "part_number", "layers", "join_tolerance")
 
 
 async def collect_upload(request: Request, asked: Annotated[UploadForm, Query()]) -> UploadedPart:
-    """Return the file that is sent, with its name and the
-    options of how to read it that count for its kind.
-    """
+    """Return the file that is sent, with its name and those reading options that apply to its kind."""
     content = await request.body()
     name = clean_file_name(request.headers.get("x-filename", ""))
     given = asked.model_dump(exclude_none=True, exclude={"heights"})
@@ -171,8 +169,9 @@ async def shape_part(
 
 
 def clean_file_name(header: str) -> str:
-    """Return a file's name from a header, for display:
-    unquoted, without folders and what cannot be printed, shortened.
+    """Return a file's name from a header, for display.
+
+    It is unquoted and shortened; folders and unprintable characters are removed.
     """
     name = unquote(header, errors="replace").replace("\\", "/").rpartition("/")[2]
     return "".join(letter for letter in name if letter.isprintable())[-LONGEST_NAME:].strip()

@@ -62,13 +62,13 @@ ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
 
 @frozen
 class UploadedPart:
-    """A file with a part as it came.
+    """A file with a part as it was sent.
 
     Parameters
     ----------
-    content : its bytes.
-    name : what the user calls it; never used as a path.
-    most_segments : the most segments of the part.
+    content : bytes of the file.
+    name : the user's name of the file; never used as a path.
+    most_segments : most segments that the part may have.
     options : keyword arguments of :func:`workhold.files.part.load.read_workpiece`.
     """
 
@@ -90,7 +90,7 @@ def check_part(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[s
 
 
 def describe_builtin_part(name: str, order: TaskContext) -> dict[str, Any]:
-    """Return a built-in part as plain data; there must be one with this name."""
+    """Return the built-in part with this name, which must exist, as plain data."""
     from workhold.files.part.finding import find_builtin_path
     from workhold.files.part.load import read_workpiece
     from workhold.web.answers import describe_part
@@ -110,9 +110,7 @@ def read_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
 
 
 def survey_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
-    """Return as plain data what a file that was sent holds and
-    what has to be asked, with the part if it can be read.
-    """
+    """Return what a sent file holds and what has to be asked, and the part if it can be read, as plain data."""
     from workhold.files.part.survey import survey_part_file
 
     with write_sent_file(upload) as path:
@@ -123,10 +121,10 @@ def survey_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
 
 @contextmanager
 def write_sent_file(upload: UploadedPart) -> Iterator[Path]:
-    """Yield the path of a temporary file with the content that was sent;
-    InputErrors are raised again without that path.
+    """Yield the path of a temporary file with the content that was sent.
 
-    Arithmetic and value errors within the block become an InputError that says the file is damaged.
+    An InputError in the block is raised again without that path in its sentence; arithmetic and value errors
+    become an InputError that says the file is damaged.
     """
     ending = f".{upload.name.rpartition('.')[2].lower()}"
     with TemporaryDirectory(prefix="workhold-") as folder:
@@ -143,15 +141,15 @@ def write_sent_file(upload: UploadedPart) -> Iterator[Path]:
 
 
 def remove_path(sentence: str, path: Path) -> str:
-    """Return a sentence without the name of a temporary file at its beginning."""
+    """Return a sentence without the temporary file's name at its beginning."""
     return sentence.replace(f"{path.name}: ", "", 1)
 
 
 def describe_uploaded_part(upload: UploadedPart, path: Path, loaded: LoadedPart) -> dict[str, Any]:
-    """Return a part that was read from a sent file as plain data,
-    named after the file where it has no name of its own.
+    """Return a part that was read from a sent file as plain data.
 
-    Raises InputError for more segments than this server takes.
+    It is named after the file where it has no name of its own. Raises InputError for more segments than this
+    server takes.
     """
     from workhold.web.answers import describe_part
     from workhold.web.request_forms import make_checked_part
@@ -173,13 +171,13 @@ def describe_uploaded_part(upload: UploadedPart, path: Path, loaded: LoadedPart)
 
 @frozen(eq=False)
 class ShapeOrder:
-    """An order to find the solid of a part in a file.
+    """An order to find, in a file, the solid that has the outline of a part.
 
     Parameters
     ----------
-    content : of the STEP file.
-    name : what the user calls it.
-    workpiece : whose outline one of its solids gives.
+    content : content of the STEP file.
+    name : the user's name of the file.
+    workpiece : part whose outline one of the solids must have.
     """
 
     content: bytes
@@ -188,7 +186,7 @@ class ShapeOrder:
 
 
 def find_shape(payload: ShapeOrder, order: TaskContext) -> PartShape:
-    """Return the mesh of the solid in a STEP file that gives the outline of a part.
+    """Return the mesh of the solid in a STEP file that has the outline of a part.
 
     Raises InputError for a file of another part, and for a shape that is too large to keep.
     """
@@ -227,10 +225,10 @@ def describe_strokes(chains: Iterable[Chain]) -> list[list[list[float]]]:
 
 
 def describe_survey(seen: DrawingSurvey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """Return as plain data what a file holds, and what has to be asked before its part can be read.
+    """Return what a file holds, and what has to be asked before its part can be read, as plain data.
 
-    Strokes and loops have rows of x, y in mm and bulge. ``heights`` is what other heights of the pegs offer
-    of a solid, and ``solids`` are those in the file with their names.
+    Strokes and loops have rows of x, y in mm and bulge. ``heights`` are the outlines that pegs of other
+    heights meet on a solid, and ``solids`` the solids in the file with their names.
     """
     from workhold.web.answers import find_first_place
 

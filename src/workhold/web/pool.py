@@ -3,7 +3,7 @@
 Glossary
 --------
 task : something a worker does, by name, with a time limit.
-client : who asked for a task; clients take turns, and none has all the workers.
+client : the address that asks for a task; clients take turns, and none gets all the workers.
 slot : a place for one worker; a worker that dies is replaced in its slot.
 """
 
@@ -59,13 +59,13 @@ class PoolTask:
 
     Parameters
     ----------
-    name : see ``web.tasks.TASKS``.
-    payload : what it needs; must be picklable.
-    seconds : how long it may take once it has begun.
-    client : who asked for it.
-    stops_well : whether it gives what it has when asked to stop; its worker is ended at once otherwise.
-    report : called with what the worker sends before it is done.
-    begun : called when a worker begins.
+    name : name of the task in ``web.tasks.TASKS``.
+    payload : argument of the task; must be picklable.
+    seconds : time limit once it has begun.
+    client : address of the client who asked for it.
+    stops_well : whether the task returns what it has when asked to stop; if not, its worker is ended at once.
+    report : called with each value that the worker sends before the task is done.
+    begun : called when a worker begins with the task.
     """
 
     name: str
@@ -102,7 +102,9 @@ class PoolWorker:
 
     @classmethod
     def start(cls, kind: str, memory_bytes: int) -> PoolWorker:
-        """Return a worker with its process started, and a thread of the server that receives its messages."""
+        """Return a worker whose process is started, and a thread of the server that receives its messages is
+        running.
+        """
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=run_worker, args=(theirs, kind, memory_bytes), daemon=True)
@@ -130,7 +132,7 @@ class PoolWorker:
                 loop.call_soon_threadsafe(self.gone.set)
 
     async def send(self, message: Any) -> None:
-        """Send a message to the worker; it is lost where the worker has ended."""
+        """Send a message to the worker; it is lost if the worker has ended."""
         with suppress(OSError, ValueError):
             await asyncio.to_thread(self.connection.send, message)
 
@@ -164,10 +166,10 @@ class WorkerPool:
 
     Parameters
     ----------
-    kind : see ``web.tasks.warm_up``.
-    size : how many workers.
-    memory_bytes : of each.
-    most_waiting : tasks that may wait; a quarter of the places is kept from any single client.
+    kind : kind of the workers, see ``web.tasks.warm_up``.
+    size : number of workers.
+    memory_bytes : address space of each worker, in bytes.
+    most_waiting : number of tasks that may wait; a single client may take three quarters of these places.
     """
 
     kind: str
@@ -198,7 +200,7 @@ class WorkerPool:
         self.give_up("The server was stopped.")
 
     def refuse_more(self, client: str) -> None:
-        """Raise BusyError where too many tasks wait, in all or of this client."""
+        """Raise BusyError where too many tasks wait, of all clients or of this one."""
         of_client = sum(task.client == client for task in self.waiting)
         if len(self.waiting) >= self.most_waiting or of_client >= self.most_waiting - self.most_waiting // 4:
             raise BusyError("The server is busy: try again in a moment.")
@@ -209,8 +211,9 @@ class WorkerPool:
             self.waiting.pop().settle(error=FailedError(sentence))
 
     async def run(self, task: PoolTask) -> Any:
-        """Return the outcome of a task, which is run when its client has its turn;
-        cancelling the caller cancels the task.
+        """Return the outcome of a task, which is run when it is its client's turn.
+
+        If the caller is cancelled, so is the task.
 
         Raises
         ------
@@ -233,17 +236,18 @@ class WorkerPool:
             raise
 
     def cancel(self, task: PoolTask) -> None:
-        """Ask a task to stop; one that still waits is over at once, with StoppedError."""
+        """Ask a task to stop; a task that still waits ends at once, with StoppedError."""
         task.stop.set()
         if task in self.waiting:
             self.waiting.remove(task)
             task.settle(error=StoppedError())
 
     def turn(self) -> PoolTask | None:
-        """Return the next task to run, still among those waiting; None where none may run.
+        """Return the next task to run, without removing it from those waiting; None where none may run now.
 
-        It is one of the client with the fewest workers and, of those, with the oldest last turn. One worker
-        of several is kept from any single client, so that the next client need not wait for its searches.
+        It belongs to the client with the fewest workers and, among equals, with the oldest last turn. Where
+        there are several workers, one is kept free of any single client, so that other clients need not wait
+        for its searches.
         """
         most = max(self.size - 1, 1)
         may = [task for task in self.waiting if self.running[task.client] < most]
@@ -252,8 +256,9 @@ class WorkerPool:
         )
 
     async def wait_for_task(self) -> PoolTask:
-        """Return the next task once there is one, taken from those waiting;
-        a worker counts as its client's from then on.
+        """Wait for a task that may run, remove it from those waiting and return it.
+
+        From then on one worker more counts as its client's.
         """
         while (task := self.turn()) is None:
             self.bell.clear()
@@ -267,7 +272,7 @@ class WorkerPool:
         return task
 
     def release_worker(self, task: PoolTask) -> None:
-        """Note that the worker of a task is no longer its client's."""
+        """Count one worker less for the client of a task."""
         self.running[task.client] -= 1
         self.running += Counter()
         self.bell.set()
@@ -316,8 +321,9 @@ class WorkerPool:
                 del task
 
     async def run_task(self, worker: PoolWorker, task: PoolTask) -> None:
-        """Have a worker do a task and set the task's outcome;
-        a worker that does not stop in time is marked as gone.
+        """Have a worker run a task, and set the task's outcome.
+
+        A worker that does not stop in time is marked as gone.
         """
         clock, number, is_asked = asyncio.get_running_loop().time, next(self.numbers), False
         if task.begun is not None:
@@ -358,10 +364,11 @@ class WorkerPool:
 
 
 async def wait_for_first(*waits: Any, timeout: float | None = None) -> Any:
-    """Wait until any of some coroutines is done or the time is up;
-    return the value of the one named first, if it is done.
+    """Wait until one of several coroutines is done or the time is up; return the first one's value if it is
+    done.
 
-    Return None where it is not done. Coroutines that are not done are cancelled.
+    ``waits[0]`` is the first one. Return None where it is not done. Coroutines that are not done are
+    cancelled.
     """
     tasks = [asyncio.ensure_future(wait) for wait in waits]
     try:

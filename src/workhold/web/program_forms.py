@@ -126,8 +126,9 @@ class ReadProgramForm(Form):
 
 
 def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram:
-    """Return a program that was sent, as it is read;
-    errors name the files as their user does. ``thickness`` is in mm.
+    """Return the program that was sent, as read; errors use the user's names of the files.
+
+    ``thickness`` is that of the part in mm, None where unknown.
     """
     from workhold.files.program.reader import read_program_with_calls
 
@@ -145,7 +146,7 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
 
 @contextmanager
 def write_program_files(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
-    """Yield the paths of temporary files with a program and its tool table, None without a table.
+    """Yield the paths of temporary files with a program and with its tool table, None without a table.
 
     InputErrors are raised again with the user's names of the files; other errors of reading become an
     InputError.
@@ -168,7 +169,7 @@ def write_program_files(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]
 
 
 def rename_files_in_sentence(sentence: str, names: Mapping[str, str]) -> str:
-    """Return a sentence with each path replaced by the name that its user knows."""
+    """Return a sentence with each path in ``names`` replaced by the user's name of that file."""
     for path, name in names.items():
         sentence = sentence.replace(path, name)
     return sentence
@@ -239,8 +240,9 @@ def describe_paths(program: Program) -> Iterator[dict[str, Any]]:
 
 
 def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
-    """Return where the tools of a result's program come nearest to the fixture of an index;
-    None where they never come near.
+    """Return where the tools of a result's program come nearest to the fixture with this index.
+
+    Return None where they never come near.
     """
     from workhold.statics.program_clearance import find_nearest_passing
 
@@ -249,8 +251,8 @@ def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
 
 
 def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
-    """Return what the tools of a result's program ask of a fixture,
-    in N and in sentences; None without forces.
+    """Return which forces the tools of a result's program need of a fixture, in N and in sentences; None
+    without forces.
     """
     from workhold.statics.jaw_program import describe_asked_force
     from workhold.statics.program_forces import find_cutting_need

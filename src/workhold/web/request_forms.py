@@ -106,8 +106,9 @@ class AddressForm(BaseModel):
 
 
 def parse_from_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
-    """Return a value of an address that is JSON, checked;
-    raise InputError, which calls it ``name``, where it is wrong.
+    """Return a value that an address gives as JSON, checked by ``adapter``.
+
+    Raises InputError, which calls the value ``name``, where it is wrong.
     """
     try:
         return adapter.validate_json(text)
@@ -133,9 +134,9 @@ def explain_request_error(error: dict[str, Any]) -> str:
 
 
 def check_body(payload: tuple[type[Form], bytes, int], order: TaskContext) -> None:
-    """Raise InputError for a request with too many values or segments, or that its form does not take.
+    """Raise InputError for a request with too many values or segments, or one that does not fit its form.
 
-    The payload is the form, the body, and the most segments allowed.
+    The payload is (form, body, most segments allowed).
     """
     form, body, most_segments = payload
     try:
@@ -156,7 +157,7 @@ def check_body(payload: tuple[type[Form], bytes, int], order: TaskContext) -> No
 
 
 def count_values(data: Any) -> int:
-    """Return the number of values in a request, containers included."""
+    """Return the number of values in a request; lists and objects count as values too."""
     count, waiting = 0, [data]
     while waiting:
         one = waiting.pop()
@@ -169,9 +170,7 @@ def count_values(data: Any) -> int:
 
 
 def count_most_vertices(data: Any) -> int:
-    """Return the number of vertices of the largest part in a request;
-    0 where it has nothing shaped like a part.
-    """
+    """Return the largest number of vertices of a part in a request; 0 where nothing is shaped like a part."""
     if not isinstance(data, dict):
         return 0
     several = data.get("workpieces")
@@ -255,7 +254,7 @@ def make_checked_part(
 
 
 def refuse_many(count: int, most: int) -> None:
-    """Raise InputError for more segments than this server takes."""
+    """Raise InputError where a part has more segments (``count``) than this server takes (``most``)."""
     if count > most:
         raise InputError(
             f"The part has {count} segments, more than the {most} this server takes: draw its outline with "
@@ -265,8 +264,8 @@ def refuse_many(count: int, most: int) -> None:
 
 @contextmanager
 def explain_number_errors() -> Iterator[None]:
-    """Raise InputError in place of arithmetic and value errors within the block:
-    numbers are too large or too small.
+    """Turn arithmetic and value errors within the block into an InputError: numbers are too large or too
+    small.
     """
     try:
         yield
@@ -282,9 +281,9 @@ SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_
 
 
 def read_heights_in_address(text: str | None) -> dict[str, tuple[float, float]] | None:
-    """Return the heights (low, high) in mm of carriers by role, from JSON in an address; None for None.
+    """Return (low, high) in mm of carriers by role, from JSON in an address; None for None.
 
-    Raises InputError where the lower does not come first.
+    Raises InputError where low is not below high.
     """
     if text is None:
         return None

@@ -1,7 +1,7 @@
-"""The task of a search: the best fixtures first, as where only those are asked for; then all.
+"""The task of a search: first a search for the best fixtures only, then for all.
 
-A search for everything may take minutes before it can put anything in order. Whoever waits at the page sees
-the best fixtures within seconds, and looks at them while the rest is searched.
+A search for all fixtures may take minutes before it can sort any. The user of the page sees the best fixtures
+within seconds, and can look at them while the search goes on.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ TICK = 0.05
 
 @frozen(eq=False)
 class AskedQueries:
-    """Queries of a job: pickled where they are made, and opened by the worker that searches.
+    """Queries of a job: pickled where they are made, unpickled by the worker that searches.
 
     Parameters
     ----------
     sealed : the pickled queries.
-    count : how many they are.
-    toolkit : of the first.
-    arrangements : of this toolkit's fixtures, as plain data.
+    count : number of queries.
+    toolkit : toolkit of the first query.
+    arrangements : arrangements of that toolkit's fixtures, as plain data.
     """
 
     sealed: bytes
@@ -60,8 +60,9 @@ class AskedQueries:
 
     @classmethod
     def from_queries(cls, queries: tuple[NamedQuery, ...]) -> AskedQueries:
-        """Return the queries sealed, with number, toolkit and arrangements,
-        which the server needs without opening them.
+        """Return the queries pickled, with their number, and toolkit and arrangements of the first one.
+
+        The server needs these without unpickling the queries.
         """
         toolkit = queries[0][1].toolkit
         sealed = pickle.dumps(queries, pickle.HIGHEST_PROTOCOL)
@@ -75,13 +76,13 @@ class AskedQueries:
 
     @property
     def query(self) -> Query:
-        """The first query, which is the only one of a search."""
+        """First query; the only one where the job is a search."""
         return self.queries[0][1]
 
 
 @frozen(eq=False)
 class SearchOutcome:
-    """The outcome of a search; ``left_out`` fixtures were found but not kept."""
+    """The outcome of a search; ``left_out`` is the number of fixtures that were found and not kept."""
 
     result: Result
     left_out: int
@@ -89,12 +90,12 @@ class SearchOutcome:
 
 
 def search(payload: tuple[AskedQueries, int, bool], order: TaskContext) -> SearchOutcome:
-    """Return the outcome of a search;
-    it reports ("progress", fraction, found), ("preview", result) and ("first", result).
+    """Return the outcome of a search.
 
-    The payload is the query, the most fixtures to keep, and whether every one is wanted. Reported results
-    belong to the query as it was asked; a first result has the best fixtures of all, in their order. Of very
-    many fixtures only the best are sought, unless every one is wanted.
+    The payload is (query, most fixtures to keep, whether every fixture is wanted). Reports are ("progress",
+    fraction, found), ("preview", result) and ("first", result); the last has the best fixtures of all, in
+    their order. Reported results belong to the query as it was asked. Of very many fixtures only the best are
+    searched for, unless every one is wanted.
     """
     from workhold.limits import choose_thread_count
     from workhold.search.design import answer
@@ -137,12 +138,12 @@ def search(payload: tuple[AskedQueries, int, bool], order: TaskContext) -> Searc
 
 
 class Reporter:
-    """Reports progress now and then, as a part of the whole.
+    """Reports progress of one part of a task as progress of the whole, now and then.
 
     Parameters
     ----------
-    begin, share : where in the whole this part begins, and how much of it it is.
-    least : how many fixtures are known before.
+    begin, share : where this part begins, and its size, both as fractions of the whole.
+    least : number of fixtures known before this part.
     """
 
     def __init__(self, order: TaskContext, begin: float, share: float, least: int = 0) -> None:
@@ -160,8 +161,9 @@ class Reporter:
 
 
 def find_best(query: Query, order: TaskContext, report: Callable[[str, Result], None]) -> Result:
-    """Return the best :data:`FIRST` fixtures of a query;
-    incomplete where that takes long or the order is cancelled.
+    """Return the best :data:`FIRST` fixtures of a query.
+
+    The result is incomplete where that takes long or the order is cancelled.
     """
     from workhold.search.design import answer
 
@@ -176,7 +178,7 @@ def find_best(query: Query, order: TaskContext, report: Callable[[str, Result], 
 
 @contextmanager
 def limit_time(order: TaskContext) -> Iterator[Event]:
-    """Yield an event that is set when the order is cancelled or a part of its time has passed."""
+    """Yield an event that is set when the order is cancelled or when a certain part of its time has passed."""
     enough, done = Event(), Event()
     seconds = min(MOST_SECONDS, MOST_SHARE * order.seconds)
 
@@ -197,10 +199,10 @@ def limit_time(order: TaskContext) -> Iterator[Event]:
 
 
 def put_best_first(result: Result, best: Result) -> Result:
-    """Return the incomplete result of a stopped search with
-    the best fixtures of all put first, each fixture once.
+    """Return the incomplete result of a stopped search with the fixtures of ``best`` put first, each fixture
+    once.
 
-    Return it unchanged for fixtures that friction holds.
+    For fixtures that friction holds, ``result`` is returned unchanged.
     """
     if result.holds:
         return result

@@ -1,4 +1,4 @@
-"""Which fixtures of a table are asked for, and in what order."""
+"""Selection and order of the fixtures of a table that a request asks for."""
 
 from __future__ import annotations
 
@@ -24,14 +24,15 @@ class ListSelection:
 
     Parameters
     ----------
-    sort : "rank" or the key of a figure of quality; what is equal stays in the order of ranks.
+    sort : "rank" or the key of a figure of quality; fixtures with equal values stay in the order of ranks.
     descending : largest first; fixtures without the figure are last either way.
-    type : name of arrangements or the title of one, or None for all.
+    type : name of an arrangement, or the title of several; None for all.
     face : only fixtures that touch this face.
-    angle : only those whose part lies at an angle in this range, in degrees, counter-clockwise from the
-        first.
-    together : of fixtures that are alike (``listing.identity``) only the first.
-    unfit : also those that are none for a workshop; where there are no others they are chosen all the same.
+    angle : only fixtures whose part's angle lies in this range (from, to), in degrees, counter-clockwise from
+        the first to the second.
+    together : of fixtures that are alike (``listing.identity``) list only the first.
+    unfit : list also fixtures that are unfit for a workshop; where there are only such, they are listed
+        anyway.
     """
 
     sort: str = "rank"
@@ -43,8 +44,8 @@ class ListSelection:
     unfit: bool = True
 
     def choose_entries(self, result: Result) -> ShownEntries:
-        """Return the fixtures of a result that are chosen, in order,
-        each with the number of those like it that are left out.
+        """Return the chosen fixtures of a result in order, each with the number of those like it that are
+        left out.
         """
         found = self.choose_indices(result.table, result.toolkit)
         chosen, bad = found, are_unfit(result.table.quality, result.query.tolerance)
@@ -59,8 +60,8 @@ class ListSelection:
         return ShownEntries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 
     def choose_indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
-        """Return the indices of the chosen fixtures of a table, in order;
-        likeness and fitness are not looked at.
+        """Return the indices of the chosen fixtures of a table, in order, without regard to ``together`` and
+        ``unfit``.
 
         Raises
         ------

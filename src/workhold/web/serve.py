@@ -32,15 +32,15 @@ TERMINATED = 143
 
 
 class PatientProtocol(H11Protocol):
-    """HTTP that drops clients who send no request in time, or who take too many connections.
+    """HTTP protocol that drops clients who send no request in time, or who open too many connections.
 
-    A server makes a subclass of its own with these:
+    Each server makes a subclass of its own with these attributes.
 
     Attributes
     ----------
-    most : connections of one address at the same time.
-    trusted : proxies, whose connections are those of many.
-    open_connections : by address.
+    most : most connections of one address at the same time.
+    trusted : addresses of proxies, whose connections come from many clients.
+    open_connections : number of open connections by address.
     """
 
     most: int
@@ -90,9 +90,9 @@ class PatientProtocol(H11Protocol):
 
 
 class Server(uvicorn.Server):
-    """A server that reports when it listens, and notes by which signal it was stopped.
+    """A uvicorn server that reports when it listens, and notes by which signal it was stopped.
 
-    uvicorn would raise that signal again.
+    uvicorn itself would raise that signal again.
     """
 
     def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
@@ -148,9 +148,9 @@ def run_server(
     host, port : where to listen; port 0 takes a free one.
     limits : sizes, counts, times and memory that the server allows.
     more_hosts : further names that the server may be called by.
-    proxies : addresses of reverse proxies that are trusted to say whom they ask for.
-    token : a secret that every request must bring, or None.
-    listening : called with the page's address once it is there.
+    proxies : addresses of reverse proxies that are trusted to name the client that they ask for.
+    token : secret that every request must contain; None for none.
+    listening : called with the page's address once the server listens there.
     prepare : called before the first worker is started, when the address is known to be free.
     origins : of other sites' pages that may use it, as ``web.origins.check_origin`` writes them.
 
@@ -231,7 +231,7 @@ def bound_socket(host: str, port: int) -> socket.socket:
 
 
 def is_everywhere(host: str) -> bool:
-    """Return whether a host stands for every address of the machine, such as 0.0.0.0."""
+    """Return whether a host, such as 0.0.0.0, stands for all addresses of the machine."""
     try:
         return ip_address(host).is_unspecified
     except ValueError:
@@ -239,7 +239,7 @@ def is_everywhere(host: str) -> bool:
 
 
 def is_for_others(host: str) -> bool:
-    """Return whether a server that listens at a host can be reached from other machines.
+    """Return whether other machines can reach a server that listens at this host.
 
     >>> is_for_others("0.0.0.0"), is_for_others("localhost"), is_for_others("127.0.0.9")
     (True, False, False)
@@ -251,8 +251,8 @@ def is_for_others(host: str) -> bool:
 
 
 def list_hosts(host: str, more: Collection[str]) -> AllowedHosts:
-    """Return the names by which a server at this host may be called:
-    those of this machine, the host, and ``more``.
+    """Return the names by which a server at this host may be called: those of the machine, ``host`` and
+    ``more``.
     """
     everywhere = is_everywhere(host)
     names = {*AllowedHosts().names, *(name.lower() for name in more)}
@@ -261,7 +261,7 @@ def list_hosts(host: str, more: Collection[str]) -> AllowedHosts:
 
 
 def format_host(host: str) -> str:
-    """Return a host as it stands in an address that can be opened in a browser."""
+    """Return a host as written in a URL that a browser can open."""
     if is_everywhere(host):
         return "127.0.0.1"
     return f"[{host}]" if ":" in host else host

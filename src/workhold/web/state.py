@@ -48,9 +48,9 @@ class StaticFile:
 
     Parameters
     ----------
-    content : its bytes.
-    type : of content.
-    tag : names this content, for caches.
+    content : bytes of the file.
+    type : content type.
+    tag : identifier of this content, for caches.
     """
 
     content: bytes
@@ -64,8 +64,8 @@ def read_static_files() -> dict[str, StaticFile]:
 
 
 def read_files_below(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
-    """Yield path and file of each file below a folder whose ending is known,
-    with ``prefix`` before the path.
+    """Yield (path, file) for each file below a folder whose ending is known; ``prefix`` comes before the
+    path.
     """
     for entry in folder.iterdir():
         kind = TYPES.get(entry.name.rpartition(".")[2].lower())
@@ -82,8 +82,8 @@ class ServerState:
 
     Parameters
     ----------
-    limits : how much of everything.
-    searchers, desks : workers that search, and those that do what is quick.
+    limits : limits of the server.
+    searchers, desks : workers that search, and workers for quick tasks.
     """
 
     limits: ServerLimits
@@ -116,14 +116,14 @@ class ServerState:
             await self.close()
 
     async def close(self) -> None:
-        """End streams of events, and the workers with what they do; a second call does no harm."""
+        """End streams of events, and the workers with their tasks; calling it again does nothing."""
         self.is_closing.set()
         self.jobs.wake_watchers()
         await asyncio.gather(self.searchers.close(), self.desks.close())
 
 
 def get_state(request: Request) -> ServerState:
-    """Return the state of the server that a request came to."""
+    """Return the state of the server that received a request."""
     state: ServerState = request.app.state.server
     return state
 
@@ -134,10 +134,10 @@ def get_client_address(request: Request) -> str:
 
 
 async def run_at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
-    """Return the outcome of a quick task, done by a worker;
-    see :meth:`workhold.web.pool.WorkerPool.run` for errors.
+    """Return the outcome of a quick task done by a worker.
 
-    It may take ``seconds``, or the usual time of quick tasks for None.
+    The task may take ``seconds``; for None the usual time of quick tasks. For errors see
+    :meth:`workhold.web.pool.WorkerPool.run`.
     """
     state = get_state(request)
     return await state.desks.run(
@@ -146,9 +146,10 @@ async def run_at_desk(request: Request, name: str, payload: Any, seconds: float 
 
 
 async def run_at_desk_while_connected(request: Request, name: str, payload: Any) -> Any:
-    """Return the outcome of a quick task, done by a worker and asked to stop when the client hangs up.
+    """Return the outcome of a quick task done by a worker; the task is asked to stop when the client hangs
+    up.
 
-    The task must end by itself when asked to stop. Raises StoppedError when the client is gone; nobody
+    The task must end by itself when asked to stop. Raises StoppedError when the client is gone, though nobody
     receives it.
     """
     state = get_state(request)
@@ -172,8 +173,8 @@ AT_ONCE = 1 << 15
 class CheckedRoute(APIRoute):
     """A route whose larger requests are checked by a worker first.
 
-    What is wrong with a request in hundreds of thousands of places takes seconds to be found out, in which
-    the server would hear nobody.
+    Checking a request with hundreds of thousands of faults takes seconds, in which the server could not
+    answer anybody.
     """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
@@ -193,7 +194,9 @@ class CheckedRoute(APIRoute):
         return checked
 
     def find_form(self) -> type[Form] | None:
-        """Return the form of the route's requests; None where they have no body, or bytes of a file."""
+        """Return the form of the route's requests; None where they have no body, or the bytes of a file as
+        their body.
+        """
         kinds = get_type_hints(self.endpoint).values()
         return next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Form)), None)
 

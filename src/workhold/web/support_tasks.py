@@ -42,8 +42,8 @@ class SupportsOrder:
     Parameters
     ----------
     fixture : the planar fixture.
-    query : its part and toolkit, with the loads of its search.
-    form : what is asked.
+    query : part and toolkit of the fixture, with the loads of its search.
+    form : the request.
     """
 
     fixture: Fixture
@@ -52,12 +52,14 @@ class SupportsOrder:
 
 
 def find_supports(payload: SupportsOrder, order: TaskContext) -> dict[str, Any]:
-    """Return the best sets of three supports as plain data, with the boxes that show from the side."""
+    """Return the best sets of three supports as plain data, with the boxes to draw from the front and the
+    right.
+    """
     return describe_supports(find_asked_supports(payload), payload.form.unit)
 
 
 def find_asked_supports(asked: SupportsOrder) -> Supports:
-    """Return the supports that a form asks for under a fixture."""
+    """Return the supports under a fixture that an order asks for."""
     from workhold.supports.asking import make_request
     from workhold.supports.listing import find_supports
 
@@ -72,7 +74,8 @@ def find_asked_supports(asked: SupportsOrder) -> Supports:
 
 
 def choose_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
-    """Return the set with this number, from 1, of the supports asked for; None where no set holds the part.
+    """Return the set with this number, from 1, among the best supports found; None where no set holds the
+    part.
 
     Raises InputError for a number without a set.
     """
@@ -108,10 +111,9 @@ def describe_supports(found: Supports, unit: str) -> dict[str, Any]:
 def describe_set(found: Supports, triple: Triple) -> dict[str, Any]:
     """Return one set of three as plain data; forces are None without loads.
 
-    ``travel`` is what the jaws are opened to where the set asks for more than the fixture alone, else None.
+    ``travel`` is the opening of the jaws where the set needs more than the fixture alone, else None.
     ``nearest`` is the point of the triangle's border that is nearest to the clamp. ``built`` has the holes of
-    pegs and supports in plates that can take them all, as on the sheet, where these are others than shown,
-    else None.
+    pegs and supports in plates that have them all, as on the sheet; None where these are the holes shown.
     """
     fixture, clamp, loaded = found.fixture, triple.clamp, bool(found.loads)
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
@@ -142,8 +144,9 @@ def describe_set(found: Supports, triple: Triple) -> dict[str, Any]:
 
 
 def list_standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
-    """Return the names of the holes of pegs, and of supports,
-    with the set-up in the middle of the plate, as the page has it.
+    """Return (names of the pegs' holes, names of the supports' holes) as the page shows them.
+
+    The set-up stands in the middle of the plate.
     """
     query = found.query
     move = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
@@ -153,9 +156,9 @@ def list_standing_holes(found: Supports, triple: Triple) -> tuple[list[str], lis
 
 
 def describe_built_holes(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
-    """Return the holes in which a set is built, where they differ from those of the page.
+    """Return the holes in which a set is built, where they differ from those on the page.
 
-    Return None where they do not differ, or the supports fit no holes.
+    Return None where they do not differ, or where the supports do not fit into the plate's holes.
     """
     query = found.query
     start = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
@@ -189,8 +192,9 @@ def list_support_notes(found: Supports, unit: str) -> list[str]:
 
 
 def list_boxes(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
-    """Yield the box of each slab of each body of a fixture with a set of supports;
-    nothing where pegs have no body.
+    """Yield the box of each slab of each body of a fixture on a set of supports.
+
+    Nothing is yielded where pegs have radius 0, and so no body.
     """
     try:
         bodies = list_bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)

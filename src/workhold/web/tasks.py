@@ -37,7 +37,7 @@ MOST_RESISTING = 10
 
 
 def warm_up(kind: str) -> None:
-    """Import and, on a first run, compile what workers of a kind need: "search" or "desk"."""
+    """Import and, on a first run, compile the modules that workers of a kind ("search" or "desk") need."""
     from workhold.search.design import design
 
     if kind == "search":
@@ -54,8 +54,9 @@ def warm_up(kind: str) -> None:
 
 
 def explore_toolkits(payload: AskedQueries, order: TaskContext) -> None:
-    """Answer one query after the other;
-    it reports ("row", row) and ("progress", fraction, found) and returns nothing.
+    """Answer the queries one after the other.
+
+    Each answer is reported as ("row", row), progress as ("progress", fraction, found).
     """
     from workhold.files.result.writer import make_toolkit_fields
     from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
@@ -80,15 +81,17 @@ def explore_toolkits(payload: AskedQueries, order: TaskContext) -> None:
 
 
 def explain_result(payload: AskedQueries, order: TaskContext) -> Explanation:
-    """Return why the query of a search has no fixture."""
+    """Return why the query of a search has no fixture; the payload has this one query."""
     from workhold.search.explaining import explain
 
     return explain(payload.query)
 
 
 def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: TaskContext) -> AskedQueries:
-    """Return the queries of a request, sealed;
-    raise InputError for what can be found wrong before the search.
+    """Return the queries of a request, pickled; raise InputError for faults that can be found before the
+    search.
+
+    The payload is (form of the request, most segments of a part).
     """
     from workhold.contact.problem import Problem
     from workhold.search.seat_search import make_locating_query
@@ -105,7 +108,10 @@ def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Ta
 
 
 def make_lesson(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[str, Any]:
-    """Return what the page on the method shows of a part."""
+    """Return as plain data what the page on the method shows of a part.
+
+    The payload is (form of the part, most segments).
+    """
     from workhold.presenting.lesson import compute_lesson
 
     form, most_segments = payload
@@ -115,7 +121,10 @@ def make_lesson(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[
 def compute_loads(
     payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: TaskContext
 ) -> list[dict[str, Any]]:
-    """Return what each load of a form does to a fixture, as plain data."""
+    """Return as plain data what each load of a form does to a fixture.
+
+    The payload is (fixture, part, toolkit, form).
+    """
     from workhold.presenting.data import describe_load_case
     from workhold.statics.loads import compute_load_cases
 
@@ -126,7 +135,10 @@ def compute_loads(
 
 
 def list_warnings(payload: tuple[Result, bool, dict[str, Any]], order: TaskContext) -> dict[str, Any]:
-    """Return the warnings of the first fixture of a result and, if ``is_first``, why it comes first."""
+    """Return the warnings of the first fixture of a result and, if ``is_first``, why it is ranked first.
+
+    The payload is (result, is_first, keyword arguments).
+    """
     from workhold.drawing.sheet_facts import list_result_cautions
     from workhold.statics.why_first import explain_why_first
 
@@ -139,9 +151,7 @@ def list_warnings(payload: tuple[Result, bool, dict[str, Any]], order: TaskConte
 
 
 def rank_by_load_reaction(payload: tuple[Result, LoadsForm], order: TaskContext) -> list[tuple[int, float]]:
-    """Return (rank from 1, load reaction in N) of the ten
-    fixtures with the least load reaction, the least first.
-    """
+    """Return (rank from 1, load reaction in N) of the ten fixtures with the least load reaction, ascending."""
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION

@@ -4,7 +4,7 @@ The page draws its fields from this alone, which comes from the data of the kind
 
 Glossary
 --------
-said : fields that a kind's name says by itself, such as the one column of a gripper.
+said : fields whose values follow from the name of a kind, such as the one column of a gripper.
 """
 
 from __future__ import annotations
@@ -58,8 +58,9 @@ class PageField:
 
 
 def list_page_fields(row: Declaration, table: str | None = None) -> Iterator[PageField]:
-    """Yield a field of the page for each label of a declared field;
-    ``table`` names the table that it stands in.
+    """Yield a field of the page for each label of a declared field.
+
+    ``table`` is the name of the table that the field stands in.
     """
     for one in row.labels:
         choosing = "several" if one.several else "one"
@@ -75,8 +76,8 @@ class DescribedToolkit:
 
     Parameters
     ----------
-    name : of the kind, or an alias of ``fixels.kinds``.
-    words : what the page calls it, and the fields to begin with.
+    name : name of the kind, or an alias of one in ``fixels.kinds``.
+    words : the page's name of the kind, and the values that its fields begin with.
     """
 
     name: str
@@ -89,13 +90,13 @@ class DescribedToolkit:
 
     @property
     def fields(self) -> tuple[PageField, ...]:
-        """Fields of the page: those of the kind without those that follow from its name."""
+        """Fields of the page: those of the kind, except fields whose values follow from the kind's name."""
         rows = (row for row in find_table(resolve_kind(self.name)[0]).fields if row.name not in self.said)
         return tuple(one for row in rows for one in list_page_fields(row))
 
     @property
     def roles(self) -> dict[str, str]:
-        """Role of the carriers whose heights a field gives, by the name of the field."""
+        """By name of a field that gives heights, the role of the carriers that have these heights."""
         any_heights = (1.0, 2.0)
         return {
             row.name: role
@@ -161,8 +162,9 @@ def describe_kinds() -> list[dict[str, Any]]:
 
 
 def choose_page_kind(loaded: LoadedToolkit) -> str:
-    """Return the name of the kind under which the page shows a toolkit:
-    the fitting one that fixes most of its fields.
+    """Return the name of the kind under which the page shows a toolkit.
+
+    Of the kinds that fit, it is the one whose name determines the most fields.
     """
     fits = [
         one

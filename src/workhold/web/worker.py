@@ -41,13 +41,13 @@ SPARE_SECONDS = 30.0
 
 @frozen
 class TaskContext:
-    """Means that a task has in its process: reports, cancellation and time.
+    """The access of a running task to its process: reports, cancellation and time limit.
 
     Parameters
     ----------
-    report : sends something to the server before the task is done.
-    cancel : set when the task should stop.
-    seconds : how long it may take.
+    report : function that sends a value to the server before the task is done.
+    cancel : event, set when the task should stop.
+    seconds : time limit of the task.
     """
 
     report: Callable[[Any], None]
@@ -68,7 +68,7 @@ def run_tasks(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: 
         ("done", number, value), ("refused", number, sentence) and ("failed", number, sentence).
     memory_bytes : the most address space the process may take.
     tasks : functions that do the tasks, by name.
-    warm_up : called first, within the limits.
+    warm_up : called first, with the memory limit set.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -117,8 +117,9 @@ def make_folder_prefix(process: int) -> str:
 
 
 def discard_folders(process: int | None) -> None:
-    """Remove the temporary folders of a worker that has ended,
-    by its process id, with all that is in them.
+    """Remove the temporary folders, with their content, of a worker process that has ended.
+
+    ``process`` is its id, None for a process that was never started.
     """
     for path in Path(tempfile.gettempdir()).glob(f"{make_folder_prefix(process or 0)}*"):
         shutil.rmtree(path, ignore_errors=True)
@@ -145,8 +146,9 @@ def return_memory() -> None:
 
 
 def explain_task_error(error: Exception, memory_bytes: int) -> str:
-    """Return a sentence for the client of a task that failed,
-    and print the traceback on stderr unless memory ran out.
+    """Return a sentence for the client of a task that failed.
+
+    The traceback is printed on stderr unless memory ran out.
     """
     if lacks_memory(error):
         return f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives."
@@ -158,10 +160,9 @@ def explain_task_error(error: Exception, memory_bytes: int) -> str:
 
 
 def receive_orders(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
-    """Put tasks from the pipe into the queue,
-    and set the event of the newest one that is cancelled; runs in a thread.
+    """Put tasks from the pipe into the queue, and set the event of the newest task when it is cancelled.
 
-    Ends the process when the server has ended.
+    Runs in a thread, and ends the process when the server has ended.
     """
     newest, cancel = 0, Event()
     while True:

@@ -49,7 +49,7 @@ TURNED = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 def cross(a: Any, b: Any) -> Any:
-    """Return the cross products (...) of vectors (..., 2)."""
+    """Return the cross products (...), as numbers, of plane vectors a and b (..., 2)."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
@@ -60,7 +60,9 @@ def make_rotation(theta: Any) -> Any:
 
 
 class Outline:
-    """The part's outline as arrays with one entry for each segment; material on the left of each."""
+    """The part's outline as arrays with one entry for each of S segments; the material is on the left of each
+    segment.
+    """
 
     def __init__(self, loops: list[list[list[float]]]) -> None:
         rows, self.loop = [], []
@@ -100,7 +102,11 @@ class Outline:
         return bool(np.abs(self.t[i] - self.t[j]).sum() < 1e-9 and off < 1e-7)
 
     def number_faces(self, loops: int) -> Any:
-        """Return (S,), for each segment, the smallest number of the segments that form one face with it."""
+        """Return for each segment the number of its face (S,): the smallest index of the segments that form
+        this face.
+
+        ``loops`` is the number of loops.
+        """
         face = np.arange(len(self.a))
         for number in range(loops):
             here = [k for k, one in enumerate(self.loop) if one == number]
@@ -111,16 +117,16 @@ class Outline:
         return face
 
     def is_whole(self, face: int) -> bool:
-        """Return whether a face, by its number, is a whole circle."""
+        """Return whether the face with this number is a whole circle."""
         of = self.face == face
         return bool(self.arc[face] and np.abs(self.sweep[of]).sum() > 2 * pi - 1e-9)
 
     def has_direction(self, k: Any, angle: Any) -> Any:
-        """Return whether a direction in radians from the centre of arc k meets the arc; numbers or arrays."""
+        """Return whether arc k has a point in a direction (radians) from its centre; numbers or arrays."""
         return ((angle - self.a0[k]) * self.sign[k]) % (2 * pi) <= abs(self.sweep[k])
 
     def compute_arc_point(self, k: Any, angle: Any) -> Any:
-        """Return the point (..., 2) of the circle of arc k in a direction in radians."""
+        """Return the point (..., 2) on the whole circle of arc k in a direction (radians) from its centre."""
         return self.c[k] + self.r[k] * np.stack([np.cos(angle), np.sin(angle)], -1)
 
     def compute_box(self) -> tuple[Any, Any]:
@@ -151,9 +157,11 @@ class Outline:
         return float(best)
 
     def measure_distances(self, q: Any) -> tuple[Any, Any]:
-        """Return distances (M, S) of points (M, 2) from segments, and positions (M, S) of their feet.
+        """Return two arrays (M, S) for M points q (M, 2) and S segments: distances in mm, and positions of
+        the nearest points.
 
-        A position is the distance along the segment from its nearer end, negative beyond it, in mm.
+        A position says how far, in mm along the segment, the foot of the point is from the nearer end; it is
+        negative where the foot lies beyond that end.
         """
         v = q[:, None] - self.a
         along = (v * self.t).sum(-1)
@@ -170,13 +178,18 @@ class Outline:
         return distance, np.where(self.arc, self.r * past, np.minimum(along, self.length - along))
 
     def compute_normals(self, q: Any, k: Any) -> Any:
-        """Return the outward unit normals (M, 2) of segments k (M,) at the feet of points (M, 2)."""
+        """Return for each point q (M, 2) the outward unit normal (M, 2) of its segment k (M,) at the foot of
+        the point.
+        """
         v = (q - self.c[k]) * self.sign[k][:, None]
         size = np.hypot(*v.T)[:, None]
         return np.where(self.arc[k][:, None], v / np.where(size == 0, 1, size), self.normal_of_line[k])
 
     def contains(self, q: Any) -> Any:
-        """Return whether (M,) points (M, 2) lie in the material, by the crossings of two rays."""
+        """Return for each point q (M, 2) whether it lies in the material (M,).
+
+        Two rays from the point must both cross the outline an odd number of times.
+        """
         verdicts = []
         for angle in (0.7354, 2.4131):
             u = np.array([np.cos(angle), np.sin(angle)])
@@ -199,10 +212,9 @@ class Outline:
         return verdicts[0] & verdicts[1]
 
     def find_hits(self, p: Any, u: Any, r: float) -> list[tuple[float, int]]:
-        """Return (s, segment) of places p + s u at which a
-        disc of radius r touches the segment and enters none.
+        """Return where a disc of radius r (mm) that moves along a line touches the part without entering it.
 
-        ``p`` is the disc's centre at s = 0, ``u`` a unit vector.
+        The disc's centre is p + s u, with a unit vector u. The list has (s, index of the touched segment).
         """
         found = []
         turn = cross(u, self.t)
@@ -231,8 +243,9 @@ class Outline:
         return [(float(a), int(b)) for a, b in zip(s[good], which[good], strict=True)]
 
     def find_rotations(self) -> list[float]:
-        """Return the angles in radians of all rotations of the
-        outline onto itself, ascending from 0; sets ``pivot``.
+        """Return the angles in radians of all rotations of the outline onto itself, ascending from 0.
+
+        Set ``pivot``, the point about which they rotate.
         """
         marks = {f: (self.c[f], self.c[f]) if self.whole[f] else None for f in set(self.face.tolist())}
         rows = []
@@ -252,7 +265,10 @@ class Outline:
         return sorted({round(a, 12) for a in found}) if np.ptp(data[:, :4]) > 1e-9 or len(rows) > 2 else [0.0]
 
     def carries_faces_onto_faces(self, rows: Any, angle: float) -> bool:
-        """Return whether a rotation by an angle in radians about the pivot carries each face onto a face."""
+        """Return whether a rotation by an angle (radians) about ``pivot`` carries each face onto a face.
+
+        ``rows`` (F, 5) are for each of F faces its start, its end and its signed radius.
+        """
         R = make_rotation(angle)
         image = rows.copy()
         for at in (slice(0, 2), slice(2, 4)):
@@ -262,7 +278,7 @@ class Outline:
 
 
 class Bench:
-    """The request of one file: toolkit, part and options."""
+    """The toolkit, part and options that a file is about."""
 
     def __init__(self, content: dict[str, Any]) -> None:
         self.kit = content["toolkit"]
@@ -279,8 +295,9 @@ class Bench:
         self.pairs = self.kit.get("clamps") == 2
 
     def list_roles(self, fixture: dict[str, Any]) -> list[str]:
-        """Return the required role of each peg of a fixture, in order:
-        "left", "right", "jaw", "locator", or a clamp's direction.
+        """Return the role that each peg of a fixture must have, in order.
+
+        A role is "left", "right", "jaw", "locator", or the direction of a clamp, such as "-x".
         """
         if self.kind in ("vise", "opening-vise"):
             return {"I": ["left"] * 2 + ["right"] * 2, "II": ["left"] * 3 + ["right"]}[fixture["type"]]
@@ -290,15 +307,15 @@ class Bench:
         return ["locator"] * (1 if self.has_wall else 3) + list(ways)
 
     def list_type_names(self) -> set[str]:
-        """Return the names of the types of fixtures that this kind of toolkit has."""
+        """Return the names of the types that fixtures of this toolkit can have."""
         if self.kind in ("vise", "opening-vise"):
             return {"I", "II"}
         name = {"flat-jaw": "flat", "edge": "edge", "translating-clamp": "clamp"}[self.kind]
         return {name + "2" * self.pairs}
 
     def list_push_directions(self, roles: list[str]) -> Any:
-        """Return the directions (P, 2) in which pegs of these roles
-        push as the toolkit clamps; zero for those that stand still.
+        """Return the direction in which each of P pegs pushes as the toolkit clamps (P, 2); zero for pegs
+        that stand still.
         """
         sign = -1.0 if self.kind == "opening-vise" else 1.0
         known = {
@@ -311,12 +328,15 @@ class Bench:
         return np.array([known[role] for role in roles])
 
     def list_peg_radii(self, roles: list[str]) -> Any:
-        """Return the radius (P,) in mm of the peg of each role."""
+        """Return the radius in mm of each of P pegs (P,), from their roles."""
         return np.array([self.tip if role in DIRECTIONS else self.rho for role in roles])
 
     def compute_wrenches(self, q: Any, n: Any) -> Any:
-        """Return wrenches (..., 3) of unit forces along
-        normals n at points q, moments divided by ``scale``.
+        """Return the wrenches (..., 3) of unit forces along normals n (..., 2) at points q (..., 2) of the
+        part.
+
+        A wrench is the force in x and y, and the moment about the middle of the part's box divided by
+        ``scale``.
         """
         return np.concatenate([n, (cross(q - self.outline.middle, n) / self.scale)[..., None]], -1)
 
@@ -325,7 +345,7 @@ class Bench:
 
 
 def find_set_form_faults(content: Any) -> list[str]:
-    """Return a list of what is wrong with the file's keys and types; empty where nothing is."""
+    """Return a list of sentences on wrong keys and types of a file's content; empty where all are right."""
     if not isinstance(content, dict):
         return ["the file is no JSON object"]
     faults = [f"the key {key} is missing" for key in HEAD if key not in content]
@@ -356,7 +376,7 @@ def find_set_form_faults(content: Any) -> list[str]:
 
 
 def are_all_finite(value: Any) -> bool:
-    """Return whether every float in nested lists and dicts is finite."""
+    """Return whether every float in nested lists and dictionaries is finite."""
     if isinstance(value, dict):
         return all(map(are_all_finite, value.values()))
     if isinstance(value, list):
@@ -365,9 +385,7 @@ def are_all_finite(value: Any) -> bool:
 
 
 def find_form_faults(bench: Bench, fixture: Any) -> list[str]:
-    """Return a list of what is wrong with the keys and
-    types of one fixture; it names only the first fault.
-    """
+    """Return a list with the first fault in the keys and types of a fixture; empty where all are right."""
     try:
         if fixture["type"] not in bench.list_type_names():
             return [f"the type {fixture['type']!r} is none of this toolkit"]
@@ -406,7 +424,11 @@ def find_form_faults(bench: Bench, fixture: Any) -> list[str]:
 
 
 class Batch:
-    """N fixtures of one type and direction as arrays, with their faults and whether each is marginal."""
+    """N fixtures of one type and the same roles of pegs, as arrays.
+
+    ``faults`` has for each fixture a list of what is wrong; ``marginal`` (N,) is True where it is so near a
+    rule's limit that it may be listed or not.
+    """
 
     def __init__(self, bench: Bench, fixtures: Fixtures) -> None:
         self.bench, self.fixtures = bench, fixtures
@@ -422,12 +444,12 @@ class Batch:
         self.push = np.einsum("nji,mj->nmi", self.R, bench.list_push_directions(self.roles))
 
     def blame(self, wrong: Any, words: str) -> None:
-        """Add a fault to each fixture that a mask (N,) selects."""
+        """Add the text ``words`` to the faults of each fixture that the mask ``wrong`` (N,) selects."""
         for n in np.flatnonzero(wrong):
             self.faults[n].append(words)
 
     def judge(self) -> None:
-        """Check every rule, and collect the faults in ``faults`` and ``marginal``."""
+        """Check the fixtures against every rule; write the results into ``faults`` and ``marginal``."""
         bench = self.bench
         theta = np.array([f["pose"]["theta_deg"] for f in self.fixtures])
         self.blame((theta < 0) | (theta >= 360), "theta_deg lies outside [0, 360)")
@@ -441,8 +463,9 @@ class Batch:
         self.check_figures()
 
     def check_contacts(self) -> None:
-        """Check rules 1 and 2: each peg touches its face between
-        the ends, and none enters the part; set ``n``, the normals.
+        """Check rules 1 and 2: each peg touches its face between the face's ends, and no peg enters the part.
+
+        Set ``n`` (N, P, 2), the part's outward normals at the contacts.
         """
         outline, self.n = self.bench.outline, np.zeros_like(self.q)
         for m, radius in enumerate(self.bench.list_peg_radii(self.roles)):
@@ -463,8 +486,9 @@ class Batch:
             self.n[:, m] = outline.compute_normals(q, k)
 
     def check_wall(self) -> Any:
-        """Check that the part lies flush on the wall between the
-        stated points; return these contacts' wrenches (N, 2, 3).
+        """Check that the part lies flush on the wall, from one stated point to the other.
+
+        Return the wrenches (N, 2, 3) of the wall's contacts at these two points.
         """
         outline, ends = self.bench.outline, []
         lowest = np.einsum("nij,sj->nsi", self.R, outline.a) + self.shift[:, None]
@@ -491,11 +515,11 @@ class Batch:
         return np.stack(ends, 1)
 
     def read_numbers(self, key: str, members: list[int]) -> Any:
-        """Return the columns or rows (N, M), by ``key``, of the pegs with these indices."""
+        """Return a number of the pegs with the indices ``members`` (N, M): ``key`` is "column" or "row"."""
         return np.array([[f["pegs"][m][key] for m in members] for f in self.fixtures])
 
     def check_jaws(self) -> None:
-        """Check rule 3 of a vise: holes, columns, rows, the gap and the opening."""
+        """Check rule 3 for a vise: holes, columns, rows, the gap between the jaws' pegs, and the opening."""
         kit, pitch, columns = self.bench.kit, self.bench.pitch, self.bench.kit["columns"]
         sides = {s: [m for m, role in enumerate(self.roles) if role == s] for s in ("left", "right")}
         S = np.array([f["jaw_separation"] for f in self.fixtures], float)
@@ -524,13 +548,15 @@ class Batch:
             self.marginal |= kit["max_opening"] - EDGE < S
 
     def refuse_shared(self, i: Any, j: Any) -> None:
-        """Blame fixtures with two pegs in one hole; columns i and rows j are (N, M)."""
+        """Add a fault to fixtures with two pegs in one hole, from the columns i and rows j (N, M) of M
+        pegs.
+        """
         for a, b in combinations(range(i.shape[1]), 2):
             self.blame((i[:, a] == i[:, b]) & (j[:, a] == j[:, b]), "two pegs stand in one hole")
 
     def check_rows(self, j: Any) -> None:
-        """Blame rows (N, M) that do not exist, and fixtures that
-        are not shifted to the lowest row as the format requires.
+        """Check the rows j (N, M) of M pegs: all exist, and the lowest is 0 where the format requires
+        that.
         """
         most = self.bench.kit["rows"]
         self.blame(j.min(1) < 0, "a row below 0")
@@ -540,7 +566,7 @@ class Batch:
             self.blame(j.max(1) >= most, "a row that there is not")
 
     def check_flat_jaw(self) -> None:
-        """Check rules 2 and 3 of the flat jaw: holes, columns, rows, the opening."""
+        """Check rules 2 and 3 for a vise with a flat jaw: holes, columns, rows and the opening."""
         kit, pitch = self.bench.kit, self.bench.pitch
         i, j = self.read_numbers("column", [0, 1]), self.read_numbers("row", [0, 1])
         S = np.array([f["jaw_separation"] for f in self.fixtures], float)
@@ -564,8 +590,8 @@ class Batch:
             self.marginal |= np.abs((kit["max_opening"] - S) % pitch[1]) < EDGE
 
     def check_plate(self) -> None:
-        """Check the rules of plate and fence: holes, the
-        clamps' lines and bodies, clearances, columns and rows.
+        """Check the rules for a plate or fence: holes, columns and rows, and for clamps their lines, bodies
+        and clearances.
         """
         bench, kit, pitch, base = self.bench, self.bench.kit, self.bench.pitch, self.bench.base
         stops = [m for m, role in enumerate(self.roles) if role == "locator"]
@@ -613,8 +639,9 @@ class Batch:
         self.blame([not self.is_asked(f, asked) for f in self.fixtures], "a direction that was not asked for")
 
     def is_asked(self, f: dict[str, Any], asked: set[Any]) -> bool:
-        """Return whether the file asks for the directions of a
-        fixture; ``asked`` are its directions or sorted pairs.
+        """Return whether the clamps of fixture f push in directions that the file asks for.
+
+        ``asked`` are the file's directions, or for two clamps its pairs, each sorted.
         """
         if not self.bench.pairs:
             return f["direction"] in asked
@@ -623,8 +650,9 @@ class Batch:
         return ordered and (ways[0] in asked or (not self.bench.has_wall and ways[1] in asked))
 
     def check_clamp_bodies(self, tip: Any, end: Any) -> None:
-        """Check that clamps' bodies from tips (N, 2) to holes
-        (N, 2) stay out of the part, at 399 points along each.
+        """Check that the body of a clamp, from its tip (N, 2) to its hole (N, 2), does not enter the part.
+
+        399 points along each body are tested.
         """
         away = end - tip
         size = np.hypot(*away.T)
@@ -639,8 +667,9 @@ class Batch:
             self.marginal[n] |= bool((np.abs(room[8:]) < EDGE).any())
 
     def check_closure(self) -> None:
-        """Check rules 4 and 5: closure, clamping, and the stated
-        forces; set ``margin``, ``force`` and ``working``.
+        """Check rules 4 and 5: force closure, the clamping, and the stated forces.
+
+        Set ``margin`` and ``force``, and ``working``, the forces at the working ratio of two clamps.
         """
         if self.bench.pairs:
             self.check_closure_by_two()
@@ -672,8 +701,8 @@ class Batch:
         self.working = self.force
 
     def check_closure_by_two(self) -> None:
-        """Check rules 3 and 4 of two clamps: closure, neither
-        holds alone, the stated forces and their ratio.
+        """Check rules 3 and 4 for two clamps: force closure, no clamp holds the part alone, stated forces and
+        their ratio.
         """
         w, N = self.w, len(self.w)
         A = np.swapaxes(w[:, :3], 1, 2)
@@ -733,8 +762,9 @@ class Batch:
             self.blame(np.isfinite(value) & (np.abs(said - value) > slack), f"the {key.replace('_', ' ')}")
 
     def invert_contact_matrices(self) -> Any:
-        """Return the inverses (N, M, M) of the contact matrices,
-        M 3 with two clamps and else 4; NaN where singular.
+        """Return the inverse (N, M, M) of each fixture's contact matrix; NaN where it is singular.
+
+        M is 3 with two clamps, else 4.
         """
         count = 3 if self.bench.pairs else 4
         A = np.zeros((len(self.w), count, count))
@@ -749,7 +779,8 @@ class Batch:
         return inverse
 
     def bound_relative_errors(self) -> Any:
-        """Return the relative tolerance (N,) of forces and figures, larger for badly conditioned contacts.
+        """Return the relative error (N,) that is allowed in forces and figures; larger for badly conditioned
+        contacts.
 
         For marginal fixtures it is a thousand times larger, as arcs that are one face to 1e-7 mm may differ
         in direction.
@@ -760,8 +791,10 @@ class Batch:
         return np.where(self.marginal, 1e3, 1.0) * (FIGURE_TOL + 2e-10 * size)
 
     def compute_location_errors(self) -> Any:
-        """Return the location errors (N,) in mm: the largest movement
-        of a point of the outline over all corners of the tolerances.
+        """Return the location error (N,) in mm: how far a point of the outline can move at most within the
+        tolerances.
+
+        All combinations of extreme tolerances of the contacts are tried.
 
         NaN where the contact matrix is singular.
         """
@@ -795,8 +828,9 @@ class Batch:
         return np.where(np.isnan(inverse).any((1, 2)), np.nan, best)
 
     def find_wall_faces(self) -> Any:
-        """Return the number (N, 2) of the face at each end of the
-        contact with the wall; -1 and -2 for corners of two faces.
+        """Return the number of the face at each end of the contact with the wall (N, 2).
+
+        Where the end is a corner of two faces it is -1 for the first end, -2 for the second.
         """
         outline, found = self.bench.outline, []
         down = np.einsum("nji,j->ni", self.R, np.array([0.0, -1.0]))
@@ -812,10 +846,11 @@ class Batch:
         return np.stack(found, 1)
 
     def compute_places(self) -> Any:
-        """Return (N, P, 6), for each peg what identifies a fixture, in the part's frame.
+        """Return six numbers for each of P pegs (N, P, 6), by which equal fixtures are recognized, in the
+        part's frame.
 
-        Columns: its place, its push direction, and the lattice's axis at double angle, so that half a turn
-        leaves it unchanged; all in mm.
+        They are the peg's place, its push direction, and the direction of the lattice's axis at twice its
+        angle (so that half a turn of the lattice changes nothing), all in mm.
         """
         axis = np.stack([np.cos(-2 * self.theta), np.sin(-2 * self.theta)], -1)[:, None]
         axes = np.broadcast_to(axis, self.q.shape)
@@ -823,12 +858,16 @@ class Batch:
 
 
 def to_key(direction: Any) -> Any:
-    """Return a direction, or a pair as a tuple, as a member for a set."""
+    """Return a direction unchanged and a list of two directions as a tuple, so that it can be put into a
+    set.
+    """
     return tuple(direction) if isinstance(direction, list) else direction
 
 
 def measure_from_piece(p: Any, a: Any, b: Any) -> Any:
-    """Return distances (N,) of points p (N, 2) from straight pieces a b, (N, 2) each."""
+    """Return the distance (N,) of each point p (N, 2) from the straight line segment from a (N, 2) to b (N,
+    2).
+    """
     along = b - a
     size = (along**2).sum(1)
     at = np.clip(((p - a) * along).sum(1) / np.where(size == 0, 1, size), 0, 1)
@@ -836,8 +875,9 @@ def measure_from_piece(p: Any, a: Any, b: Any) -> Any:
 
 
 def measure_gaps(one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
-    """Return distances (N,) between pairs of straight pieces
-    along x or y, each given by its ends (N, 2), (N, 2).
+    """Return the distance (N,) between two line segments in each of N pairs.
+
+    Each segment runs along x or y and is given by its two ends (N, 2).
     """
     low = [np.minimum(*ends) for ends in (one, other)]
     high = [np.maximum(*ends) for ends in (one, other)]
@@ -845,8 +885,10 @@ def measure_gaps(one: tuple[Any, Any], other: tuple[Any, Any]) -> Any:
 
 
 def compute_margin(w: Any) -> float:
-    """Return the largest possible least entry of a null
-    vector of sum 1 of five wrenches (5, 3); -1.0 without one.
+    """Return how far five wrenches w (5, 3) are inside force closure.
+
+    Of all factors of sum 1 with which the wrenches add up to zero, the smallest factor is made as large as
+    possible; that is the result. It is -1.0 where there are no such factors.
     """
     null = np.linalg.svd(w.T)[2][3:].T
     s = null.sum(0)
@@ -858,8 +900,10 @@ def compute_margin(w: Any) -> float:
 
 
 def measure_nearest_facet(w: Any) -> Any:
-    """Return distances (N,) of the origin from the nearest facet
-    of the convex hull of wrenches (N, P, 3); inf without facets.
+    """Return the distance (N,) from the origin to the nearest facet of the convex hull of P wrenches (N, P,
+    3).
+
+    It is inf where the hull has no facets.
     """
     best = np.full(len(w), inf)
     for three in combinations(range(w.shape[1]), 3):
@@ -878,7 +922,7 @@ def measure_nearest_facet(w: Any) -> Any:
 
 
 class Listed:
-    """The listed fixtures, indexed by where their pegs are on the part, to look up whether one is listed."""
+    """The listed fixtures, with an index to look up whether a given fixture is among them."""
 
     def __init__(self, bench: Bench, places: list[Any]) -> None:
         self.places, self.pivot = places, bench.outline.pivot
@@ -887,8 +931,10 @@ class Listed:
         self.sorted = self.key[self.order, 0] if len(places) else np.zeros(0)
 
     def find(self, place: Any, tol: float = 1e-5) -> list[int]:
-        """Return the indices, ascending, of the listed
-        fixtures with the same place (P, 6) within ``tol`` mm.
+        """Return the indices, ascending, of listed fixtures whose pegs have the same places as ``place``
+        within ``tol`` mm.
+
+        ``place`` (P, 6) is a row of :meth:`Batch.compute_places`.
         """
         x, y = place.sum(0)[:2]
         low, high = np.searchsorted(self.sorted, [x - 5 * tol, x + 5 * tol])
@@ -902,8 +948,8 @@ class Listed:
         return sorted(found)
 
     def rotate_place(self, place: Any, angle: float) -> Any:
-        """Return the place (P, 6) of a fixture after the
-        part is rotated onto itself by an angle in radians.
+        """Return the place (P, 6) of a fixture after the part is rotated about its pivot by an angle in
+        radians.
         """
         R = make_rotation(angle)
         moved = (place[:, :2] - self.pivot) @ R.T + self.pivot
@@ -911,7 +957,7 @@ class Listed:
 
 
 def make_order_key(f: dict[str, Any]) -> Any:
-    """Return the sort key by which the fixtures of a set must be ordered."""
+    """Return the sort key of fixture f in the order that the format requires."""
     pegs, pose = f["pegs"], f["pose"]
     return (
         f["type"],
@@ -923,7 +969,9 @@ def make_order_key(f: dict[str, Any]) -> Any:
 
 
 def find_account_faults(content: dict[str, Any]) -> list[str]:
-    """Return a list of what is inconsistent in counts, statistics, order and the account of the search."""
+    """Return a list of sentences on counts, order and the account of the search that do not agree; empty
+    where all do.
+    """
     fixtures, proof, faults = content["fixtures"], content["proof"], []
     for name, count in content["counts"].items():
         listed = sum(f["type"] == name for f in fixtures)
@@ -953,7 +1001,10 @@ def find_account_faults(content: dict[str, Any]) -> list[str]:
 
 
 def find_manifest_faults(content: dict[str, Any], text: str, manifest: dict[str, Any]) -> list[str]:
-    """Return a list of what differs from the manifest: checksums and counts."""
+    """Return a list of sentences on what differs from the manifest: checksums and counts.
+
+    ``text`` is the file's text, from which checksums are computed.
+    """
     known = {one["name"]: one for one in manifest["sets"]}
     if content["set"] not in known:
         return [f"the manifest has no set {content['set']!r}"]
@@ -972,7 +1023,10 @@ def find_manifest_faults(content: dict[str, Any], text: str, manifest: dict[str,
 
 
 class Finder:
-    """A search for fixtures from random starts, by Newton's method on the contacts that fix the pose."""
+    """A search for fixtures from random starts.
+
+    The pose is improved by Newton's method until the contacts that fix it touch.
+    """
 
     def __init__(self, bench: Bench, seed: int) -> None:
         self.bench, self.outline, self.random = bench, bench.outline, np.random.default_rng(seed)
@@ -984,8 +1038,10 @@ class Finder:
         self.offsets = np.array([o for o in grid if o != (0, 0)], float).reshape(-1, 2)
 
     def sample_locus(self, count: int) -> tuple[Any, Any]:
-        """Return the centres (M, 2) of pegs at random places on the
-        part, and the segments (M,) touched; M is at most ``count``.
+        """Return (1) the centres (M, 2) of pegs that touch the part at random places, (2) the indices (M,) of
+        the segments touched.
+
+        M is at most ``count``, since places where the peg would enter the part are left out.
         """
         outline, rho = self.outline, self.bench.rho
         size = np.where(outline.arc, np.abs(outline.sweep) * outline.r, outline.length)
@@ -1003,11 +1059,12 @@ class Finder:
         return q[good], k[good]
 
     def choose_near_holes(self, q: Any, theta: Any, offsets: Any) -> tuple[Any, Any]:
-        """Return, for each start, the offset (N, 2) of one random
-        hole near the locus, and the segment (N,) nearest to it.
+        """Return for each of N starts (1) the offset (N, 2) of a random hole, (2) the index (N,) of the
+        segment nearest to it.
 
-        ``q`` (N, 2) are places of first pegs, ``theta`` (N,) find_candidate_orientations in radians, ``offsets`` (H, 2) in
-        columns and rows.
+        Holes in which a peg nearly touches the part are chosen more often. ``q`` (N, 2) are the first pegs'
+        places, ``theta`` (N,) orientations in radians, and ``offsets`` (H, 2) the holes to choose from, in
+        columns and rows from the first peg.
         """
         p = q[:, None] + np.einsum("nji,hj->nhi", make_rotation(theta), offsets * self.bench.pitch)
         distance, _ = self.outline.measure_distances(p.reshape(-1, 2))
@@ -1018,14 +1075,14 @@ class Finder:
         return offsets[pick], distance[np.arange(len(q)), pick].argmin(-1)
 
     def refine_unknowns(self, unknown: Any, holes: Any, rights: Any, segments: Any) -> Any:
-        """Return the unknowns after Newton's method, and whether (N,) each converged.
+        """Return (1) the unknowns improved by Newton's method, and (2) whether each start converged (N,).
 
         Parameters
         ----------
         unknown : (N, 3 or 4) orientation in radians, the first peg's place, and the opening, in mm.
-        holes : (N, M, 2) offsets in columns and rows.
+        holes : (N, M, 2) offset of each peg from the first peg, in columns and rows.
         rights : (N, M) 1 for pegs that move with the opening, else 0.
-        segments : (N, M) touched by each peg.
+        segments : (N, M) index of the segment that each peg touches.
         """
         rho, pitch, outline = self.bench.rho, self.bench.pitch, self.outline
         moves = unknown.shape[1] == 4
@@ -1056,10 +1113,9 @@ class Finder:
         return unknown, (np.abs(gap).max(1) < 1e-10) & ~singular
 
     def find_fixtures(self, count: int) -> Fixtures:
-        """Return fixtures found from ``count`` random starts,
-        with those keys of the file that are needed to judge them.
+        """Return the fixtures found from ``count`` random starts; an empty list for toolkits with a wall.
 
-        Empty for toolkits with a wall.
+        They have those keys of the file that are needed to judge them.
         """
         if self.bench.has_wall or not len(self.offsets):
             return []
@@ -1070,8 +1126,10 @@ class Finder:
         return [*self.find_vise_fixtures(q, k, theta, "I"), *self.find_vise_fixtures(q, k, theta, "II")]
 
     def find_vise_fixtures(self, q: Any, k: Any, theta: Any, kind: str) -> Fixtures:
-        """Return fixtures of a vise of type ``kind``, from first
-        pegs q (N, 2) on segments k (N,) at orientations theta (N,).
+        """Return fixtures of a vise found from N starts; ``kind`` is their type, "I" or "II".
+
+        A start is the place q (N, 2) of the first peg, the index k (N,) of the segment that it touches, and
+        an orientation theta (N,) in radians.
         """
         bench, N = self.bench, len(q)
         zero = np.zeros((N, 2))
@@ -1114,10 +1172,12 @@ class Finder:
     def make_vise_fixture(
         self, kind: str, x: Any, holes: Any, segments: Any, lift: float
     ) -> dict[str, Any] | None:
-        """Return a fixture of a vise in the columns and rows
-        that the format requires; None where it does not fit.
+        """Return a fixture of a vise, in the columns and rows that the format requires; None where it does
+        not fit.
 
-        ``x`` is (theta, first peg's place, opening), ``lift`` the row offset in rows.
+        ``x`` is the orientation in radians, the first peg's place and the opening; ``holes`` (4, 2) are
+        offsets in columns and rows; ``segments`` (4,) are the indices of those touched; ``lift`` is the row
+        offset of the right jaw in rows.
         """
         kit, pitch, left = self.bench.kit, self.bench.pitch, 2 if kind == "I" else 3
         i = np.rint(holes[:, 0]).astype(int)
@@ -1146,11 +1206,16 @@ class Finder:
         return {"type": kind, "pegs": pegs, "pose": self.make_pose_entry(x[0], pose), "jaw_separation": S}
 
     def make_pose_entry(self, theta: float, shift: Any) -> dict[str, float]:
-        """Return a pose in the form of the file, from an orientation in radians and a shift in mm."""
+        """Return a pose as the file has it, from an orientation in radians and a shift in mm."""
         return {"theta_deg": degrees(theta) % 360, "x": float(shift[0]), "y": float(shift[1])}
 
     def find_plate_fixtures(self, q: Any, k: Any, theta: Any) -> Fixtures:
-        """Return fixtures of a plate: every choice of clamps at each pose that three locators fix."""
+        """Return fixtures of a plate found from N starts, with all possible clamps for each pose that three
+        locators fix.
+
+        A start is the place q (N, 2) of the first peg, the index k (N,) of the segment that it touches, and
+        an orientation theta (N,) in radians.
+        """
         two, k2 = self.choose_near_holes(q, theta, self.offsets)
         three, k3 = self.choose_near_holes(q, theta, self.offsets)
         holes = np.stack([np.zeros_like(two), two, three], 1)
@@ -1165,7 +1230,11 @@ class Finder:
         return made
 
     def list_clampings(self, x: Any, holes: Any, segments: Any) -> Fixtures:
-        """Return a fixture for each choice of clamps at one pose that fits the plate's columns and rows."""
+        """Return one fixture for each possible choice of clamps at a pose, where it fits the plate.
+
+        ``x`` is the orientation in radians and the first locator's place; ``holes`` (3, 2) are offsets in
+        columns and rows; ``segments`` (3,) are the indices of those that the locators touch.
+        """
         bench, kit, pitch = self.bench, self.bench.kit, self.bench.pitch
         R, made, options = make_rotation(x[0]), [], []
         first = holes[0] * pitch
@@ -1191,7 +1260,12 @@ class Finder:
     def make_plate_fixture(
         self, clamps: Any, x: Any, holes: Any, segments: Any, shift: Any
     ) -> dict[str, Any] | None:
-        """Return a fixture of a plate, shifted to column 0 and row 0; None where the plate is too small."""
+        """Return a fixture of a plate, shifted so that its lowest column and row are 0; None where the plate
+        is too small.
+
+        Each of ``clamps`` is (direction, index of the line, tip, face), and ``shift`` is the part's in mm.
+        See :meth:`list_clampings` for the other parameters.
+        """
         kit, pitch = self.bench.kit, self.bench.pitch
         clamps = sorted(clamps, key=lambda c: (list(DIRECTIONS).index(c[0]), c[1], c[3]))
         i = [*holes[:, 0], *(c[1] for c in clamps if c[0][1] == "y")]
@@ -1218,8 +1292,9 @@ class Finder:
 
 
 class WallFinder:
-    """A search for every fixture beside a fence: one
-    orientation for each hull edge, the rest in closed form.
+    """A search for every fixture beside a fence, without random starts.
+
+    Each hull edge of the part gives one orientation; contacts then follow in closed form.
     """
 
     def __init__(self, bench: Bench) -> None:
@@ -1227,10 +1302,11 @@ class WallFinder:
         self.clamping = Finder(bench, 0)
 
     def find_flush_poses(self) -> list[tuple[float, float, float, float]]:
-        """Return (theta, height, x0, x1) of the part on each hull edge, with its origin at x = 0.
+        """Return for each hull edge (theta, height, x0, x1): how the part lies with this edge flat on the
+        wall.
 
-        ``theta`` is in radians; ``height`` of the origin above the wall, and the ends of the contact, are in
-        mm.
+        ``theta`` is its orientation in radians. ``height`` is that of the part's origin above the wall, and
+        x0 and x1 are the ends of the contact for an origin at x = 0, all in mm.
         """
         o = self.outline
         arcs = [k for k in np.flatnonzero(o.arc) if o.sign[k] > 0]
@@ -1262,15 +1338,17 @@ class WallFinder:
         return found
 
     def reaches(self, disc: Any, n: Any, top: float) -> bool:
-        """Return whether a corner or an arc, (x, y, radius,
-        arc's index or -1), touches the line n . q = top.
+        """Return whether a corner or an arc touches the line n . q = top.
+
+        ``disc`` is (x, y, radius, index of the arc, or -1 for a corner).
         """
         on = disc[3] < 0 or self.outline.has_direction(disc[3], np.arctan2(n[1], n[0]))
         return bool(on and abs(float(n @ np.array(disc[:2])) + disc[2] - top) < TOL)
 
     def find_fixtures(self) -> Fixtures:
-        """Return all fixtures, with those keys of the file
-        that are needed to judge them; some may break rules.
+        """Return all fixtures beside the fence, with those keys of the file that are needed to judge them.
+
+        Some may break rules, so they must be judged.
         """
         bench, kit, pitch, made = self.bench, self.bench.kit, self.bench.pitch, list[dict[str, Any]]()
         rows = kit["rows"] or int((self.outline.diameter + 2 * bench.rho) / pitch[1]) + 2
@@ -1287,10 +1365,11 @@ class WallFinder:
         return made
 
     def list_with_clamps(self, R: Any, theta: float, shift: Any, stop: Any, ends: Any) -> Fixtures:
-        """Return a fixture for each choice of clamps beside a locator at x = 0.
+        """Return one fixture for each possible choice of clamps, with the locator in the hole at x = 0.
 
-        ``stop`` is the locator's row and segment, ``ends`` are x in mm of the ends of the contact with the
-        wall.
+        ``R`` and ``theta`` are the part's rotation as a matrix and in radians, ``shift`` is its shift in mm.
+        ``stop`` is the locator's row and the index of the segment it touches; ``ends`` are the x of both ends
+        of the contact with the wall in mm.
         """
         bench, kit, pitch, options = self.bench, self.bench.kit, self.bench.pitch, []
         ways = {d for one in kit["directions"] for d in ([one] if isinstance(one, str) else one)}
@@ -1314,14 +1393,19 @@ class WallFinder:
         return [one for one in made if one is not None]
 
     def make_order_key(self, clamp: Any) -> Any:
-        """Return the sort key of a clamp among the two of a fixture."""
+        """Return the sort key of a clamp (direction, index of the line, tip, face) among the clamps of a
+        fixture.
+        """
         return list(DIRECTIONS).index(clamp[0]), clamp[1], clamp[3]
 
     def make_fixture(
         self, clamps: Any, theta: float, shift: Any, stop: Any, ends: Any, low: int
     ) -> dict[str, Any] | None:
-        """Return a fixture shifted so that column ``low``
-        becomes 0; None where there are too few columns or rows.
+        """Return a fixture shifted so that column ``low`` becomes column 0; None where the plate has too few
+        columns or rows.
+
+        Each of ``clamps`` is (direction, index of the line, tip, face), in the order of the file. See
+        :meth:`list_with_clamps` for the other parameters.
         """
         kit, away = self.bench.kit, -low * self.bench.pitch[0]
         columns = [0, *(c[1] for c in clamps if c[0][1] == "y")]
@@ -1347,15 +1431,13 @@ class WallFinder:
 
 
 class Unlisted(Batch):
-    """Fixtures that this program found, judged by the
-    rules alone, as there are no stated forces and figures.
-    """
+    """Fixtures that this program found itself, checked without stated forces and figures."""
 
     def check_figures(self) -> None:
-        """Do nothing, as no figures are stated."""
+        """Do nothing, since no figures are stated."""
 
     def check_closure(self) -> None:
-        """Check rules 4 and 5 without stated forces."""
+        """Check rules 4 and 5 except for the stated forces."""
         zero = [0.0, 0.0] if self.bench.pairs else 0.0
         for f in self.fixtures:
             for peg in f["pegs"]:
@@ -1367,7 +1449,9 @@ class Unlisted(Batch):
 
 
 def group_by_roles(bench: Bench, fixtures: Fixtures) -> dict[Any, list[int]]:
-    """Return the indices of the fixtures by type and roles of their pegs."""
+    """Return the indices of fixtures in groups; the key of a group is the type followed by the roles of the
+    pegs.
+    """
     out: dict[Any, list[int]] = {}
     for n, f in enumerate(fixtures):
         out.setdefault((f["type"], *bench.list_roles(f)), []).append(n)
@@ -1375,10 +1459,11 @@ def group_by_roles(bench: Bench, fixtures: Fixtures) -> dict[Any, list[int]]:
 
 
 def find_missing_fixtures(bench: Bench, listed: Listed, starts: int, seed: int) -> tuple[list[str], int]:
-    """Return at most five sentences on fixtures found here
-    but not listed, and how many listed ones were found.
+    """Return (1) at most five sentences on fixtures found here but not listed, (2) how many listed fixtures
+    were found.
 
-    Nothing is searched where clamps have bodies or holes are blocked.
+    Nothing is searched where ``starts`` is 0, clamps have bodies or holes are blocked; the result is then an
+    empty list and 0.
     """
     if starts == 0 or (bench.kit.get("travel") is not None) or bench.kit.get("blocked"):
         return [], 0
@@ -1463,7 +1548,10 @@ def check(
 
 
 def find_root(parent: list[int], n: int) -> int:
-    """Return the representative of the set of n in a union-find forest; shortens paths in ``parent``."""
+    """Return the representative of the set that contains n in a union-find forest.
+
+    ``parent`` has for each member its parent; paths in it are shortened in place.
+    """
     while parent[n] != n:
         parent[n] = parent[parent[n]]
         n = parent[n]
@@ -1471,8 +1559,9 @@ def find_root(parent: list[int], n: int) -> int:
 
 
 def main() -> int:
-    """Check the file named on the command line, write its
-    faults, and return the exit code: 0, or 2 with faults.
+    """Check the file named on the command line, and write its faults.
+
+    Return the exit code: 0 where there are none, else 2, also for a file that cannot be read.
     """
     words = argparse.ArgumentParser(description="Checks one file of the benchmark set.")
     words.add_argument("file")

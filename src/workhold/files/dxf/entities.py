@@ -52,7 +52,7 @@ class RawChain:
     ----------
     numbered : whether labels number its segments.
     curved : curves of segments that are neither lines nor arcs, by their index.
-    heights : z of further points that define such curves, which must be level too.
+    heights : z of the further points that define such curves; they must all be equal, too.
     """
 
     points: Sequence[Point3]
@@ -100,8 +100,8 @@ def read_circle(entity: Any) -> RawChain:
 
 
 def read_arc(entity: Any) -> RawChain:
-    """Return the chain of an ARC, counter-clockwise in its OCS;
-    equal angles, or a full turn between them, make a circle.
+    """Return the chain of an ARC, counter-clockwise in its OCS; if its start and end angle are equal or a
+    full turn apart, it is a full circle.
     """
     start, end = float(entity.dxf.start_angle), float(entity.dxf.end_angle)
     sweep = radians((end - start) % 360.0)
@@ -137,10 +137,10 @@ def read_lwpolyline(entity: Any) -> RawChain:
 
 
 def read_polyline(entity: Any) -> RawChain:
-    """Return the chain of an old-style POLYLINE: flat ones with bulges, 3D ones as lines.
+    """Return the chain of an old-style POLYLINE: a flat one with bulges, a 3D one as lines.
 
-    3D ones that are not level are refused later. Raises InputError for meshes and polylines smoothed into
-    splines.
+    A 3D polyline that is not level is refused later. Raises InputError for meshes, and for polylines smoothed
+    into splines.
     """
     if entity.is_poly_face_mesh or entity.is_polygon_mesh:
         raise InputError("is a 3D mesh, which has no outline: draw the part flat, with lines and arcs.")

@@ -72,7 +72,8 @@ def read_dxf(
     layers : layers to read; all visible ones when None.
     fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
         ``Drawing``.
-    budget : work and time that may still be spent on the file; None is that of a file of these bytes.
+    budget : work and time that may still be spent on the file; None gives the usual budget for a file of this
+        size.
 
     Raises
     ------
@@ -103,8 +104,8 @@ def read_document(
 ) -> Drawing:
     """Return the drawing, in mm, of the model space of a document of ezdxf; see :func:`read_dxf`.
 
-    ``code`` is the document's ``$INSUNITS``. Raises UnitAskedError when neither it nor an argument gives a
-    unit.
+    ``code`` is the document's ``$INSUNITS``. Raises UnitAskedError when neither ``code`` nor an argument
+    gives a unit.
     """
     known = choose_scale(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
@@ -132,7 +133,9 @@ def read_document(
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Raise InputError for bytes that are no DXF, or cut short, before ezdxf tries to repair them."""
+    """Raise InputError for bytes that are not DXF or are cut short, so
+    that ezdxf does not try to repair them.
+    """
     if content[:4] == b"AC10" or content[:2] == b"MC":
         raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
     if content.startswith(BINARY):
@@ -180,8 +183,8 @@ MOST_TAGS = 15
 
 
 def refuse_crowded(content: bytes, budget: Budget) -> None:
-    """Raise OverBudgetError for a file with more entities than
-    the budget allows, before the library reads it for long.
+    """Raise OverBudgetError for a file with more entities than the budget
+    allows, so that the library does not read it.
 
     The budget itself is not spent.
     """
@@ -218,7 +221,8 @@ def normalize_unit_code(value: Any) -> int | str:
 
 
 def choose_scale(code: int | str, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
-    """Return the millimetres per drawing unit, and a list with a remark when a user's unit is not the file's.
+    """Return the millimetres per drawing unit, and a list with a remark if the user's unit differs from the
+    file's, otherwise an empty list.
 
     None when neither the file nor the user gives a unit.
 

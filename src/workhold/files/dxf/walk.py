@@ -121,8 +121,10 @@ class DxfWalk:
         return nest.layer if layer == "0" and nest.layer is not None else layer
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
-        """Return whether an entity is to be read: on a chosen
-        layer, or visible when none were chosen; count hidden ones.
+        """Return whether an entity is to be read: it is on a chosen layer or,
+        if none were chosen, on a visible one.
+
+        Hidden entities are counted.
         """
         key = layer.casefold()
         self.names.setdefault(key, layer)
@@ -135,7 +137,8 @@ class DxfWalk:
         return True
 
     def add(self, entity: Any, kind: str, placement: Placement, label: str) -> None:
-        """Append an entity's chain in mm to ``chains``.
+        """Append the chain of an entity in mm to ``chains``; ``placement``
+        maps the entity's coordinates to mm.
 
         Raises
         ------
@@ -164,8 +167,8 @@ class DxfWalk:
         self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
-        """Raise InputError unless all z of an entity agree
-        with each other and with those of the entities before.
+        """Raise InputError unless all z of an entity are equal, and equal to those of the entities visited
+        before.
         """
         for z in (*(z for _, _, z in raw.points), *raw.heights):
             height = placement.height_scale * z + placement.height
@@ -219,8 +222,9 @@ class DxfWalk:
                 self.visit_all(block, evolve(inner, placement=placement))
 
     def count_inserted_entities(self, name: str, block: Any, depth: int = 0) -> int:
-        """Return a lower bound of the number of entities visited for
-        one insertion of a block, those of inner blocks included.
+        """Return a lower bound of the number of entities that are visited for one insertion of a block.
+
+        Entities of blocks inserted inside it are included.
         """
         key = name.casefold()
         if key in self.sizes or depth > (self.budget.limits.deepest or 0):
@@ -294,12 +298,14 @@ def list_first_words(words: Sequence[str]) -> str:
 
 
 def label_entity(entity: Any) -> str:
-    """Return the handle of an entity, shortened in the middle: labels repeat it for every segment."""
+    """Return the handle of an entity, shortened in the middle, because labels repeat it for every segment."""
     return shorten_middle(str(entity.dxf.handle), 20)
 
 
 def get_look(entity: Any) -> str:
-    """Return the colour and the line type of an entity as one text; "" where both are those of its layer."""
+    """Return the colour and the line type of an entity as one text; ""
+    where both are taken from its layer.
+    """
     color = entity.dxf.get("true_color", entity.dxf.get("color", BY_LAYER))
     kind = str(entity.dxf.get("linetype", "BYLAYER")).casefold()
     return "" if color == BY_LAYER and kind == "bylayer" else f"{color} {kind}"
@@ -326,7 +332,9 @@ def apply_with_label(label: str, function: Callable[[Any], T], entity: Any) -> T
 
 
 def label_segment(label: str, k: int) -> str:
-    """Return the label of segment k (from 0) of a polyline, with the number right after the handle."""
+    """Return the label of segment k (from 0) of a polyline, made from the polyline's label by putting the
+    number right after the handle.
+    """
     kind, handle, *rest = label.split(" ", 2)
     return " ".join([kind, handle, f"segment {k}", *rest])
 
@@ -342,7 +350,9 @@ def make_block_placement(insert: Any) -> Placement:
 
 
 def find_entity_point(entity: Any) -> tuple[float, float]:
-    """Return (x, y) of some point of an entity, in its own coordinates; the origin where it has none."""
+    """Return (x, y) of an arbitrary point of an entity, in the entity's own coordinates; (0, 0) where it has
+    none.
+    """
     for name in ("center", "start", "vtx0", "start_location"):
         if entity.dxf.is_supported(name) and entity.dxf.hasattr(name):
             point = entity.dxf.get(name)

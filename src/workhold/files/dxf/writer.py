@@ -71,7 +71,7 @@ def make_setup_dxf(
 
     Parameters
     ----------
-    zero : part zero; that of :func:`choose_part_zero` without a wish if None.
+    zero : part zero; if None, the one that :func:`choose_part_zero` chooses by itself.
     clearance : distance that the cutter must keep from the pegs' bodies, in mm.
     """
     with make_drawing(list_layer_colours(toolkit)) as document:
@@ -132,12 +132,14 @@ def name_plate_layer(carrier: Carrier) -> str:
 
 
 def name_peg_layer(carrier: Carrier) -> str:
-    """Return the name of the layer for a carrier's pegs; for a clamp that of its body."""
+    """Return the name of the layer for a carrier's pegs; for a clamp, the name of the layer for its body."""
     return f"{carrier.peg}s".upper() if carrier.has_lattice else name_plate_layer(carrier)
 
 
 def name_setting_layer(mover: Carrier) -> str:
-    """Return the name of the layer for the length by which a moving carrier is set."""
+    """Return the name of the layer for the length to which a moving
+    carrier, such as a jaw or a clamp, has to be set.
+    """
     return "OPENING" if mover.has_lattice else f"{name_plate_layer(mover)}_SETTING"
 
 
@@ -194,8 +196,8 @@ def add_pegs(space: Modelspace, seen: ShownSetUp, clearance: float) -> None:
 
 
 def add_clamps(space: Modelspace, seen: ShownSetUp, clearance: float) -> None:
-    """Add each clamp's tip, body and an arrow behind it,
-    what the cutter must not enter, and the name of its hole.
+    """Add each clamp's tip, its body with an arrow behind it, the area that the
+    cutter must not enter, and the name of its hole.
     """
     for clamp in seen.clamps:
         layer = {"layer": name_plate_layer(clamp.carrier)}
@@ -255,8 +257,7 @@ def add_carriers(space: Modelspace, seen: ShownSetUp) -> None:
 def add_travel(space: Modelspace, seen: ShownSetUp) -> None:
     """Add each length to set as a dimension, with the axes that it is measured between.
 
-    Lengths are drawn outside the plates; of several in the same direction each is farther out than the one
-    before.
+    Dimensions are drawn outside the plates; several in the same direction are drawn one outside the other.
     """
     for number, measured in enumerate(seen.measured):
         setting, layer = measured.setting, {"layer": name_setting_layer(measured.setting.carrier)}

@@ -40,7 +40,9 @@ __all__ = [
 
 @frozen
 class Placement:
-    """The map x' = a x + c y + e, y' = b x + d y + f, z' = height_scale z + height (letters as in SVG)."""
+    """The map x' = a x + c y + e, y' = b x + d y + f of the plane (letters as in SVG); of heights z' =
+    ``height_scale`` z + ``height``.
+    """
 
     a: float = 1.0
     b: float = 0.0
@@ -116,7 +118,7 @@ class Chain:
 
     @property
     def closed(self) -> bool:
-        """Whether the last point is the first (to within 1e-9 mm)."""
+        """Whether the last point equals the first to within 1e-9 mm."""
         return dist(self.points[0], self.points[-1]) <= SAME_POINT
 
     @property
@@ -144,7 +146,7 @@ class CurveReading:
     Parameters
     ----------
     place : point at which the curve begins, in mm.
-    departure : bound of the distance between it and its lines and arcs, in mm.
+    departure : bound of the distance between the curve and its lines and arcs, in mm.
     is_disguise : whether it is lines and arcs almost exactly, see ``geometry.curve_fit``.
     pieces : the curve itself, in mm.
     arcs : number of lines and arcs that stand for it.
@@ -168,8 +170,8 @@ class Drawing:
     curves : readings of the curves among them, by their labels.
     layers : the layers that segments are on, by their labels; empty for files without layers.
     solids : all of a STEP file, the largest first.
-    looks : the colour and line type that segments are drawn with, by their labels; without those for which
-        the file does not say it.
+    looks : the colour and line type that segments are drawn with, by their labels; segments for which the
+        file does not say it are missing.
     """
 
     chains: tuple[Chain, ...]
@@ -181,10 +183,10 @@ class Drawing:
 
 
 def list_arc_bulges(sweep: float) -> list[float]:
-    """Return the bulges of an arc of a signed sweep in radians:
-    one, or two halves when it is nearly a full circle.
+    """Return the bulges of an arc whose sweep is ``sweep`` radians (negative for clockwise).
 
-    Two, because a single bulge near a full circle determines the centre badly.
+    The list has one bulge, or two of equal halves when the arc is nearly a full circle: a single bulge would
+    determine its centre badly.
     """
     if abs(sweep) == pi:
         return [copysign(1.0, sweep)]
@@ -192,12 +194,14 @@ def list_arc_bulges(sweep: float) -> list[float]:
 
 
 def compute_moved_bulge(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
-    """Return the bulge of an arc whose ends have been moved a
-    little, so that its centre stays as near its place as it can.
+    """Return the new bulge of an arc whose ends have been moved a little.
 
-    ``start``, ``end`` and ``bulge`` are the arc's before. The new centre is the foot of the old one on the
-    perpendicular bisector of the new chord. So centre and radius change by no more than the order of the
-    movement, times centre distance over chord, which no choice can avoid.
+    ``start``, ``end`` and ``bulge`` are those of the arc before. The new centre is the point nearest to the
+    old one on the perpendicular bisector of the new chord. So centre and radius change by about the length of
+    the movement times the ratio of the centre's distance to the chord, which no other choice of the centre
+    can avoid.
+
+    A line (bulge 0) stays a line; the old bulge is returned for a new chord of no length.
     """
     if bulge == 0.0:
         return 0.0

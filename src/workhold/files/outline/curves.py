@@ -84,7 +84,7 @@ class CurveReader:
         curved: Mapping[int, Pieces],
         placement: Placement,
     ) -> Chain | None:
-        """Return the chain of N placed segments in mm; None where nothing is left of it.
+        """Return the chain of N placed segments in mm; None if all of them are curves of no length.
 
         Consecutive curves are fitted as one. Raises InputError for more curves than a drawing has.
 
@@ -154,7 +154,7 @@ class CurveReader:
 
 
 def select_readings(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
-    """Return the readings of those labels that are curves."""
+    """Return the readings of the curves among the segments with the given labels, by label."""
     return {label: found[label] for label in labels if label in found}
 
 
@@ -172,7 +172,7 @@ def refuse_true_curves(
 
     Parameters
     ----------
-    labels : of the outline's segments.
+    labels : labels of the outline's segments.
     found : readings of the drawing's curves.
     fit : largest distance in mm of lines and arcs from curves; None allows none.
     layered : whether the file has layers to choose.
@@ -204,8 +204,10 @@ def refuse_true_curves(
 
 
 def refit_curve(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
-    """Return the number of lines and arcs that stand for a
-    curve within ``fit`` mm, and their largest distance in mm.
+    """Return (1) the number of lines and arcs that replace a curve within ``fit`` mm, and (2) their largest
+    distance in mm from it.
+
+    (0, 0) for a curve of no length. ``budget`` is spent; None is no limit.
     """
     fitted = fit_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
@@ -217,8 +219,8 @@ def merge_short_chords(
     fit: float | None,
     budget: Budget | None = None,
 ) -> tuple[tuple[JoinedLoop, ...], float, list[str]]:
-    """Return the loops with one line or arc for each chain
-    of short chords, the largest distance in mm, and remarks.
+    """Return (1) the loops with each run of short chords replaced by one line or arc where it fits, (2) the
+    largest distance in mm of these from the chords, and (3) remarks.
 
     Lines and arcs that stand for curves of the drawing are not merged.
 
@@ -263,7 +265,7 @@ def describe_curve_fit(labels: Iterable[str], found: Mapping[str, CurveReading])
 
     Parameters
     ----------
-    labels : of the outline's segments.
+    labels : labels of the outline's segments.
     found : readings of the drawing's curves.
     """
     read = select_readings(labels, found)
@@ -286,8 +288,8 @@ def describe_curve_fit(labels: Iterable[str], found: Mapping[str, CurveReading])
 
 
 def describe_departure(departure: float) -> list[str]:
-    """Return a remark on an outline that is this far, in mm,
-    from what was drawn; [] where that is too little to matter.
+    """Return a list with a remark on an outline that lies ``departure`` mm from what
+    was drawn; [] where that is too little to matter.
     """
     if departure < READING:
         return []

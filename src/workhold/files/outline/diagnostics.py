@@ -45,7 +45,7 @@ def measure_size(chains: Sequence[Chain]) -> tuple[float, float] | None:
 
 
 def has_sound_numbers(chain: Chain) -> bool:
-    """Return whether all numbers of a chain are as small as those of a drawing in any unit."""
+    """Return whether all numbers of a chain are finite and small enough for a drawing in some unit."""
     return all(abs(value) <= MOST_RADIUS for value in chain.bulges) and all(
         abs(x) <= MOST_RADIUS and abs(y) <= MOST_RADIUS for x, y in chain.points
     )
@@ -54,12 +54,13 @@ def has_sound_numbers(chain: Chain) -> bool:
 def make_unit_question(
     lacking: str, chains: Sequence[Chain], pixels: float | None = None, in_pixels: bool = False
 ) -> UnitAskedError:
-    """Return the error that asks for the unit of a drawing, with the drawing's size in each.
+    """Return the error that asks for the unit of a drawing, with the drawing's size in each unit.
 
     Parameters
     ----------
     lacking : what is not known, up to the colon.
-    chains : all that is drawn, with a unit of the drawing taken for a mm; empty where that cannot be read.
+    chains : all that is drawn, with each unit of the drawing counted as 1 mm; empty where the drawing cannot
+        be read.
     pixels : pixels in one unit of the drawing; None for files without pixels.
     in_pixels : whether the drawing says that it is in pixels.
     """
@@ -155,15 +156,16 @@ def find_gap_around_part(part: DrawnPart, strays: Sequence[OpenChain]) -> float 
 
 
 def surrounds_box(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Return whether the bounding box a reaches out of the box b on every side."""
+    """Return whether the bounding box ``a`` reaches beyond the box ``b`` on all four sides."""
     return a[0] < b[0] and a[1] < b[1] and a[2] > b[2] and a[3] > b[3]
 
 
 def open_ends(strays: Sequence[OpenChain], enough: float | None = None) -> str:
-    """Return a text on the open ends nearest to each other, their
-    distances, and the join tolerance that would close them.
+    """Return a text that names the open ends nearest to another one, and
+    the join tolerance that would close the gap.
 
-    ``enough`` is the gap in mm that has to be closed, where that is known.
+    Each end is given with its distance from the nearest other end. ``enough`` is the gap in mm that has to be
+    closed; the smallest of these distances if None.
     """
     ends: list[tuple[Point, str]] = []
     for stray in strays:
@@ -213,8 +215,8 @@ MOST_LAYERS = 12
 def name_layers_in_error(
     error: InputError, drawing: Drawing, usable: Callable[[Drawing], bool]
 ) -> InputError:
-    """Return an error with the layers of the segments it names,
-    and a choice of layers with which a part can be read.
+    """Return an error whose message also has the layers of the segments that it names, and a choice of layers
+    with which a part can be read.
 
     The error itself is returned where its segments are not on several layers. ``usable`` returns whether a
     part can be read from a drawing.

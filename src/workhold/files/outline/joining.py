@@ -48,8 +48,9 @@ CROWD = 64
 def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
     """Return the pairs (P, 2) of indices of points (N, 2) at most a tolerance apart, in mm, each pair sorted.
 
-    Distinct points are paired each with each. Of exactly equal points, each is paired with the next, and only
-    the first with other points. Raises InputError for too many points within the tolerance of each other.
+    All pairs of distinct points at that distance are returned. Among exactly equal points each is paired with
+    the next only, and only the first of them is paired with other points. Raises InputError for too many
+    points within the tolerance of each other.
     """
     if len(points) < 2:
         return np.empty((0, 2), dtype=np.int64)
@@ -92,13 +93,14 @@ def find_near_pairs(points: NDArray[np.float64], tolerance: float) -> list[NDArr
 
 
 def group_by_pairs(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return for each of ``count`` items the smallest item
-    of its group; pairs (P, 2) of items belong to one group.
+    """Return (count,), for each of ``count`` items the smallest number of an item in its group.
+
+    Two items belong to one group if a chain of the pairs (P, 2) connects them.
     """
     parent = list(range(count))
 
     def root(item: int) -> int:
-        """Return the smallest item known of an item's group."""
+        """Return the smallest item in the group of an item, as far as groups are merged yet."""
         while parent[item] != item:
             parent[item] = parent[parent[item]]
             item = parent[item]
@@ -153,8 +155,8 @@ class Junction:
 
     Parameters
     ----------
-    point : in mm.
-    labels : of the segments that end there.
+    point : place of the junction, (x, y) in mm.
+    labels : labels of the segments that end there.
     within : how far apart the ends are, in words; empty where they are one point.
     """
 
@@ -238,8 +240,8 @@ def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None
 def find_chains_connected_to(
     node: NDArray[np.int64], partner: Sequence[int], ends: Sequence[int]
 ) -> list[bool]:
-    """Return for each chain whether it is connected to one
-    of some ends, through common points and joined ends.
+    """Return for each chain whether it is connected to one of ``ends`` through common points and joined ends,
+    directly or through other chains.
 
     Parameters
     ----------
@@ -277,8 +279,8 @@ def number_end_points(chains: Sequence[Chain]) -> NDArray[np.int64]:
 def drop_repeated_chains(
     chains: Sequence[Chain], node: NDArray[np.int64], budget: Budget
 ) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
-    """Return the chains without those drawn twice, the nodes
-    (2 N,) of the kept ones' ends, and phrases on the dropped.
+    """Return (1) the chains, each once if drawn several times, (2) the nodes (2 N,) of the ends of these N
+    chains, and (3) phrases on the chains dropped.
 
     ``node`` is from :func:`number_end_points`; ``budget`` is spent.
     """
@@ -304,8 +306,8 @@ def drop_repeated_chains(
 
 
 def run_alike(a: Chain, b: Chain) -> bool:
-    """Return whether two chains with as many segments run
-    through the same points and arcs, in either direction.
+    """Return whether two chains with equally many segments run through the same
+    points and arcs, in the same or opposite direction.
     """
     return any(
         all(dist(p, q) <= SAME_POINT for p, q in zip(a.points, c.points, strict=True))
@@ -315,7 +317,9 @@ def run_alike(a: Chain, b: Chain) -> bool:
 
 
 def drop_repeated_loops(loops: Iterable[JoinedLoop]) -> tuple[list[JoinedLoop], list[str]]:
-    """Return the loops without those drawn twice (same vertices and arcs), and phrases on the dropped."""
+    """Return (1) the loops, each once if several have the same vertices and
+    arcs, and (2) phrases on the loops dropped.
+    """
     kept: dict[object, JoinedLoop] = {}
     repeated = []
     for loop in loops:
@@ -349,10 +353,11 @@ def compute_arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
 def join_ends(
     chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float
 ) -> tuple[list[int], list[tuple[Junction, Sequence[int]]]]:
-    """Return for each end the end joined to it, or -1, and
-    the junctions (three ends or more), each with its ends.
+    """Return (1) for each end the end joined to it, or -1, and (2) the
+    junctions, each with the ends that meet there.
 
-    Ends are numbered 2 i and 2 i + 1 for the first and last point of chain i.
+    A junction is a point at which three ends or more meet. Ends are numbered 2 i and 2 i + 1 for the first
+    and last point of chain i.
 
     Parameters
     ----------
@@ -426,10 +431,10 @@ def get_end_point(chains: Sequence[Chain], end: int) -> Point:
 
 
 def make_junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
-    """Return the junction of some ends, at the first one's
-    point; ``within`` says in words how far apart they are.
+    """Return the junction of some ends, at the point of the first end.
 
-    Ends 2 i and 2 i + 1 are the first and last point of chain i.
+    ``within`` says in words how far apart the ends are. Ends 2 i and 2 i + 1 are the first and last point of
+    chain i.
     """
     names = tuple(chains[end // 2].labels[-(end % 2)] for end in ends)
     return Junction(get_end_point(chains, ends[0]), names, within)

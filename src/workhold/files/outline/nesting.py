@@ -93,8 +93,8 @@ def nest_loops(loops: Sequence[JoinedLoop], budget: Budget | None = None) -> tup
     """Return the parts that loops make, by decreasing area;
     each is an outer loop with the holes directly in it.
 
-    Loops that cross are sorted somehow, and refused later. Outlines that share lines (of one nest) are
-    separate parts, although their borders touch. ``budget`` is spent; None is no limit.
+    Of loops that cross, no correct nesting is promised; they are refused later. Outlines that share lines (of
+    one nest) are separate parts, although their borders touch. ``budget`` is spent; None is no limit.
     """
     budget = budget or Budget(UNLIMITED)
     rings = sorted(map(MeasuredLoop.from_loop, loops), key=lambda r: -r.area)
@@ -133,7 +133,7 @@ def nest_loops(loops: Sequence[JoinedLoop], budget: Budget | None = None) -> tup
 
 
 def lies_inside(inner: MeasuredLoop, outer: MeasuredLoop) -> bool:
-    """Return whether a loop lies inside another one, also where they share lines."""
+    """Return whether the loop ``inner`` lies inside the loop ``outer``; they may share lines."""
     x, y = inner.segments[0].start
     if measure_outline_distances(np.array([(x, y)]), outer.rows)[0] > TOUCHING:
         return bool(is_inside(x, y, outer.rows))
@@ -155,7 +155,8 @@ def join_loops_as_one_part(loops: Sequence[JoinedLoop]) -> DrawnPart:
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Budget | None = None) -> None:
     """Raise InputError where loops of other parts cross or touch a part, as holes drawn half outside do.
 
-    Another outer loop may lie along the part's own from outside, as neighbours of a nest do that share a cut.
+    The outer loop of another part may touch this part's outer loop from outside, as between parts that share
+    a cut.
     """
     budget = budget or Budget(UNLIMITED)
     comparisons = ComparisonBudget("the part")
@@ -208,9 +209,9 @@ def boxes_meet(a: Sequence[float], b: Sequence[float]) -> bool:
 
 
 def choose_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
-    """Return the part of a number, or the first, which is the largest, for None.
+    """Return the part with the number given (from 1); for None the first part, which is the largest.
 
-    Raises InputError for a number that no part has, and for a name.
+    Raises InputError for a number that no part has, and for a name, because drawn parts have none.
     """
     if number is None:
         return parts[0]

@@ -62,8 +62,8 @@ class CurveCluster:
     Parameters
     ----------
     faces : the closed outlines that they make, each counter-clockwise.
-    open : the pieces that bound none.
-    chains : indices of the chains that they are of.
+    open : the pieces that bound no outline.
+    chains : indices of the chains to which the lines and arcs belong.
     shared : label, start and end of every line or arc between two faces.
     doubled : both labels, start and end of every stretch on which two were drawn.
     box : (smallest x, smallest y, largest x, largest y) in mm.
@@ -80,8 +80,8 @@ class CurveCluster:
 def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[CurveCluster]:
     """Return the connected groups of the lines and arcs of some chains, cut where they meet.
 
-    Ends that are within the tolerance in mm of others, or of a line or an arc, are taken to lie on it. Raises
-    InputError for too many segments.
+    An end within the tolerance in mm of another end, a line or an arc is taken to lie on it. Raises
+    InputError if there are too many segments to compare.
     """
     segments, labels, numbers = list[Segment](), list[str](), list[int]()
     for number, chain in enumerate(chains):
@@ -104,10 +104,11 @@ def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[CurveCluste
 def make_plane_map(
     segments: Sequence[Segment], tolerance: float, comparisons: ComparisonBudget
 ) -> tuple[NDArray[np.float64], list[PlaneEdge]]:
-    """Return points (N, 2) in mm, and the edges into which
-    segments are cut where they meet, between some of the points.
+    """Return (1) points (N, 2) in mm and (2) the edges between them: the
+    pieces of segments cut where they meet.
 
-    Ends within the tolerance in mm of another segment are taken to lie on it. ``comparisons`` is spent.
+    Segment ends within the tolerance in mm of another segment are taken to lie on it. ``comparisons`` is
+    spent.
     """
     touching = find_ends_on_segments(segments, max(tolerance, NODE), comparisons)
     carriers = subdivide(segments, [(segments[k], point) for k, point in touching], comparisons)
@@ -156,8 +157,8 @@ def make_plane_map(
 def find_ends_on_segments(
     segments: Sequence[Segment], tolerance: float, comparisons: ComparisonBudget
 ) -> list[tuple[int, Point]]:
-    """Return (segment index, end point) for ends that lie on
-    another segment within a tolerance in mm, not at its ends.
+    """Return (segment index, end point) for each segment end that lies within a tolerance in mm of another
+    segment, but not near the ends of that segment.
     """
     ends = np.unique(
         np.array([end for one in segments for end in (one.start, one.end)]).reshape(-1, 2), axis=0
@@ -185,7 +186,9 @@ def find_ends_on_segments(
 
 
 def find_nearest_place(places: NDArray[np.float64], segment: Segment, point: Point) -> int:
-    """Return the index of the place (N, 2) nearest to the foot of a point on a segment."""
+    """Return the index of the row of ``places`` (N, 2) that is nearest
+    to the foot of a point on a segment.
+    """
     foot = segment.compute_point(segment.find_parameter(point))
     return int(np.hypot(*(places - foot).T).argmin())
 
@@ -201,15 +204,17 @@ def find_owners_at(carrier: CutCurve, position: float) -> tuple[int, ...]:
 
 
 def compute_bulge_between(carrier: CutCurve, low: float, high: float) -> float:
-    """Return the bulge of a piece of a line or circle, run
-    as its positions grow: counter-clockwise on a circle.
+    """Return the bulge of a piece of a line or circle that runs in the direction of growing positions
+    (counter-clockwise on a circle).
     """
     return float(np.tan((high - low) / 4)) if isinstance(carrier.segment, Arc) else 0.0
 
 
 def close_gaps(places: NDArray[np.float64], edges: list[PlaneEdge], tolerance: float) -> list[PlaneEdge]:
-    """Return the edges with each dead end moved onto the nearest
-    node within a tolerance in mm, without edges that vanish.
+    """Return the edges with each dead end moved onto its nearest other
+    node, where that is within a tolerance in mm.
+
+    A dead end is a node of one edge only. An edge whose two ends become the same node is left out.
     """
     degree = count_edges_at_nodes(edges)
     loose = [node for node, count in degree.items() if count == 1]
@@ -274,7 +279,9 @@ def trace_region_borders(points: NDArray[np.float64], edges: Sequence[PlaneEdge]
 
 
 def drop_loose_ends(edges: Sequence[PlaneEdge], kept: set[int]) -> set[int]:
-    """Return the indices of the kept edges without dead ends, which are removed until there are none."""
+    """Return the indices of the edges that are left of ``kept`` when edges with a dead end are removed until
+    there are none.
+    """
     at: dict[int, set[int]] = defaultdict(set)
     for k in kept:
         at[edges[k].first].add(k)
@@ -295,10 +302,10 @@ def drop_loose_ends(edges: Sequence[PlaneEdge], kept: set[int]) -> set[int]:
 def trace_closed_walks(
     points: NDArray[np.float64], edges: Sequence[PlaneEdge], kept: set[int]
 ) -> list[list[int]]:
-    """Return closed walks of half-edges; at its end each
-    is followed by the one that turns farthest to the left.
+    """Return closed walks of half-edges; each half-edge is followed by the one
+    that turns farthest to the left at its end.
 
-    Half-edge 2 e runs edge e forward, 2 e + 1 backward; only edges in ``kept`` are walked.
+    Half-edge 2 e runs edge e forward, 2 e + 1 backward; only edges whose index is in ``kept`` are walked.
     """
     leaving: dict[int, list[int]] = defaultdict(list)
     for k in sorted(kept):
@@ -418,8 +425,9 @@ def make_loop_from_walk(
 
 
 def open_chains(place: Sequence[Point], edges: Sequence[PlaneEdge], labels: Sequence[str]) -> Iterable[Chain]:
-    """Yield the given edges as chains, joined where just
-    two of them meet; closed rings among them are left out.
+    """Yield the given edges as chains; edges are joined at each node where exactly two of them meet.
+
+    Edges that form a closed ring, with no other edge at it, are left out.
     """
     at: dict[int, list[int]] = defaultdict(list)
     for k, edge in enumerate(edges):

@@ -53,7 +53,7 @@ class AmbiguousSpot:
     junction : the first such point.
     box : around all that is connected with it: (smallest x, smallest y, largest x, largest y) in mm.
     bounds_something : whether it can be the border of anything.
-    layer : of its lines, where they are all on one; "" otherwise.
+    layer : layer of the lines that meet at the junction; "" if they are on several layers.
     """
 
     junction: Junction
@@ -94,12 +94,12 @@ def make_outlines(
 ) -> DrawnOutlines:
     """Return the outlines that chains make, in mm and without segments of zero length.
 
-    Raises InputError for a tolerance with too many ends within it.
+    Raises InputError if too many ends lie within the tolerance of each other.
 
     Parameters
     ----------
     tolerance : largest gap to close, in mm.
-    drawing : that the chains are from, for the layers and the looks of lines.
+    drawing : the drawing that the chains are from; it gives the layers, colours and line types of segments.
     budget : work and time that may still be spent on the file.
     """
     joined = join(chains, tolerance, budget)
@@ -112,10 +112,10 @@ def make_outlines(
 
 
 def drop_doubled_lines(joined: JoinedChains, tolerance: float, remarks: list[str]) -> JoinedChains:
-    """Return joined chains in which open lines or arcs
-    drawn on each other count once; ``remarks`` is extended.
+    """Return joined chains in which lines or arcs drawn on top of each other, in open chains, are kept only
+    once.
 
-    Outlines that the remaining lines close are added to the loops.
+    Outlines that the remaining lines close are added to the loops; ``remarks`` is extended.
     """
     chains = [stray.chain for stray in joined.strays]
     if not run_along_each_other([segment for chain in chains for segment in chain.segments], tolerance):
@@ -200,7 +200,7 @@ def untangle_outlines(
 
 
 def try_to_make_clusters(chains: Sequence[Chain], tolerance: float) -> list[CurveCluster]:
-    """Return the connected groups of lines and arcs; [] where there are too many."""
+    """Return the result of :func:`make_clusters`; [] where there are too many segments."""
     try:
         return make_clusters(chains, tolerance)
     except OverBudgetError:
@@ -210,12 +210,12 @@ def try_to_make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Curv
 
 
 def is_nest(one: CurveCluster, drawing: Drawing) -> bool:
-    """Return whether connected lines are outlines that share
-    some of them, as parts cut apart by common cuts do.
+    """Return whether a cluster of connected lines is a nest: outlines that
+    share lines, as parts do that one cut separates.
 
-    They must be on one layer, larger than letters, and not a single outline with open pieces. A shared line
-    that is drawn unlike all other lines of the outlines is a bend or a marking rather than a cut: then the
-    answer is False.
+    The outlines must be on one layer, larger than letters, and not a single outline with open pieces. A
+    shared line that is drawn unlike all other lines of the outlines is taken for a bend or a marking, not for
+    a cut: then the answer is False.
     """
     if not one.faces or (len(one.faces) == 1 and one.open):
         return False
@@ -230,17 +230,21 @@ def is_nest(one: CurveCluster, drawing: Drawing) -> bool:
 
 
 def lies_in_material(one: CurveCluster, loops: Sequence[JoinedLoop]) -> bool:
-    """Return whether connected lines lie inside the material of a part, where their outlines are holes."""
+    """Return whether connected lines lie inside the material of a part, so that their outlines are holes.
+
+    ``loops`` are the outlines of the drawing; the lines are in material if an odd number of them surrounds
+    the lines.
+    """
     x, y, _ = one.faces[0].vertices[0]
     around = [loop for loop in loops if surrounds_box(compute_loop_box(loop), one.box)]
     return sum(is_inside(float(x), float(y), MeasuredLoop.from_loop(loop).rows) for loop in around) % 2 == 1
 
 
 def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
-    """Return whether outlines that share lines are a frame, such
-    as a sheet's border: a whole part lies in a hole of one.
+    """Return whether outlines that share lines are a frame such as a sheet's
+    border, with a whole part in a hole of theirs.
 
-    ``number`` is that of the outlines' nest; parts of the same nest do not count.
+    ``number`` is the ``nest`` of the outlines' loops; parts of the same nest do not count.
     """
     for part in parts:
         if part.loops[0].nest != number:
@@ -284,12 +288,12 @@ class JunctionIndex:
     def find_bad_spots(
         self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
     ) -> list[AmbiguousSpot]:
-        """Return a list with the ambiguous spot at the first
-        junction at which one of some segments ends; [] without one.
+        """Return a list with the ambiguous spot at the first junction where a segment with one of the labels
+        ends; [] if no such segment ends at a junction.
 
         Parameters
         ----------
-        labels : of the segments.
+        labels : labels of the segments.
         box, bounds_something : see :class:`AmbiguousSpot`.
         """
         number = min((self.first[label] for label in labels if label in self.first), default=None)
@@ -299,8 +303,8 @@ class JunctionIndex:
 
 
 def join_bad_spots(spots: Sequence[AmbiguousSpot]) -> list[AmbiguousSpot]:
-    """Return the ambiguous spots with those of one junction
-    merged, in the order in which their junctions first come.
+    """Return the ambiguous spots, with those at the same junction merged
+    into one, in order of first appearance.
     """
     found: dict[int, AmbiguousSpot] = {}
     for spot in spots:
@@ -311,10 +315,12 @@ def join_bad_spots(spots: Sequence[AmbiguousSpot]) -> list[AmbiguousSpot]:
 
 
 def choose_outline(outlines: DrawnOutlines, number: int | str | None) -> DrawnPart:
-    """Return the part of a number, or for None the largest without an ambiguous spot in its material.
+    """Return the part with the number given; for None the largest part without an ambiguous spot in its
+    material.
 
-    Raises InputError where there is none, where such a spot lies in the part of that number, and for None
-    where something with such a spot is much larger or around the part, and may be meant.
+    Raises InputError (a) where there is no such part, (b) where an ambiguous spot lies in the material of the
+    part with that number, and (c) for None, where something with an ambiguous spot is much larger than the
+    part or surrounds it, so that it may be meant.
     """
     parts, spots = outlines.parts, outlines.spots
     if number is not None or not spots:
@@ -376,7 +382,7 @@ def describe_shared_lines(one: CurveCluster) -> list[str]:
 
 
 def find_doubled_places(one: CurveCluster) -> list[str]:
-    """Return phrases on the lines or arcs that were drawn on each other."""
+    """Return phrases on the lines or arcs that were drawn on top of each other, and where."""
     return [
         f"{strip_segment_number(label)} and {strip_segment_number(other)} from {format_point(start)} to {format_point(end)}"
         for label, other, start, end in one.doubled
@@ -404,7 +410,9 @@ NEAR_ANGLE, NEAR_PLACE = 1e-6, 1e-5
 
 
 def run_along_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
-    """Return whether two of some lines and arcs lie on each other for more than a tolerance in mm."""
+    """Return whether any two of some lines and arcs coincide over more
+    than a tolerance in mm of their length.
+    """
     lines = [one for one in segments if isinstance(one, Line)]
     if len(lines) > 1 and lines_run_along_each_other(lines, tolerance):
         return True
@@ -421,7 +429,7 @@ def run_along_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
 
 
 def lines_run_along_each_other(lines: Sequence[Line], tolerance: float) -> bool:
-    """Return whether two of some lines lie on each other for more than a tolerance in mm."""
+    """Return whether any two of some lines coincide over more than a tolerance in mm of their length."""
     rows = np.array([(*one.start, *one.end) for one in lines])
     rows = rows - np.tile(rows.reshape(-1, 2).mean(axis=0), 2)
     angle = np.arctan2(rows[:, 3] - rows[:, 1], rows[:, 2] - rows[:, 0]) % pi
@@ -440,12 +448,14 @@ def lines_run_along_each_other(lines: Sequence[Line], tolerance: float) -> bool:
 def group_near_values(
     values: NDArray[np.float64], numbers: NDArray[np.int64], slack: float
 ) -> list[NDArray[np.int64]]:
-    """Return groups of two and more of the numbers whose
-    values, when sorted, follow each other within a slack.
+    """Return groups of ``numbers`` whose values are near to each other,
+    as one array per group of two and more.
+
+    Sorted by value, neighbours within a group differ by at most ``slack``.
 
     Parameters
     ----------
-    values, numbers : (N,) each; ``numbers`` are what the groups are made of.
+    values, numbers : (N,) each; ``values[i]`` is the value of ``numbers[i]``.
     """
     order = np.argsort(values, kind="stable")
     breaks = np.flatnonzero(np.diff(values[order]) > slack) + 1
@@ -453,7 +463,7 @@ def group_near_values(
 
 
 def have_overlap(spans: Sequence[tuple[float, float]]) -> bool:
-    """Return whether two of some spans (low, high) overlap; empty ones count as none."""
+    """Return whether two of some spans (low, high) overlap; spans with high <= low are ignored."""
     reached = -np.inf
     for low, high in sorted(spans):
         if high <= low:

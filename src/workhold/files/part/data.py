@@ -47,7 +47,7 @@ __all__ = ["ObjectPart", "read_object", "read_json"]
 
 
 def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool) -> LoadedPart:
-    """Return the workpiece of a JSON file, or of a result file.
+    """Return the part in a JSON file, which may be a result file.
 
     Parameters
     ----------
@@ -141,9 +141,10 @@ class ObjectPart:
 
     Parameters
     ----------
-    drawing : in mm; of a solid at the height of the pegs, its outline there.
+    drawing : the drawing in mm; for a solid that is read at the height of the pegs, its outline there.
     name : default name of the part.
-    part_number : of the part to take of the drawing; None where it is taken already, or the largest is meant.
+    part_number : number of the part to take from the drawing; None where the drawing has that part only, or
+        the largest is meant.
     layered : whether layers of the drawing can be chosen.
     """
 
@@ -166,9 +167,9 @@ def read_object(
     """Return the drawing in an object of shapely, NumPy,
     ezdxf, build123d or CadQuery, or in a list of corners.
 
-    The arguments are those of :func:`workhold.load`; ``view`` holds those for solids. A geometry of shapely
-    and an array have no unit and are in mm unless one is given. Raises InputError for other objects, and for
-    arguments that do not apply to the object.
+    The arguments are those of :func:`workhold.load`; ``view`` holds the arguments for solids. A geometry of
+    shapely and an array have no unit and are in mm unless one is given. Raises InputError for other objects,
+    and for arguments that do not apply to the object.
     """
     is_geometry = hasattr(part, "__geo_interface__") and hasattr(part, "geom_type")
     if is_geometry or isinstance(part, np.ndarray | list | tuple):
@@ -253,8 +254,8 @@ def make_chain_from_array(points: Any, scale: float) -> Chain:
 
 
 def list_wrapped_shapes(part: Any) -> Iterator[Any]:
-    """Yield the shapes of Open CASCADE in an object that is one,
-    wraps one or holds such objects; none for other objects.
+    """Yield the shapes of Open CASCADE in an object that is a shape, wraps one or holds such objects; other
+    objects yield nothing.
     """
     if type(part).__module__.partition(".")[0] == "OCP":
         yield part

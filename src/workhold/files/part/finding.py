@@ -129,7 +129,7 @@ def read_bytes(path: Path) -> bytes:
 def detect_file_kind(path: Path, content: bytes) -> str:
     """Return "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes.
 
-    Raises InputError where neither tells.
+    Raises InputError if neither shows the kind.
     """
     ending = path.suffix.lower().lstrip(".")
     if ending in ("json", "dxf", "svg", "step"):

@@ -74,13 +74,14 @@ def load(
 
     Parameters
     ----------
-    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file wins. Or a
-        geometry of shapely, an array (N, 2) of the corners of an outline, a document of ezdxf, or a sketch, a
-        face or a solid of build123d or CadQuery.
-    name : name of the part; if None the file's name, before it that of the solid where there are more.
-    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not say, and overrides those that do. For an
-        SVG drawing in pixels also the pixels per inch: "px72", "px90", "px96". A geometry of shapely and an
-        array are in mm if None.
+    part : path of a .json, .dxf, .svg or .step file, or a built-in name such as ``widget``; a file of that
+        name is preferred. Or a geometry of shapely, an array (N, 2) of the corners of an outline, a document
+        of ezdxf, or a sketch, a face or a solid of build123d or CadQuery.
+    name : name of the part; if None the file's name, or for one of several solids of a STEP file the solid's
+        name and the file's, as in "lug of machine".
+    unit : "mm", "cm", "m" or "inch"; needed for drawings that do not give their unit, and overrides the unit
+        of those that do. For an SVG drawing in pixels also the pixels per inch: "px72", "px90", "px96". A
+        geometry of shapely and an array are in mm if None.
     layers : the DXF layers to read, in any mixture of capitals, one or several; all visible ones when None.
     part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
         None. Solids of a STEP file have numbers by decreasing volume, and may have names.
@@ -96,11 +97,11 @@ def load(
     head_room : with a height of the pegs, what is kept free above them, in mm; 0.5 when None.
     least_band : with a height of the pegs, how high an upright face must be there to be touched, in mm; 1
         when None.
-    heights : of a STEP file's solid, the lowest and highest z in mm over which carriers with heights of their
-        own reach, by role as in ``toolkit.heights``; that of ``toolkit`` when None.
-    toolkit : what a STEP file's solid will be held in. When no height of the pegs is given they are then no
-        higher than they must be to touch half of what pegs can touch, and such as are sold. When None they
-        are as tall as the part.
+    heights : for a STEP file's solid, the lowest and highest z in mm of carriers that reach over heights of
+        their own, by role; ``toolkit.heights`` when None.
+    toolkit : what a STEP file's solid will be held in. With a toolkit and without ``peg_height``, the pegs
+        are dowels that are sold, high enough to touch half of what pegs of the best height can touch, and if
+        possible no higher than twice their diameter. Without both, pegs are as tall as the part.
 
     Raises
     ------
@@ -155,9 +156,9 @@ def read_workpiece(
 
     Parameters
     ----------
-    usual_unit : the unit of a drawing that does not say its own, when ``unit`` is None; the others are those
-        of :func:`load`.
-    peg_diameter : of the pegs beside a solid in mm; None where it is not known.
+    usual_unit : the unit of a drawing that does not give its own, when ``unit`` is None. Parameters that are
+        not listed are those of :func:`load`.
+    peg_diameter : diameter in mm of the pegs beside a solid; None where it is not known.
     called : names of the questions of ``files.questions`` at the caller, such as options of the command line;
         None gives those of Python's arguments.
 
@@ -220,7 +221,7 @@ def refuse_unsure_numbers(
     Raises
     ------
     InputError
-        With both heights that may be meant.
+        The message names both heights that may be meant.
     """
     usual = loaded.usual
     if not faces or usual is None or usual.is_whole or not usual.decides_numbers:

@@ -66,8 +66,8 @@ class LoadedPart:
     workpiece : the part, in mm.
     remarks : one sentence each: what was ignored, closed, dropped or chosen.
     parts : all parts the file holds, by decreasing area; ``workpiece`` is one of them.
-    number : its number among them, from 1.
-    heights : of a solid seen at the height of the pegs, what other heights offer.
+    number : number of the workpiece among ``parts``, from 1.
+    heights : for a solid seen at the height of the pegs, the outlines at other heights; otherwise empty.
     solids : all of a STEP file, the largest first.
     usual : height of pegs chosen for a solid because the user gave none; None otherwise.
     """
@@ -119,7 +119,8 @@ def from_drawing(
     Parameters
     ----------
     path : of the file; only its name is used.
-    part_number : of the part to take, from 1 by decreasing area; None is the largest that can be read.
+    part_number : number of the part to take, from 1 by decreasing area; None takes the largest that can be
+        read.
     tolerance : largest gap between ends to close, in mm.
     fit : largest distance in mm of lines and arcs from curves that they replace; None refuses true curves.
     layered : whether layers of the drawing can be chosen, for advice.
@@ -166,8 +167,8 @@ def make_loaded_outline(
     layered: bool,
     budget: Budget,
 ) -> LoadedPart:
-    """Return what :func:`from_drawing` returns; its errors
-    do not name layers with which a part could be made.
+    """Return the result of :func:`from_drawing`; unlike there, error messages do not name layers with which a
+    part could be made.
     """
     clean = drop_zero_lengths(drawing.chains)
     outlines = make_outlines(clean.chains, tolerance, drawing, budget)
@@ -205,10 +206,10 @@ def build_workpiece(
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """Return a workpiece from loops in mm; its errors do not begin with the part's name.
+    """Return a workpiece from loops in mm; its error messages do not begin with the part's name.
 
-    The file's name stands there instead. Without ``with_labels`` the segments have no labels; ``departure``
-    is in mm.
+    The caller puts the file's name there instead. Without ``with_labels`` the segments have no labels;
+    ``departure`` is in mm.
     """
     labels = [loop.labels for loop in loops] if with_labels else None
     try:
@@ -229,7 +230,7 @@ def refuse_large(segments: int) -> None:
 def describe_other_parts(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
     """Return one sentence that lists the parts of a drawing and says which is used; [] for a single part.
 
-    ``asked`` is the number that the user gave; None for none.
+    ``asked`` is the number that the user gave, or None.
     """
     if len(parts) == 1:
         return []
@@ -273,10 +274,11 @@ def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
 
 
 def name_part_after_solid(loaded: LoadedPart, file: str, chosen: int | str | None) -> LoadedPart:
-    """Return the part named "lug of machine", after its solid and the file, if the file holds several solids.
+    """Return the part renamed as in "lug of machine", after its solid and ``file``, if the file holds several
+    solids.
 
-    Unchanged where the solid has no name, or that of the file. ``chosen`` is the number or the name of the
-    solid that was read; None is the largest.
+    It is returned unchanged where the solid has no name, or has the name of the file. ``chosen`` is the
+    number or the name of the solid that was read; None is the largest.
     """
     name = "" if len(loaded.solids) < 2 else find_chosen_name(loaded.solids, chosen)
     if not name or name == file:
@@ -285,10 +287,10 @@ def name_part_after_solid(loaded: LoadedPart, file: str, chosen: int | str | Non
 
 
 def find_chosen_name(solids: Sequence[FileSolid], chosen: int | str | None) -> str:
-    """Return the name of the solid chosen by number (from 1)
-    or by a name in any mixture of capitals; "" if it has none.
+    """Return the name of the solid chosen by number (from 1) or by name in any
+    mixture of capitals; None chooses the first.
 
-    A chosen name must be that of a solid.
+    "" if the solid has no name. A ``chosen`` name must be that of a solid.
     """
     if not isinstance(chosen, str):
         return solids[(chosen or 1) - 1].name

@@ -68,7 +68,7 @@ class DrawnLayer:
 
 
 class LayerWalk(DxfWalk):
-    """A walk that visits all entities, on hidden layers too, and passes over whatever is wrong with one."""
+    """A walk that visits all entities, also on hidden layers, and leaves out entities that cannot be read."""
 
     def __init__(self, document: Any, budget: Budget) -> None:
         super().__init__(document, None, None, budget)
@@ -94,8 +94,8 @@ class LayerWalk(DxfWalk):
 def list_drawn_layers(
     path: str | Path, unit: str | None, usual_unit: str | None
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """Return the layers of a DXF file that have something on
-    them, sorted by name, and whether their sizes are in mm.
+    """Return (1) the layers of a DXF file that have something on them, sorted by name, and (2) whether their
+    sizes are in mm.
 
     Sizes are in units of the drawing where neither the file nor an argument gives a unit.
 
@@ -128,7 +128,9 @@ def list_drawn_layers(
 def list_layers_of_document(
     document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """Return the layers of ezdxf's document as :func:`list_drawn_layers`; ``code`` is its ``$INSUNITS``."""
+    """Return the result of :func:`list_drawn_layers` for a document of
+    ezdxf; ``code`` is its ``$INSUNITS``.
+    """
     known = choose_scale(code, unit, usual_unit)
     scale = 1.0 if known is None else known[0]
     try:
@@ -197,9 +199,10 @@ class DrawingSurvey:
         all that follows.
     chains : all that is drawn.
     parts : the parts that the closed outlines make, by decreasing area.
-    gaps : between loose ends, each once, in increasing order.
-    layers : of a DXF file those with lines, arcs or curves on them.
-    solids : of a STEP file, the largest first.
+    gaps : distances in mm from loose ends to the nearest other loose end, without repetition, in increasing
+        order.
+    layers : for a DXF file, the layers with lines, arcs or curves on them.
+    solids : solids of a STEP file, the largest first.
     pixels : width and height in pixels of all that is drawn, where the unit of an SVG drawing is asked.
     """
 
@@ -216,7 +219,8 @@ class DrawingSurvey:
 
 
 def survey_part_file(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> DrawingSurvey:
-    """Return a survey of a part file: the part if it can be read, else the refusal, and all that is drawn.
+    """Return a survey of a part file: the part or, if it cannot be read, the
+    refusal; in both cases all that is drawn.
 
     Parameters
     ----------
@@ -253,7 +257,7 @@ def add_drawn_content(
 
     Parameters
     ----------
-    unit : unit in which to read the drawing, where its own is asked; None otherwise.
+    unit : unit in which to read the drawing, if its own unit is not known; None otherwise.
     options : those of :func:`survey_part_file`.
 
     Raises
@@ -297,10 +301,10 @@ def add_drawn_content(
 
 @contextmanager
 def ignore_refusals() -> Iterator[None]:
-    """Suppress InputError in the block, except for one caused
-    by an OverBudgetError: raise OverBudgetError for that.
+    """Suppress InputError in the block.
 
-    So work that took too much is not tried once more.
+    An InputError caused by an OverBudgetError is not suppressed but raised as an OverBudgetError, so that
+    work that took too much is not tried once more.
     """
     try:
         yield
@@ -334,7 +338,9 @@ def read_all_drawn(kind: str, path: Path, content: bytes, options: Mapping[str, 
 
 
 def list_refused_solids(content: bytes) -> tuple[FileSolid, ...]:
-    """Return the solids of the bytes of a STEP file whose outline was refused; () where it is damaged."""
+    """Return the solids of a STEP file, given as bytes, whose outline was
+    refused; () where the file is damaged.
+    """
     with suppress(InputError):
         from workhold.files.step.solids import list_solids
 
@@ -353,10 +359,10 @@ def try_to_nest(loops: Sequence[JoinedLoop]) -> tuple[DrawnPart, ...]:
 def find_gaps_and_parts(
     chains: tuple[Chain, ...], tolerance: float, size: tuple[float, float] | None
 ) -> tuple[tuple[float, ...], tuple[DrawnPart, ...]]:
-    """Return the gaps between loose ends, sorted, and the
-    parts after closing gaps up to a tolerance; all in mm.
+    """Return (1) the sorted distances from loose ends to the nearest other loose end, and (2) the parts after
+    closing gaps up to a tolerance; all in mm.
 
-    Gaps wider than ``WIDEST_GAP`` of the drawing's size are left out. Both are empty where chains could be
+    Distances above ``WIDEST_GAP`` times the diagonal ``size`` are left out. Both are () where chains could be
     joined in more than one way.
     """
     if size is None:

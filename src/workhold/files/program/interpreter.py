@@ -77,14 +77,15 @@ class Interpreter:
     has_lengths : whether it puts a tool length in force anywhere (G43).
     in_thousandths : whether a length without a decimal point counts 0.001 mm or 0.0001 inch.
     path : writer of the moves.
-    skipped : lines with a move to the machine's own places.
+    skipped : lines with a move to one of the machine's own places (G28, G30, G53).
     calls : (line, number) of every tool that comes into the spindle.
-    other_lengths : lines with G43 for another tool than the one in the spindle.
+    other_lengths : lines with G43 for the length of a tool that is not in the spindle.
     passed : lines with codes that do not affect the path, by code.
-    whole, pointed : lines with lengths without a decimal point, and whether others have one.
-    angles : of rotary axes, by their letters; those at places of the machine's own are ``away``.
+    whole, pointed : lines with lengths without a decimal point; whether other lengths have one.
+    angles : of rotary axes, by their letters; ``away`` for an axis that stands at a place of the machine's
+        own.
     presets : lines with G92 at the start.
-    distance_said : whether the program has G90 or G91.
+    distance_said : whether G90 or G91 has been read.
     """
 
     changes: bool
@@ -160,8 +161,8 @@ class Interpreter:
             )
 
     def add_code(self, codes: dict[str, str], code: str) -> None:
-        """Add a G code to ``codes`` under its group; raise
-        InputError for an unsupported one, and for two of one group.
+        """Add a G code to ``codes`` under its group; raise InputError for an
+        unsupported code, and for two codes of one group.
         """
         group = GROUPS.get(code)
         if group is None:
@@ -200,12 +201,14 @@ class Interpreter:
                 )
 
     def looks_ahead(self, codes: dict[str, str]) -> bool:
-        """Return whether a block has a code for look-ahead or smoothing, to which its numbers may belong."""
+        """Return whether a block has a code for look-ahead or smoothing, so that
+        numbers in the block may belong to that code.
+        """
         return any(code in LOOK_AHEAD for code in codes.values())
 
     def count_whole(self, letters: list[str], codes: dict[str, str], values: dict[str, float]) -> None:
-        """Note the line of lengths without a decimal point, and
-        scale these in ``values`` if they count thousandths.
+        """Append the block's line to ``whole``, and scale its lengths without a
+        decimal point in ``values`` if they count thousandths.
 
         ``letters`` are the words with such lengths.
         """
@@ -216,11 +219,11 @@ class Interpreter:
                 values[letter] *= LAST_DIGIT[unit.name]
 
     def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
-        """Update everything modal but the motion: feed, speed,
-        tool, its length, unit, plane, zero, and distance mode.
+        """Update everything modal except the motion: feed, speed, tool, its length, unit, plane, zero, and
+        distance mode.
 
-        Return the letters that have a meaning. Raises InputError for functions that are not supported, and
-        for M6 before any T.
+        Return the letters that have a meaning in the block. Raises InputError for functions that are not
+        supported, and for M6 before any T.
         """
         modes, used = self.modes, {"N", "F", "S", "T"}
         for function in functions:
@@ -252,10 +255,10 @@ class Interpreter:
         return used
 
     def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Put the modal codes of a block in force, and note those that do not affect the path.
+        """Put the modal codes of a block in force, and note the codes that do not affect the path.
 
-        Return the letters that belong to them. Raises InputError for a spline, and for a wrong number of a
-        zero.
+        Return the letters of the words that belong to these codes. Raises InputError for a spline, and for a
+        zero with a wrong number.
         """
         modes, used = self.modes, set()
         for code in codes.values():
@@ -302,7 +305,8 @@ class Interpreter:
         """Put a tool's length in force (G43), or cancel it
         (G49); the tip's height becomes unknown if it changes.
 
-        ``number`` is the length's number H; 0 cancels, None means the tool in the spindle.
+        ``number`` is the value of the word H, the number of the length. 0 cancels the length; None takes the
+        length of the tool in the spindle.
         """
         modes = self.modes
         if code == "49" or number == 0:
@@ -354,8 +358,8 @@ class Interpreter:
         return used | wanted
 
     def change_motion(self, codes: dict[str, str]) -> None:
-        """Put the motion or the drill cycle of a block in force;
-        a cycle other than the one in force starts with no values.
+        """Put the motion or the drill cycle of a block in force; a cycle that was not in force starts without
+        values from an earlier cycle.
 
         Raises InputError for both together.
         """
@@ -403,11 +407,11 @@ class Interpreter:
         return axes | ROTARY | ({"P"} if once == "30" else set())
 
     def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Handle G52, G92, G92.1 or G92.2 where it sets no
-        other zero, and return the letters that have a meaning.
+        """Handle G52, G92, G92.1 or G92.2 if it leaves the zero as it is, and return the letters that have a
+        meaning.
 
-        G52 with 0 sets none, and neither does cancelling what was never set. G92 before anything else says
-        where the tip stands. Raises InputError for everything else.
+        The zero stays as it is with G52 and 0, and when an offset is cancelled that was never set. G92 before
+        anything else says where the tip stands. Raises InputError for everything else.
         """
         modes, axes, code = self.modes, values.keys() & {"X", "Y", "Z"}, codes["once"]
         self.change_motion(codes)
@@ -476,8 +480,10 @@ class Interpreter:
         return from_x + x, from_y + y
 
     def read_arc_turns(self, values: dict[str, float]) -> int:
-        """Return P, the number of turns that an arc begins,
-        1 without P; raise InputError for a wrong number.
+        """Return the number of turns of an arc (the word P), in which the last turn may be a part of one; 1
+        without P.
+
+        Raises InputError for a P that is not such a number.
         """
         turns = values.get("P", 1.0)
         if turns != int(turns) or not 1 <= turns <= MOST_TURNS:
@@ -487,7 +493,7 @@ class Interpreter:
         return int(turns)
 
     def require_known_place(self, place: Reached) -> Place:
-        """Return an arc's end; raise InputError if one of its coordinates is None."""
+        """Return the end of an arc unchanged; raise InputError if one of its coordinates is None."""
         x, y, z = place
         if x is None or y is None or z is None:
             refuse_unknown(self.path, place, "an arc begins at a place")

@@ -51,9 +51,9 @@ class PathWriter:
 
     Parameters
     ----------
-    modes : state of the control.
-    line : of the block that is read.
-    rows : of the moves, see ``model.moves.Moves.from_rows``; the tool is -1 before any is called.
+    modes : state of the control whose moves are written.
+    line : number of the line of the block that is read.
+    rows : rows of the moves, see ``model.moves.Moves.from_rows``; the tool is -1 before any tool is called.
     arrivals : lines at which the tool comes from a place that is not known.
     unplaced : lines of rapid moves in increments that begin at a place that is not known.
     adrift : lines of rapid moves to a place with an unknown coordinate.
@@ -97,7 +97,7 @@ class PathWriter:
         Raises
         ------
         InputError
-            For one without a unit, and one that is too long.
+            For a number before the program says its unit, and for a length that is too large.
         """
         found = round(value * self.scale(), DIGITS)
         if abs(found) > MOST_LENGTH:
@@ -152,13 +152,15 @@ class PathWriter:
             self.modes.initial = None
 
     def set_zero_offset(self, offset: str) -> None:
-        """Put a zero in force; a position named from another zero becomes unknown."""
+        """Put a zero in force by its code; if the tip's position was measured from another zero, it becomes
+        unknown.
+        """
         if offset != self.modes.offset and self.modes.named:
             self.forget_position(range(3), f"line {self.line} changes to another zero")
         self.modes.offset = offset
 
     def refuse_other_zero(self) -> None:
-        """Raise InputError for a position in another zero than the moves so far."""
+        """Raise InputError if the position is measured from another zero than that of the moves so far."""
         modes = self.modes
         if self.offset_used != modes.offset:
             raise InputError(
@@ -169,8 +171,8 @@ class PathWriter:
     def move_to(self, place: Reached, cutting: bool, bulge: float = 0.0) -> None:
         """Move the tip to a position (x, y, z) in mm, and add a row for the move where its path is known.
 
-        From an unknown position the row is the end alone, with equal start and end; a rapid move to an
-        unknown position gives no row. ``bulge`` is the arc's seen from above.
+        A move from an unknown position gives a row with equal start and end, both at ``place``; a rapid move
+        to an unknown position gives no row. ``bulge`` is the arc's seen from above.
 
         Raises
         ------
@@ -198,7 +200,7 @@ class PathWriter:
             self.add(cutting, (from_x, from_y, from_z), end, bulge)
 
     def has_other_tool(self) -> bool:
-        """Return whether the tool in the spindle is another than that of the last row."""
+        """Return whether the tool in the spindle is not the tool of the last row."""
         return bool(self.rows) and self.rows[-1][1] != self.modes.tool and self.modes.tool is not None
 
     def add(self, cutting: bool, start: Place, end: Place, bulge: float) -> None:
@@ -263,10 +265,10 @@ class PlaneArc:
     sweep: float
 
     def iterate_spans(self, start: Place, end: Place) -> Iterator[tuple[Place, float]]:
-        """Yield the end and the bulge of each span; none is more than half a turn.
+        """Yield the end and the bulge of each span of the arc; a span is at most half a turn.
 
-        Where the ends are not equally far from the centre, the distance changes linearly with the sweep; so
-        does the height.
+        If the arc's ends are not equally far from the centre, the distance from the centre changes linearly
+        with the sweep; so does the height.
         """
         count = max(ceil(abs(self.sweep) / pi - 1e-9), 1)
         (x, y), part = self.center, self.sweep / count
@@ -283,10 +285,10 @@ class PlaneArc:
 
 
 def make_arc_about_center(center: Point, start: Place, end: Place, clockwise: bool, turns: int) -> PlaneArc:
-    """Return an arc about a centre (x, y) in mm; a full circle
-    where its ends are the same, with ``turns`` - 1 more turns.
+    """Return an arc about a centre (x, y) in mm; a full circle where its ends are the same.
 
-    Raises InputError for ends that are not equally far from the centre.
+    The arc makes ``turns`` - 1 whole turns more. Raises InputError for ends that are not equally far from the
+    centre.
     """
     (x, y), (to_x, to_y) = (
         (start[0] - center[0], start[1] - center[1]),
@@ -335,8 +337,9 @@ def make_arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool)
 def drill_holes(path: PathWriter, values: dict[str, float]) -> set[str]:
     """Add the moves of a block with a drill cycle: over the hole, down to R, to Z at the feed, and up again.
 
-    With L or K the hole is repeated, in increments. Return the letters that have a meaning in the block.
-    Raises InputError for a cycle that lacks a value, or that controls read in different ways.
+    With L or K this is repeated, each time moved on by the increments of the block. Return the letters that
+    have a meaning in the block. Raises InputError for a cycle that lacks a value, or that controls read in
+    different ways.
     """
     modes = path.modes
     bottom, plane = read_drilling_heights(path, values)
@@ -359,7 +362,8 @@ def read_drilling_heights(path: PathWriter, values: dict[str, float]) -> tuple[f
     """Return the z in mm of the hole's bottom and of the
     plane R; values that a block does not give stay in force.
 
-    Raises InputError for a cycle where one is missing, or where they do not follow each other downward.
+    Raises InputError for a cycle where one of them is missing, or where start, R and bottom are not in this
+    order downward.
     """
     modes, sticky = path.modes, path.modes.sticky
     if modes.plane != "17":

@@ -56,7 +56,7 @@ class ReadProgram:
     Parameters
     ----------
     program : what was read.
-    calls : (line, number of the tool) in their order.
+    calls : (line, number of the tool) of every tool that comes into the spindle, in their order.
     lines : number of lines of the file.
     """
 
@@ -195,8 +195,8 @@ def read_start_place(start: Sequence[float]) -> Place:
 
 
 def decode_program(content: bytes) -> str:
-    """Return the text of a program in UTF-8, or else in
-    Latin-1, as comments may be; raise InputError for no text.
+    """Return the text of a program from UTF-8, or else from Latin-1, in which comments may be written; raise
+    InputError if it is not text.
     """
     if b"\0" in content:
         raise InputError("the file is no text: give a program of RS-274 (G-code).")
@@ -216,7 +216,7 @@ def run(
 
     Parameters
     ----------
-    unit : of the program until it says its own; None if not known.
+    unit : unit of lengths until the program says its own; None if not known.
     start : position of the tip at the start in mm; None if not known.
     in_thousandths : see :class:`Interpreter`.
     """
@@ -263,9 +263,9 @@ def has_length(block: ProgramBlock) -> bool:
 
 
 def find_first_unit(listing: ProgramText, unit: str | None) -> Unit:
-    """Return the unit in which a program begins, which is also that of tools in its comments.
+    """Return the unit in which a program begins; lengths of tools in its comments have the same unit.
 
-    ``unit`` is the one to take where the program has none; mm if None.
+    ``unit`` is taken where the program names no unit; mm if ``unit`` is None, too.
     """
     codes = (
         normalize_code(text) for block in listing.blocks for letter, text in block.words if letter == "G"
@@ -286,7 +286,8 @@ def make_moves(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarra
 def list_tools_used(
     path: Path, control: Interpreter, listing: ProgramText, given: ToolsGiven, unit: Unit
 ) -> tuple[dict[int, Tool], list[str]]:
-    """Return the tools with which the program moves, by number, and notes on what is not known of them.
+    """Return (1) the tools with which the program moves, by number, and (2)
+    notes on what is not known of these tools.
 
     Rapid moves before any tool is called may be removed from ``control``, see :func:`drop_unknown`. Raises
     InputError for a tool without a known diameter.
@@ -294,7 +295,7 @@ def list_tools_used(
     Parameters
     ----------
     given : tools by number, or a table's path; None for those in the program's comments.
-    unit : of lengths, where they have none.
+    unit : unit of lengths that are given without a unit.
     """
     notes: list[str] = []
     if given is None:
@@ -357,8 +358,8 @@ def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) ->
 
 
 def make_tool_from_value(number: int, value: Any, unit: Unit) -> Tool:
-    """Return a tool from a Tool, from a diameter in the
-    program's unit, or from fields; raise InputError for others.
+    """Return a tool from a Tool, a diameter in the program's unit, or a mapping
+    of fields; raise InputError for other values.
     """
     if isinstance(value, Tool):
         return value
@@ -381,7 +382,7 @@ def describe_missing_tools(used: Sequence[int], missing: Sequence[int]) -> str:
 
 
 def format_line_numbers(lines: Sequence[int]) -> str:
-    """Return "Line" or "Lines" with the first few line numbers and the number of the rest.
+    """Return text such as "Line 3": the first few line numbers, and how many more there are.
 
     >>> format_line_numbers([3]), format_line_numbers([1, 2, 3, 4, 5, 6, 7])
     ('Line 3', 'Lines 1, 2, 3, 4, 5 and 2 more')

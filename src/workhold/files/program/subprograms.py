@@ -62,8 +62,8 @@ class RunningSubprogram:
 def expand_calls(listing: ProgramText) -> ProgramText:
     """Return the text with its subprograms written out where they are called; unchanged if it has no calls.
 
-    Raises InputError for a call of what is not in the file, a subprogram without an end, and an M99 that ends
-    none.
+    Raises InputError for a call of a subprogram that is not in the file, a subprogram without an end, and an
+    M99 outside any subprogram.
     """
     if not any(block.functions & {*CALLS, RETURN} for block in listing.blocks):
         return listing
@@ -79,7 +79,8 @@ def expand_calls(listing: ProgramText) -> ProgramText:
 def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[ProgramBlock]:
     """Yield blocks in the order in which they run, without calls and M99, up to the program's end.
 
-    ``optional`` has the lines that begin with a slash. Raises InputError as :func:`expand_calls`.
+    ``optional`` has the lines that begin with a slash. Raises InputError in the cases of
+    :func:`expand_calls`.
     """
     running: list[RunningSubprogram] = []
     starts = find_subprogram_starts(blocks)
@@ -130,8 +131,8 @@ def begin_call(
 ) -> RunningSubprogram:
     """Return the subprogram that a block calls; ``back`` is the index of the block after the call.
 
-    Raises InputError for one that is not in the file, or there twice, and for words that the block cannot
-    have.
+    Raises InputError for a subprogram that is not in the file or is in it twice, and for words that a call
+    cannot have.
     """
     given = {letter: float(text) for letter, text in block.words if letter in OF_CALLS}
     code = min(block.functions & CALLS.keys())
@@ -182,9 +183,10 @@ def find_subprogram_starts(blocks: Sequence[ProgramBlock]) -> Starts:
 
 
 def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> None:
-    """Raise InputError for an M99 that does not simply return behind the call.
+    """Raise InputError for an M99 that does not simply return to the block after the call.
 
-    ``is_called`` says whether a subprogram runs, ``is_optional`` whether the line begins with a slash.
+    That is an M99 outside a subprogram, on a line with a slash, or with P. ``is_called`` says whether a
+    subprogram runs, ``is_optional`` whether the line begins with a slash.
     """
     if not is_called:
         raise InputError("M99 stands outside of a subprogram, where the program begins anew: write M30.")

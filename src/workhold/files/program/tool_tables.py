@@ -81,7 +81,7 @@ def make_tool_from_fields(number: int, fields: Mapping[str, Any], place: str, un
     ----------
     fields : lengths by their names; the diameter is needed. A tool without a stickout is ``ENDLESS`` mm long.
     place : name of their source, for messages.
-    unit : of lengths, where the fields do not say.
+    unit : unit of lengths, where the fields do not give one.
 
     Raises
     ------
@@ -121,8 +121,8 @@ def make_tool_from_fields(number: int, fields: Mapping[str, Any], place: str, un
 def make_cutting_data(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
     """Return the cutting data of a tool from its fields, with lengths in ``unit``.
 
-    Number of teeth and point angle of a table for another program may be impossible here. That raises
-    InputError only if the fields ask for a cutting force; otherwise they are left out.
+    A table written for another program may have a number of teeth or a point angle that is impossible here.
+    That raises InputError only if the fields ask for a cutting force; otherwise these two are left out.
     """
     given = {key: fields[key] for key in CUTTING if fields.get(key) is not None}
     if fields.get("flutes") is not None:
@@ -136,7 +136,7 @@ def make_cutting_data(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
 
 
 def is_usable(key: str, value: Any) -> bool:
-    """Return whether cutting data accept a value."""
+    """Return whether the class of cutting data accepts a value for a field."""
     try:
         CuttingData(**{key: value})
     except InputError:
@@ -148,7 +148,7 @@ def stack_cylinders(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
     """Return the cylinders of a tool from its lengths in mm, from the tip up.
 
     Raises InputError for a shank without flute length, a holder without stickout, or a holder length without
-    diameter.
+    a holder diameter.
     """
     flute, reach = lengths.get("flute_length"), lengths.get("stickout")
     radius, shank = lengths["diameter"] / 2, lengths.get("shank_diameter")
@@ -176,8 +176,9 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
 
     Parameters
     ----------
-    path : a file in one of the three forms; a name ending in .toml or .csv decides, else its content does.
-    unit : of lengths, where the file does not say.
+    path : a file in one of the three forms: TOML or CSV if its name ends in .toml or .csv, otherwise its
+        content decides.
+    unit : unit of lengths, where the file does not give one.
 
     Returns
     -------
@@ -232,8 +233,8 @@ def read_tool_number(text: Any, place: str) -> int:
 
 
 def collect_tools(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) -> dict[int, Tool]:
-    """Return tools by number from rows (number, fields, place);
-    raise InputError for one given twice, and for no rows.
+    """Return tools by number from rows (number, fields, place); raise InputError for a tool that is given
+    twice, and if there are no rows.
     """
     tools: dict[int, Tool] = {}
     budget = Budget(LIMITS["tools"])
@@ -250,9 +251,10 @@ def collect_tools(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit
 
 
 def read_toml_tools(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Return the tools of parsed TOML by number, and whether it says the unit of each.
+    """Return (1) the tools of parsed TOML by number, and (2) whether the
+    content gives the unit of every tool.
 
-    Raises InputError for another form.
+    Raises InputError for content of another form.
     """
     for key in content:
         if key not in ("unit", "tool"):
@@ -269,10 +271,10 @@ def read_toml_tools(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, T
 
 
 def read_csv_tools(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Return the tools of a table with column names, separated
-    by commas, semicolons or tabs, and whether each has a unit.
+    """Return (1) the tools of a CSV table with column names, by number,
+    and (2) whether every tool has a unit.
 
-    Raises InputError for another form.
+    Cells are separated by commas, semicolons or tabs. Raises InputError for text of another form.
     """
     known = ("tool", *FIELDS)
     wanted = f"write tool,diameter and others of {', '.join(known)}"
@@ -295,8 +297,10 @@ def read_csv_tools(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
 
 
 def is_linuxcnc(text: str) -> bool:
-    """Return whether the first line that is no remark
-    begins with T, or consists of words of which one is T.
+    """Return whether a text looks like LinuxCNC's tool table.
+
+    It does if its first line with more than a comment begins with the word T, or consists of words (a letter
+    and a number each) of which one is T.
     """
     codes = (line.partition(";")[0].strip() for line in text.splitlines())
     code = next((code for code in codes if code), "")
@@ -333,7 +337,7 @@ def read_tools_in_comments(
     Parameters
     ----------
     comments : (line, text) of each.
-    unit : of diameters in comments that do not give their own: the program's.
+    unit : unit of diameters in comments that do not give one, which is the program's unit.
     calls : (line, number) of the tools that come into the spindle, for comments about the tool in use.
 
     Raises

@@ -198,12 +198,14 @@ def refuse_function(code: str) -> None:
 
 
 def is_spline(code: str, letters: Set[str], turns: float) -> bool:
-    """Return whether G5 or G5.1 is a curve of its own, and not
-    a mode of how a control looks ahead; False for other codes.
+    """Return whether a code is G5 or G5.1 in its meaning as a curve.
+
+    The same codes may also switch how a control looks ahead; then, and for all other codes, the answer is
+    False.
 
     Parameters
     ----------
-    letters : of the block.
+    letters : letters of the block's words.
     turns : value of P, which calls a stored path from 10001 on; 0 where there is none.
     """
     return code in ("5", "5.1") and (bool(letters & set("XYZIJL")) or turns > 10_000)
@@ -219,16 +221,17 @@ class ControlState:
 
     Parameters
     ----------
-    unit : of lengths; None until the program says.
+    unit : unit of lengths; None until the program gives it.
     motion : code of the motion in force, None before the first.
     cycle : code of the drill cycle in force, None outside one.
     plane, distance, centre, feed_kind, back : codes in force.
     offset : code of the zero in force.
     place : x, y and z of the tip, None where it is not known.
-    lost : reason why each of them is not known; empty where the program has not named it yet.
-    named : whether any of them has been named yet.
-    length : whose tool length is in force, such as H2 or T2; None before any is said, or :data:`NOSE`.
-    called, tool : number that T named last, and that of the tool in the spindle; None before the first.
+    lost : reason why each of x, y and z is not known; empty where the program has not named it yet.
+    named : whether any of x, y and z has been named yet.
+    length : name of the tool length in force, such as H2 or T2; None before any is given, :data:`NOSE` where
+        heights are those of the spindle's nose.
+    called, tool : number in the last word T, and number of the tool in the spindle; None before the first.
     feed, spindle : as they are written.
     sticky : values of the cycle in force by their letters, in mm; Z and R are heights.
     initial : height at which the cycle in force began.
@@ -368,9 +371,9 @@ def number_lines(text: str) -> Iterator[tuple[int, str]]:
 def strip_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
     """Return a line without its comments, which are appended to ``comments`` with the line's number.
 
-    Of nested comments one control ends the outer one at the first closing parenthesis, another at the last.
-    They are accepted where nothing stands between the two. Raises InputError for a parenthesis without its
-    partner.
+    When comments are nested, some controls end the outer comment at the first closing parenthesis, others at
+    the last. Nested comments are accepted if nothing stands between these two parentheses. Raises InputError
+    for a parenthesis without its partner.
     """
     if "(" not in content and ";" not in content and ")" not in content:
         return content

@@ -62,8 +62,9 @@ class ColumnsSink:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Write a result and its fixtures, at most ``listed``
-        of them, and fewer where the user stops the search.
+        """Write a result and its fixtures.
+
+        There are at most ``listed`` fixtures, and fewer if the user stops the search.
         """
         counts = Counter[str]()
         bends = result.query.knows_heights
@@ -133,7 +134,8 @@ def answer_to_file(
     Raises
     ------
     InputError
-        As ``workhold.answer``, and when the file cannot be written or replaced, or the disk is full.
+        In the cases of ``workhold.answer``, and when the file cannot be written or replaced, or the disk is
+        full.
     """
     from workhold.search.design import answer
 
@@ -170,7 +172,7 @@ class MappedTable(FixtureTable):
 
     Parameters
     ----------
-    query : that they answer.
+    query : the query that the fixtures answer.
     path : of the file.
     """
 

@@ -100,7 +100,7 @@ class CagePart(SeatingKeys):
 
 
 class CageShortPart(SeatingKeys):
-    """Largest amount by which the extremes of a cage may be too small."""
+    """By how much the true extremes of a cage may exceed those that were computed, at most."""
 
     theta_deg: Length
     share: Length = Field(description="of shifts, of their whole range")
@@ -126,12 +126,12 @@ class SeatingPart(SeatingKeys):
 
 
 def check_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
-    """Return the seating of a fixture from its JSON object.
+    """Return the seating of a fixture from its JSON object, after checking it.
 
     Parameters
     ----------
-    pose : of the fixture.
-    number : of the fixture, counted from 1, for messages.
+    pose : pose of the fixture.
+    number : number of the fixture, counted from 1, for messages.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def check_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
 def add_seatings(result: Result, seating: Sequence[Seating], path: Path) -> Result:
     """Return a result with the seating of its first fixtures.
 
-    Raises InputError for seating of more fixtures than the query asks for, or than there are.
+    Raises InputError if there are more seatings than the query asks for, or than there are fixtures.
     """
     query = result.query
     if len(seating) > (query.seating or 0) or len(seating) > len(result):
@@ -165,7 +165,7 @@ def add_seatings(result: Result, seating: Sequence[Seating], path: Path) -> Resu
 def collect_seating_figures(data: Mapping[str, Any]) -> dict[str, float]:
     """Return the figures of a seating by key, from its JSON object in a file of this program.
 
-    A figure that is null there is inf (unbounded).
+    A figure that is null in the file is inf here (unbounded).
     """
     figures = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
     # Without a pass it is not known how near a part must be put.

@@ -82,10 +82,10 @@ def round_degrees(degrees: Any) -> NDArray[np.float64]:
 
 
 def round_table_for_file(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
-    """Return the orientations (N,) in degrees as written,
-    and the table with poses and jaw travels as read back.
+    """Return (1) the orientations (N,) in degrees as they are written, and (2) the table with the poses and
+    jaw travels that a reader will get.
 
-    The places of pegs follow from these rounded values, so that they are the same for the reader.
+    Writer and reader compute the places of pegs from these rounded values, so the places agree.
     """
     theta = round_degrees(np.degrees(table.theta))
     position, travel = (
@@ -98,9 +98,9 @@ def round_to_twelve_digits(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the floats nearest to values with twelve
     significant digits; NaN for infinite ones, which JSON lacks.
 
-    The results are those of formatting and parsing each value, but computed on arrays: a whole number below
-    1e12 times or over an exact power of ten is rounded once, as parsing the digits is. Doubtful values are
-    formatted.
+    The results equal those of formatting and parsing each value, but are computed on arrays: a whole number
+    below 1e12 is multiplied or divided by an exact power of ten, which rounds once, as parsing does. Values
+    for which the twelve digits are in doubt are formatted and parsed.
     """
     values = np.where(np.isfinite(values), values, np.nan)
     size = np.abs(values)
@@ -137,9 +137,9 @@ LEFT_OUT = "%.0s"
 def make_fixture_template(
     arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], band: str
 ) -> str:
-    """Return the JSON line of a fixture of one type (arrangement) as a %-template.
+    """Return the %-template of the JSON line of a fixture of one type (arrangement).
 
-    Its numbers come in the order of :meth:`WrittenBlock.list_line_columns`; ``band`` is the template of a
+    It takes its numbers in the order of :meth:`WrittenBlock.list_line_columns`; ``band`` is the template of a
     peg's band, or "".
     """
     tips, travels = toolkit.tips, toolkit.travels
@@ -162,8 +162,8 @@ def make_fixture_template(
 def make_peg_template(carrier: Carrier, travels: int) -> str:
     """Return the %-template of a peg on a carrier (jaw, plate or clamp).
 
-    ``travels`` is the number of things that move. For a clamp it takes column and row twice: for its hole,
-    and for the line that it pushes along.
+    ``travels`` is the number of things that move. The template of a clamp takes column and row twice: for the
+    clamp's hole, and for the line along which it pushes.
     """
     key, name = carrier.file_entry
     contact = f'"x": %r, "y": %r, "segment": %d, "force": {FORCE[travels]}'
@@ -192,10 +192,11 @@ def list_fixture_rows(
 
     Yields
     ------
-    The indices of the arrangements, and a tuple of numbers for every fixture. It holds column, row, x, y,
-    face and force of each peg (of two clamps at their working ratio). Then come theta in degrees, x and y of
-    the pose, jaw separation or each clamp's travel, and the figures of :func:`list_known_figures`. Where pegs
-    have flats, a list is last: the directions in degrees of the flats of those in holes. Lengths are in mm.
+    For each block (1) the index of the arrangement of each fixture, and (2) an iterator over a tuple of
+    numbers for each fixture. The tuple begins with column, row, x, y, face and force of each peg (with two
+    clamps, the force at their working ratio). Then come theta in degrees, x and y of the pose, jaw separation
+    or each clamp's travel, and the figures of :func:`list_known_figures`. If pegs have flats, the tuple ends
+    with a list of the directions in degrees of the flats of all pegs in holes. Lengths are in mm.
     """
     for block in split_into_written_blocks(table, toolkit, workpiece):
         yield block.table.arrangement.tolist(), zip(*block.list_row_columns(), strict=True)
@@ -223,7 +224,7 @@ class WrittenBlock:
 
     Parameters
     ----------
-    table : of the fixtures, with poses and travels rounded.
+    table : table of the fixtures, with poses and travels rounded.
     theta : (N,) orientations in degrees.
     x, y : (N, P) places of the contacts in mm.
     known : indices of the figures that are written.
@@ -250,13 +251,13 @@ class WrittenBlock:
 
     @property
     def pose(self) -> list[list[Any]]:
-        """Three columns: theta in degrees, x and y in mm."""
+        """A list of three columns: theta in degrees, x in mm and y in mm."""
         return [array.tolist() for array in (self.theta, *self.table.position.T)]
 
     @property
     def flats(self) -> list[list[list[float | None]]]:
-        """One column in a list: for each fixture the angles in
-        degrees of its placed pegs' flats; [] without flat pins.
+        """A list with one column, in which each fixture has the angles in degrees of
+        its placed pegs' flats; [] without flat pins.
         """
         if FLAT_PIN not in self.toolkit.contacts:
             return []
@@ -387,10 +388,10 @@ def write_pin_list(
 
     Parameters
     ----------
-    unit : of the lengths: x and y of the hole's centre from the first carrier's hole A1, diameter and length
-        of the pin.
+    unit : unit of the lengths in the table: x and y of the hole's centre from the first carrier's hole A1,
+        diameter and length of the pin.
     dowel : description of the pins and their fit; the cell is empty for None.
-    length : of the pins, in mm; the cell is empty for None.
+    length : length of the pins in mm; the cell is empty for None.
     """
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")

@@ -57,9 +57,10 @@ class FormPart(BaseModel):
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
 
     def list_keys_not_given(self, place: str = "") -> Iterator[str]:
-        """Yield the keys that the file does not give, in this part and those inside, such as ``vise.rows``.
+        """Yield the names of the keys that the file leaves out, of this part and
+        of the parts inside it, such as ``vise.rows``.
 
-        ``place`` is put in front of each.
+        ``place`` is put in front of each name.
         """
         for name in type(self).model_fields:
             value: Any = getattr(self, name)
@@ -205,7 +206,7 @@ class FitPart(FormPart):
 
 
 class TolerancePart(FormPart):
-    """How far pegs and faces may be off."""
+    """The tolerance: by how much pegs and faces may be out of place, in mm."""
 
     peg: float
     face: float
@@ -239,7 +240,9 @@ Counts = dict[str, Annotated[int, Field(ge=0)]]
 
 
 class UndecidedPart(FormPart):
-    """One entry of the proof's list of what is not decided; columns and rows may be negative."""
+    """One entry of the list of candidates that the proof leaves
+    undecided; columns and rows may be negative.
+    """
 
     type: str
     segments: list[int] = Field(min_length=3, max_length=5)
@@ -316,7 +319,7 @@ class Head(FormPart):
     )
 
     def to_toolkit(self) -> Toolkit:
-        """Return the toolkit; raise InputError for a head that has none at all, or two."""
+        """Return the toolkit; raise InputError for a head with no toolkit, or with two."""
         if self.vise is not None and self.toolkit is not None:
             raise InputError("it has the keys vise and toolkit, of which only one can be.")
         if self.vise is not None:

@@ -57,7 +57,7 @@ def make_hold_entry(fixture: Fixture) -> dict[str, Any]:
         return make_strapped_entry(fixture)
 
     def patch_entry(patch: JawPatch) -> dict[str, Any]:
-        """Return the JSON object of what a jaw touches."""
+        """Return the JSON object of a patch, which is the area that a jaw touches."""
         rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
 

@@ -50,7 +50,7 @@ class PatchPart(FormPart):
 
 
 class HoldPosePart(FormPart):
-    """Where the workpiece lies."""
+    """Pose of the workpiece."""
 
     theta_deg: Number
     x: Number
@@ -91,7 +91,7 @@ class HoldPart(FormPart):
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """Return the fixture with the figures that are written.
 
-        ``unit_force`` is the query's, see :meth:`to_hold`.
+        ``unit_force`` is the unit force of the query; it is passed on by :meth:`to_hold`.
         """
         pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
         written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
@@ -151,8 +151,8 @@ def make_jaw_holds(
 ) -> tuple[JawHold | StrappedHold, ...]:
     """Return the hold of each fixture of a file, in its order.
 
-    Raises InputError for fixtures of another kind of toolkit, of an unknown type, and on segments that are no
-    faces.
+    Raises InputError for fixtures of another kind of toolkit or of an unknown type, and for segments that are
+    no faces.
     """
     strapped = [part for part in parts if isinstance(part, StrappedSeatPart)]
     jaws = [part for part in parts if isinstance(part, HoldPart)]

@@ -47,7 +47,7 @@ def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
     Raises
     ------
     InputError
-        When there is not one entry of data for each sentence, or one cannot be used.
+        When the number of entries of data is not that of the sentences, or an entry cannot be used.
     """
     if head.note_data is None:
         verified = 0 if head.proof is None else head.proof.verified
@@ -92,7 +92,7 @@ def make_note(sentence: str, part: BaseModel, query: Query, number: int) -> Note
 
 
 def has_wording(kind: type[Note]) -> bool:
-    """Return whether a kind of note has the toolkit's wording as a field."""
+    """Return whether a kind of note has a field for the toolkit's wording."""
     return any(one.name == "wording" for one in fields(kind))
 
 
@@ -118,7 +118,7 @@ NUMBER = re.compile(r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def recognize_note(sentence: str, query: Query, verified: int) -> Note:
-    """Return the note that a sentence states; a remark if it is none.
+    """Return the note whose words the sentence is; a remark with the sentence if no note has these words.
 
     ``verified`` is the number of verified candidates of the result.
     """
@@ -128,7 +128,7 @@ def recognize_note(sentence: str, query: Query, verified: int) -> Note:
 
 
 def list_possible_notes(numbers: Sequence[float], query: Query, verified: int) -> Iterator[Note]:
-    """Yield all notes that can have the given numbers, in this order, in their sentence, for a query."""
+    """Yield all notes whose sentence, for a query, can have exactly the given numbers in this order."""
     wording, asked = query.toolkit.wording, query.asked_of_places
     whole = [int(number) for number in numbers]
     yield PushedByHand()

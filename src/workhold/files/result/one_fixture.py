@@ -49,8 +49,9 @@ class OneFixtureRead:
 
     Parameters
     ----------
-    texts : of the one asked for, and before it those of all earlier ones if each has its seating stated.
-    first : index of the first of them in the file, from 0.
+    texts : the text of the fixture asked for, at the end. If it and all before it have their seating in the
+        file, the texts of those before it come first.
+    first : index of the first of ``texts`` in the file, from 0.
     count : number of fixtures in the file.
     """
 
@@ -60,13 +61,13 @@ class OneFixtureRead:
 
 
 def read_one(path: str | Path, rank: int) -> Result:
-    """Return the result in a file with the fixture of a rank,
-    from 1, read; others are read once they are accessed.
+    """Return the result in a file, of which only the fixture of a rank (from 1) is
+    read; other fixtures are read when they are accessed.
 
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, lists fewer, or contradicts itself.
+        When the file cannot be read, is no result file, lists fewer fixtures, or contradicts itself.
     """
     path = Path(path)
     try:
@@ -99,8 +100,8 @@ def refuse_missing(path: Path, rank: int, count: int) -> None:
 
 
 def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> OneFixtureRead:
-    """Return the text of the fixture of a rank, from 1, with
-    those that have to be read before it, and count all.
+    """Return the text of the fixture of a rank (from 1), with the texts that have
+    to be read before it, and the number of all texts.
     """
     chosen: list[bytes] = []
     number = 0
@@ -115,13 +116,13 @@ def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> OneFixtureRea
 
 
 class TableOfFile(FixtureTable):
-    """A table of all fixtures of a file, of which some are
-    read; the others are read once one of them is accessed.
+    """A table of all fixtures of a file, of which some are read. The others are read as soon as one of the
+    others is accessed.
 
     Parameters
     ----------
-    read : those read.
-    found : their place in the file.
+    read : table of the fixtures that are read.
+    found : texts of the fixtures that are read, with their place in the file.
     path : of the file.
     """
 
@@ -147,14 +148,16 @@ class TableOfFile(FixtureTable):
         raise AttributeError(name)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """Return the fixtures at some rows, without reading the file if these are read already."""
+        """Return the fixtures at some rows; the file is read only if some
+        of these fixtures are not read yet.
+        """
         places = np.arange(len(self))[order] - self.found.first
         is_read = len(places) > 0 and places.min() >= 0 and places.max() < len(self.read)
         return self.read.take(places) if is_read else self.whole.take(order)
 
     def count_in_same_holes(self, index: int) -> int:
-        """Return how many other fixtures have their pegs in the
-        same holes as the one at ``index``, which must be read.
+        """Return how many other fixtures have their pegs in the same holes as the fixture at ``index``, which
+        must be read already.
         """
         here = STANDING.findall(self.found.texts[index - self.found.first])
         with explain_reading_errors(self.path), self.path.open("rb") as stream:

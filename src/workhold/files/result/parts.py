@@ -90,8 +90,8 @@ def describe_columns(travels: int, has_program: bool = False, figures: int = BEF
     Parameters
     ----------
     travels : number of things that move in a fixture, 1 or 2.
-    has_program : whether the program clearance stands behind the figures of quality.
-    figures : number of figures of quality without it.
+    has_program : whether the column of figures ends with the program clearance.
+    figures : number of figures of quality without the program clearance.
     """
     pegs, several = 3 + travels, (travels,) if travels > 1 else ()
     return {
@@ -115,8 +115,8 @@ def drop_swept_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def describe_columns_from_head(head: str) -> Columns:
-    """Return the formats of the columns by name for the
-    text of a head; those of a vise if the text is no head.
+    """Return the formats of the columns by name, from the text of a head;
+    those of a vise if the text is not a head.
     """
     try:
         said = json.loads(head, object_hook=drop_swept_piece)
@@ -132,7 +132,7 @@ def pack_swept_piece(entries: dict[str, Any]) -> Any:
     """Return a JSON object unchanged, or packed into bytes
     if it is a cylinder of a tool on a move of a program.
 
-    One that cannot be packed is returned unchanged.
+    A cylinder that cannot be packed is returned unchanged.
     """
     if entries.keys() != PIECE_KEYS:
         return entries
@@ -152,7 +152,9 @@ def parse_head(text: str) -> Any:
 
 
 def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
-    """Raise InputError for an index (N,) of a fixture type that the toolkit does not have."""
+    """Raise InputError if an index in ``arrangement`` (N,) does not
+    stand for a fixture type of the toolkit.
+    """
     names = [one.title for one in toolkit.arrangements]
     if arrangement.min(initial=0) < 0 or arrangement.max(initial=0) >= len(names):
         number = int(np.argmax((arrangement < 0) | (arrangement >= len(names)))) + 1
@@ -174,7 +176,8 @@ def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequ
 
 
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
-    """Raise InputError for fixtures of known types that contradict the toolkit, the workpiece or themselves.
+    """Raise InputError for fixtures that contradict the toolkit, the
+    workpiece or themselves. Their types must be known.
 
     ``places`` are the indices of the fixtures in the file, from 0.
     """
@@ -215,7 +218,11 @@ def check_head(data: Any, path: Path) -> Head:
 
 
 def check_query(head: Head, path: Path) -> Query:
-    """Return the query of a head; raise InputError for an impossible one, and for counts of other types."""
+    """Return the query of a head.
+
+    Raises InputError for an impossible query, and if a count of fixtures is not given for exactly the types
+    of the toolkit.
+    """
     try:
         query = head.to_query()
     except InputError as error:
@@ -230,8 +237,8 @@ def check_query(head: Head, path: Path) -> Query:
 
 
 def make_result_from_counts(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """Return the result of a head and a table; raise
-    InputError unless the head's counts are those of the table.
+    """Return the result of a head and a table; raise InputError if the head's counts differ from those of the
+    table.
     """
     for name, listed in query.toolkit.count_arrangements(table.arrangement).items():
         if head.counts[name] != listed:
@@ -241,8 +248,8 @@ def make_result_from_counts(table: FixtureTable, head: Head, query: Query, path:
 
 
 def make_result(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """Return the result of a head and a table; raise
-    InputError for impossible notes or account of the search.
+    """Return the result of a head and a table; raise InputError if the notes or the account of the search are
+    impossible.
     """
     try:
         notes = read_notes(head, query)
@@ -306,7 +313,7 @@ class OtherLayoutError(Exception):
 
 
 def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
-    """Return the head of a result file, and ``take(fixtures, path)``, whatever its layout.
+    """Return (1) the head of a result file of any layout and (2) the result of ``take(fixtures, path)``.
 
     Parameters
     ----------
@@ -327,7 +334,9 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
 
 @contextmanager
 def explain_reading_errors(path: Path) -> Iterator[None]:
-    """Turn errors of reading a file as text, raised in the block, into an InputError that names the file."""
+    """Turn errors of reading a file as text that are raised in the block
+    into an InputError that names the file.
+    """
     try:
         if path.exists() and not path.is_file():
             raise InputError(f"{path} is not a file: give a result file.")
@@ -341,7 +350,8 @@ def explain_reading_errors(path: Path) -> Iterator[None]:
 
 
 def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Return the head's JSON object of a file with one fixture per line, and ``take(texts, path)``.
+    """Return (1) the head's JSON object of a file with one fixture per line
+    and (2) the result of ``take(texts, path)``.
 
     ``take`` gets the fixtures as an iterable of bytes, which it must exhaust. Raises OtherLayoutError when
     the lines are not of that form, and InputError when a line, or the head, is too long.
@@ -408,8 +418,8 @@ def split_fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Ite
 
 
 def parse_fixture_text(text: bytes) -> Any:
-    """Return the JSON value of a fixture's line; raise
-    OtherLayoutError if the line is not one whole value.
+    """Return the JSON value in a fixture's line; raise OtherLayoutError if the line is not exactly one JSON
+    value.
     """
     try:
         return parse_json(text.decode())
@@ -420,8 +430,8 @@ def parse_fixture_text(text: bytes) -> Any:
 
 
 def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Return the head's JSON object of a file of any
-    layout, read as a whole, and ``take(fixtures, path)``.
+    """Read a file of any layout as a whole, and return (1) the head's JSON object and (2) the result of
+    ``take(fixtures, path)``.
     """
     try:
         text = read_limited(path, LIMITS["result"]).decode("utf-8-sig")

@@ -61,13 +61,14 @@ class FixtureArrays:
 
     Parameters
     ----------
-    types, jaws : (N,) and (N, P), by name.
+    types, jaws : (N,) and (N, P), names of the fixtures' types and of the jaws (or other carriers) of their
+        pegs.
     holes : (N, P, 3) column, row and face.
-    contacts : (N, P, 4) x, y in mm and forces per unit of each of two clamps' forces (0 for a missing second
-        one).
+    contacts : (N, P, 4) x and y in mm, then the force on the contact per unit of the first clamp's force and
+        of the second clamp's (0 without a second clamp).
     placing : (N, 5) theta in degrees, x and y in mm, jaw separation in mm and number of pairs.
-    quality : (N, Q) figures of quality, that of a program last, NaN where the file gives none.
-    seating : of the first fixtures.
+    quality : (N, Q), Q figures of quality, the program clearance last; NaN where the file gives none.
+    seating : seatings of the first fixtures, as the file gives them.
     """
 
     types: NDArray[np.str_]
@@ -170,10 +171,11 @@ def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Fixt
 def make_fixture_row(
     fixture: Any,
 ) -> tuple[str, list[str], list[list[int]], list[list[float]], list[float], list[float]]:
-    """Return the values of one fixture for a row of each array
-    of :class:`FixtureArrays`, in the order of its fields.
+    """Return the values of one fixture for the arrays of :class:`FixtureArrays`, in the order of its fields
+    without ``seating``.
 
-    Raises KeyError, TypeError, ValueError or AttributeError for a fixture that is not of the form.
+    Each value is the fixture's row in one of the arrays. Raises KeyError, TypeError, ValueError or
+    AttributeError for a fixture that is not of the form.
     """
     name = fixture["type"]
     pegs, pose = fixture["pegs"], fixture["pose"]
@@ -214,7 +216,7 @@ def make_fixture_row(
 
 
 def read_clamp_directions(fixture: Any) -> list[str]:
-    """Return the directions in which the clamps of a fixture push; [] where no clamp holds the part."""
+    """Return the directions in which the clamps of a fixture push; [] for a fixture without clamps."""
     if fixture.get("directions") is not None:
         return [*fixture["directions"]]
     return [] if fixture.get("direction") is None else [str(fixture["direction"])]
@@ -237,8 +239,8 @@ def read_wall_pegs(wall: Any) -> list[Any]:
 def read_peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
     """Return the name of what a peg of a file stands in (its carrier), and the column and row of its hole.
 
-    Column and row are 0 where a clamp without a hole lacks them. ``direction`` is the one in which its clamp
-    pushes.
+    Column and row are 0 for a clamp without a hole that lacks them. ``direction`` is the direction in which
+    the peg's clamp pushes.
     """
     if "role" not in peg:
         return peg["jaw"], peg["column"], peg["row"]
@@ -270,7 +272,8 @@ def find_indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.in
 
 
 def check_table(columns: FixtureArrays, query: Query, path: Path, first: int = 0) -> FixtureTable:
-    """Return the table of the fixtures, each with its pegs in the order that its type has in the toolkit.
+    """Return the table of the fixtures; the pegs of each are put into the order that its type has in the
+    toolkit.
 
     Raises InputError for fixtures that contradict the query or themselves; ``first`` is the index of the
     first one in the file, from 0, for messages.
@@ -331,7 +334,7 @@ def find_faces_on_wall(
     """Return the faces (N, 2) at the ends of the contact with
     a wall, in poses theta (N,) in radians and (N, 2) in mm.
 
-    Raises InputError for a workpiece that cannot lie flush on a wall, where there are fixtures.
+    Raises InputError if there are fixtures (N > 0) although the workpiece cannot lie flush on a wall.
     """
     workpiece = query.workpiece
     if len(theta) and len(workpiece.hull_edges) == 0:
@@ -362,16 +365,17 @@ def compute_clamp_travel(
 
 
 def find_asked_figures(query: Query) -> list[int]:
-    """Return the indices of a query's figures among all
-    figures, see ``model.quality.list_figures_in_columns``.
+    """Return the indices of the figures that a query's fixtures have, among all figures.
+
+    For their order see ``model.quality.list_figures_in_columns``.
     """
     known = len(FIGURES) if query.knows_heights else BEFORE_PINS
     return [*range(known), *([len(FIGURES)] if query.program is not None else [])]
 
 
 def add_missing_figures(table: FixtureTable, query: Query) -> FixtureTable:
-    """Return the table with those figures of quality computed
-    that are NaN because the file does not give them.
+    """Return the table, with figures of quality computed where they are
+    NaN because the file does not give them.
     """
     wanted = np.isnan(table.quality)
     if not query.is_loaded:

@@ -30,7 +30,8 @@ def save(result: Result, path: str | Path, form: str | None = None, *, overwrite
     Raises
     ------
     InputError
-        When the form is not known or not that of the name, and when the file cannot be written or replaced.
+        When the form is not known or contradicts the name's ending, and when the file cannot be written or
+        replaced.
     """
     refuse_kind(result, Result, "the result", "give a Result, as workhold.design and workhold.open make")
     form = Path(path).suffix[1:].lower() if form is None else form

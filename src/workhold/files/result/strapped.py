@@ -44,7 +44,7 @@ class StrappedPegPart(FormPart):
 
 
 class StrappedPosePart(FormPart):
-    """Where the workpiece lies."""
+    """Pose of the workpiece."""
 
     theta_deg: Number
     x: Number
@@ -52,7 +52,9 @@ class StrappedPosePart(FormPart):
 
 
 class StrapPart(FormPart):
-    """A strap: its bolt's hole, where its tip presses, on what, and how high its heel stands."""
+    """A strap: the hole of its bolt, the point where its tip presses, the hole of the support under that
+    point or "plate", and the height at which its heel stands.
+    """
 
     hole: HolePair
     at: Point
@@ -61,7 +63,9 @@ class StrapPart(FormPart):
 
 
 class PushPart(FormPart):
-    """A push by hand that seats the part: where, in which direction, and how hard it presses each locator."""
+    """A push by hand that seats the part: the point, the direction, and
+    the share of the push on each locator.
+    """
 
     at: Point
     direction_deg: Number
@@ -84,7 +88,9 @@ class StrappedQualityPart(FormPart):
 
 
 class ProgramForcePart(FormPart):
-    """The clamp force in N that the tools of the program ask for, of flat jaws or of each strap, and where."""
+    """The clamp force in N that the program's tools need, of flat jaws or
+    of each strap, and the move that needs it.
+    """
 
     force: Number | None = Field(description="null where no force is enough")
     line: int
@@ -92,12 +98,14 @@ class ProgramForcePart(FormPart):
     move: Whole = Field(description="number of the program's move, from 0")
 
     def to_need(self) -> ProgramJawForce:
-        """Return what is written."""
+        """Return the force as an object of the model."""
         return ProgramJawForce(self.force, self.line, self.tool, self.move)
 
 
 class StrappedSeatPart(FormPart):
-    """A seat of three locators with the straps that hold the part down there; best first."""
+    """A seat of three locators, with the straps that hold the part down there; the file lists the best seat
+    first.
+    """
 
     type: str
     pegs: list[StrappedPegPart] = Field(min_length=3, max_length=3)
@@ -115,7 +123,10 @@ class StrappedSeatPart(FormPart):
     program_force: ProgramForcePart | None = None
 
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
-        """The fixture with the figures that are written."""
+        """Return the seat as a fixture, with the figures that are written in the file.
+
+        ``unit_force`` is not used.
+        """
         plate = toolkit.plates[0]
         pegs = tuple(
             Peg(plate.name, one.column, one.row, one.x, one.y, one.segment, 0.0) for one in self.pegs
@@ -125,7 +136,10 @@ class StrappedSeatPart(FormPart):
         return Fixture(self.type, pegs, pose, 0.0, written, hold=self.to_hold(toolkit, unit_force))
 
     def to_hold(self, toolkit: Toolkit, unit_force: float | None = None) -> StrappedHold:
-        """How straps hold the part; refuses a toolkit without straps."""
+        """Return how straps hold the part; raise InputError for a toolkit without straps.
+
+        ``unit_force`` is not used.
+        """
         if toolkit.strap_set is None:
             raise InputError(f"straps hold it, which a {toolkit.noun} does not have.")
         push = self.push
@@ -154,7 +168,11 @@ class StrappedSeatPart(FormPart):
 
 
 def check_strapped(parts: Sequence[StrappedSeatPart], query: Query, path: Path) -> None:
-    """Refuses seats of another kind, with faces that there are not, and with centres that are not those of holes."""
+    """Raise InputError for seats of a type that the toolkit does not have, with unknown faces, or with pegs
+    beside their holes.
+
+    Seats are counted from 1 in the message, which begins with ``path``.
+    """
     if not parts:
         return
     faces = {face.number for face in query.workpiece.numbered.faces}
@@ -175,7 +193,7 @@ def check_strapped(parts: Sequence[StrappedSeatPart], query: Query, path: Path) 
 
 
 def make_strapped_table(parts: Sequence[StrappedSeatPart]) -> FixtureTable:
-    """Return the table of the seats of a file."""
+    """Return the table of the seats of a file, in their order; forces of pegs are 0."""
     count = len(parts)
     quality = make_unknown_quality(np.full(count, np.nan))
     places = {one.key: number for number, one in enumerate(FIGURES)}

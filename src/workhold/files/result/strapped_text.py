@@ -32,22 +32,22 @@ SEAT_FIGURES = tuple(
 
 
 def round_length(value: float) -> float:
-    """Return a length as it is written, to 1e-9 mm."""
+    """Return a length in mm rounded to 1e-9 mm, without a negative zero."""
     return round(value, 9) + 0.0
 
 
 def round_figure(value: float | None) -> float | None:
-    """Return a figure as it is written, to twelve digits; None as it is."""
+    """Return a figure rounded to twelve digits, without a negative zero; None is returned unchanged."""
     return None if value is None else float(f"{value:.{DIGITS}g}") + 0.0
 
 
 def is_strapped(fixture: Any) -> bool:
-    """Whether a fixture in a file is a seat under straps."""
+    """Return whether a fixture, as parsed from a file, is a seat under straps."""
     return isinstance(fixture, dict) and "straps" in fixture and "push" in fixture
 
 
 def make_strapped_entry(fixture: Fixture) -> dict[str, Any]:
-    """Return a seat with its straps, as it is written."""
+    """Return the JSON object of a seat with its straps; lengths in mm, angles in degrees, forces in N."""
     hold, pose = fixture.hold, fixture.pose
     assert isinstance(hold, StrappedHold)
     push = hold.push
@@ -104,12 +104,14 @@ def make_strapped_entry(fixture: Fixture) -> dict[str, Any]:
 
 
 def make_need_entry(need: ProgramJawForce) -> dict[str, Any]:
-    """Return what the tools of a program ask for, as it is written."""
+    """Return the JSON object of the clamp force that the program's
+    tools need, with its line, tool and move.
+    """
     return {"force": round_figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
 
 
 def list_strapped_columns(straps: int) -> list[str]:
-    """The names of the columns of :func:`iterate_strapped_rows`, for so many straps."""
+    """Return the column names of :func:`iterate_strapped_rows` for up to ``straps`` straps in a seat."""
     pegs = [f"{name}_{k}" for k in range(1, 4) for name in ("column", "row", "face")]
     of_straps = [
         f"strap_{name}_{k}" for k in range(1, straps + 1) for name in ("column", "row", "x", "y", "heel")
@@ -119,7 +121,11 @@ def list_strapped_columns(straps: int) -> list[str]:
 
 
 def iterate_strapped_rows(result: Result, straps: int) -> Iterator[list[Any]]:
-    """Yield a row for each seat, best first: lengths in mm, angles in degrees, forces in N; None for unknown."""
+    """Yield a row for each seat, best first: lengths in mm, angles in degrees, forces in N; None for unknown
+    values.
+
+    ``straps`` is the number of straps for which a row has cells.
+    """
     for number, fixture in enumerate(result, 1):
         entry = make_strapped_entry(fixture)
         pose, figures = entry["pose"], fixture.quality

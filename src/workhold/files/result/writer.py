@@ -65,7 +65,7 @@ AT_ONCE = 2000
 
 
 def write_result(result: Result, path: str | Path) -> None:
-    """Write a result file (MODEL, "Result file"), whole or not at all."""
+    """Write a result file (MODEL, "Result file"); an earlier file is replaced only when all went well."""
     with write_text_file(path) as stream:
         stream.writelines(write_result_text(result))
 
@@ -98,11 +98,11 @@ def add_entry_to_line(line: str, key: str, value: dict[str, Any]) -> str:
 
 
 def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
-    """Return the lines of the fixtures at ``rows``, with what
-    the program's tools come nearest to and the forces needed.
+    """Return the JSON lines of the fixtures at ``rows``, with the program's
+    nearest move and the forces that it needs added.
 
-    A fixture whose tools do not come down to the pegs gets no clearance, and only a program with forces gives
-    any.
+    A fixture whose tools do not come down to the pegs gets no clearance. Forces are added only if the program
+    has forces.
     """
     # Other files are written without what measures.
     from workhold.statics.program_clearance import find_nearest_moves, name_element
@@ -126,8 +126,8 @@ def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
 
 
 def add_program_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
-    """Return the lines of the fixtures of a table, each with
-    the forces that the program needs, where there are any.
+    """Return the JSON lines of the fixtures of a table, each with its entry of the forces that the program
+    needs, if it has one.
     """
     from workhold.statics.program_forces import find_cutting_needs
 
@@ -144,7 +144,8 @@ def make_head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
 
     Parameters
     ----------
-    with_pieces : whether all that a program sweeps is included, or only the program's other data.
+    with_pieces : whether the tool cylinders on all moves of a program are included; False includes the
+        program's other data only.
     """
     return {
         "format": FORMAT,
@@ -169,13 +170,15 @@ def make_notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
 
 
 def make_least_error_entry(result: Result) -> dict[str, float]:
-    """Return the entry of the least effective location error in mm; {} where the order has no steps."""
+    """Return the entry of the least effective location error in mm; {} for a result whose order does not have
+    steps of that error.
+    """
     least = result.least_effective_error
     return {} if least is None else {"least_effective_error": least}
 
 
 def write_program_json(program: Program) -> Iterator[str]:
-    """Yield the JSON of a program as ``Program.to_dict`` has it, in parts."""
+    """Yield the JSON of a program in pieces of text; its content is that of ``Program.to_dict``."""
     start = json.dumps(program.make_head())
     yield f'{start[:-1]}, "pieces": ['
     separator, pieces = "", program.iterate_entries()
@@ -192,10 +195,10 @@ def write_head_json(
 
     Parameters
     ----------
-    entries : the head's.
+    entries : entries of the head.
     program : written with all that it sweeps under the key ``program``; None if there is none.
     separator : text between two entries.
-    is_ascii : whether other characters are escaped.
+    is_ascii : whether characters outside ASCII are escaped.
     """
     before = "{"
     for key, value in entries.items():
@@ -219,8 +222,8 @@ def make_workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def make_bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
-    """Return the entries of the heights that may be touched
-    on each segment, and of the solid's faces; {} for None.
+    """Return the entries of a solid: the heights that may be touched on each
+    segment, and its upright and level faces; {} for None.
     """
     if solid is None:
         return {}
@@ -234,7 +237,9 @@ def make_bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
 
 
 def make_solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
-    """Return the entry of a solid's axis, height, and heights and limits of the pegs; {} for None."""
+    """Return the entry ``solid``: axis and height of the solid, and the
+    heights and limits of the pegs; {} for None.
+    """
     if solid is None:
         return {}
     return {"solid": {key: getattr(solid, key) for key in STANDING}}
@@ -244,8 +249,8 @@ def make_own_outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
     """Return the entry of the outlines that jaws or clamps
     with heights of their own meet, by role; {} without any.
 
-    The numbers of their segments continue after those of the workpiece, in their order here. An outline that
-    equals an earlier one has the numbers of that.
+    The numbers of their segments continue after those of the workpiece, outline by outline in this order. An
+    outline that equals an earlier one has the same numbers as that.
     """
     own = {
         role: {"loops": [(loop + 0.0).tolist() for loop in one.loops], **make_bands_entry(one.solid)}
@@ -255,7 +260,7 @@ def make_own_outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
 
 
 def make_query_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
-    """Return the entries of a query but for the workpiece; for ``with_pieces`` see :func:`make_head`."""
+    """Return the entries of a query without its workpiece; for ``with_pieces`` see :func:`make_head`."""
     asked = {
         **make_toolkit_entry(query.toolkit),
         "types": list(query.types),
@@ -320,8 +325,9 @@ def convert_to_json_value(value: Any) -> Any:
 
 
 def make_load_entry(load: Load) -> dict[str, Any]:
-    """Return a load as a JSON object: N, N mm, mm and degrees;
-    zero or unknown heights and upward forces are left out.
+    """Return a load as a JSON object; forces in N, moments in N·mm, lengths in mm, directions in degrees.
+
+    Heights that are zero or unknown, and upward forces of zero, are left out.
     """
     entry = {"name": load.name} | asdict(load)
     # What stands in no plane is written where it is said.

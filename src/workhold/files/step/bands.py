@@ -65,7 +65,9 @@ HALVINGS = 48
 
 
 def measure_band(band: Band) -> float:
-    """Return the length of a band in mm, below 0 where two bands had nothing in common."""
+    """Return the length z1 - z0 in mm of a band (z0, z1); negative for
+    the empty intersection of two bands.
+    """
     return band[1] - band[0]
 
 
@@ -126,7 +128,7 @@ class WallEdge:
 
         These are the ends of its branches (stretches over which its position along the segment is monotonic),
         and the places where it crosses ``high`` or has a point within rounding of ``low`` or ``high``.
-        Crossings of ``low`` are left out: the outline is cut there in any case. None for a level edge.
+        Crossings of ``low`` are left out: the outline is cut there in any case. A level edge yields nothing.
         """
         points = self.edge.points
         if self.is_level:
@@ -148,7 +150,8 @@ def compute_positions_along(segment: Segment, points: NDArray[np.float64]) -> ND
 def split_into_branches(
     places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]
 ) -> Iterator[tuple[int, int]]:
-    """Yield the indices (first, last) of an edge's points between which its position is monotonic.
+    """Yield (first, last), indices of points, for each stretch of an edge
+    along which its position is monotonic.
 
     Parameters
     ----------
@@ -277,7 +280,8 @@ class Conic:
         ----------
         carrier : a segment of the line or circle, from whose middle positions are measured.
         place : the position, in mm along a line; on a circle in radians from its segment's middle angle.
-        first, last : in radians, less than half a turn apart, in any order.
+        first, last : parameters t in radians between which the conic counts, less than half a turn apart, in
+            any order.
 
         Returns
         -------
@@ -330,7 +334,8 @@ class EdgeBranch:
 
     @classmethod
     def make_branches(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[EdgeBranch]:
-        """Yield the pieces of a wall's edge over each of which its position along the wall is monotonic.
+        """Yield the pieces of a wall's edge; along each piece its position along the wall only grows or only
+        falls.
 
         ``carrier`` is a segment of the wall's line or circle, from which positions are measured.
         """
@@ -365,7 +370,9 @@ class EdgeBranch:
         return [turn for turn in around if first < position + turn < last]
 
     def compute_height_at(self, place: float) -> float:
-        """Return the z in mm of the edge piece at a position; beyond its ends that of the nearer end."""
+        """Return the z in mm of the edge piece at a position; beyond the
+        piece's ends, the z of the nearer end.
+        """
         if self.level is not None:
             return self.level
         places, heights = self.listed
@@ -384,14 +391,14 @@ class EdgeBranch:
 
     @cached_property
     def listed(self) -> tuple[list[float], list[float]]:
-        """Its positions and heights as lists of floats,
-        whose elements are read much faster than an array's.
+        """Positions and heights of the branch as lists of floats, because elements of
+        lists are read much faster than those of arrays.
         """
         return self.places.tolist(), self.heights.tolist()
 
     def refine_height(self, k: int, place: float) -> float:
-        """Return the z in mm at which a curved edge passes
-        a position between those of its points k and k + 1.
+        """Return the z in mm of a curved edge at the position ``place``,
+        which is between its points k and k + 1.
         """
         if self.conic is not None:
             z = self.conic.compute_height_at(self.carrier, place, *self.parameters[k : k + 2].tolist())
@@ -404,15 +411,17 @@ class EdgeBranch:
             (px, py), (tx, ty) = carrier.middle, carrier.tangent
 
             def value(parameter: float) -> float:
-                """Return the position of a point of the curve along the line, less the one wanted, in mm."""
+                """Return the position of a point of the curve along the line,
+                minus the wanted position, in mm.
+                """
                 find(parameter, point)
                 return float((x_of() - px) * tx + (y_of() - py) * ty - place)
 
         else:
 
             def value(parameter: float) -> float:
-                """Return the position of a point of the curve
-                around the circle, less the one wanted, in radians.
+                """Return the position of a point of the curve around the circle,
+                minus the wanted position, in radians.
                 """
                 find(parameter, point)
                 found = carrier.find_parameter((x_of(), y_of()))
@@ -424,7 +433,7 @@ class EdgeBranch:
         )
 
     def clamp_height(self, k: int, z: float) -> float:
-        """Return a z in mm, limited to the range between the heights of the points k and k + 1."""
+        """Return ``z`` in mm, limited to the range between the heights of the edge's points k and k + 1."""
         return min(max(z, float(self.heights[k : k + 2].min())), float(self.heights[k : k + 2].max()))
 
     @cached_property
@@ -433,7 +442,9 @@ class EdgeBranch:
         return Conic.from_curve(self.edge.curve)
 
     def compute_height_range(self, low: float, high: float) -> Band:
-        """Return the least and the greatest z in mm of the edge piece between two positions, low < high."""
+        """Return the least and the greatest z in mm of the edge piece from position ``low`` to position
+        ``high``.
+        """
         if self.level is not None:
             return self.level, self.level
         inner = self.heights[(self.places > low) & (self.places < high)].tolist()
@@ -447,7 +458,7 @@ class RunEnd:
 
     Parameters
     ----------
-    branch : whose height it is.
+    branch : branch of a wall's edge whose height this end has.
     turn : offset to add to a position of the piece to get its position on the branch.
     low, high : z in mm between which a peg may press.
     """
@@ -458,25 +469,26 @@ class RunEnd:
     high: float
 
     def compute_height_at(self, position: float) -> float:
-        """Return the z in mm of this end of a range of touchable
-        heights at a position, limited to the heights of pegs.
+        """Return the z in mm of this end of a range of touchable heights at a position of the piece.
+
+        It is limited to the range of heights where pegs press.
         """
         return min(max(self.branch.compute_height_at(position + self.turn), self.low), self.high)
 
     def compute_height_range(self, low: float, high: float) -> Band:
-        """Return the least and greatest z in mm of this end of
-        a range of heights between two positions of the piece.
+        """Return the least and greatest z in mm of this end of a range of heights, from position ``low`` to
+        ``high`` of the piece.
 
-        Both are limited to the heights of pegs.
+        Both are limited to the range of heights where pegs press.
         """
         least, greatest = self.branch.compute_height_range(low + self.turn, high + self.turn)
         return min(max(least, self.low), self.high), min(max(greatest, self.low), self.high)
 
     def list_inner_positions(self, low: float, high: float) -> list[float]:
-        """Return the positions strictly between two others at
-        which the edge's height may turn; none for a level edge.
+        """Return the positions strictly between ``low`` and ``high`` at which the edge's height may change
+        from rising to falling or back.
 
-        Between neighbours of these the height is monotonic.
+        Between neighbours in the list the height is monotonic. The list is empty for a level edge.
         """
         if self.branch.level is not None:
             return []
@@ -520,14 +532,14 @@ class WallRun:
         return self.lower.compute_height_at(position), self.upper.compute_height_at(position)
 
     def compute_common_band(self, low: float, high: float) -> Band:
-        """Return the heights (z0, z1) in mm that this range covers
-        at every position between two; z1 < z0 if there are none.
+        """Return the heights (z0, z1) in mm that this range covers at every position from ``low`` to
+        ``high``; z1 < z0 if there is no such height.
         """
         return self.lower.compute_height_range(low, high)[1], self.upper.compute_height_range(low, high)[0]
 
     def bound_length(self, low: float, high: float) -> float:
-        """Return an upper bound in mm of the height of this
-        range (upper minus lower z) at any position between two.
+        """Return an upper bound in mm of the length (upper minus lower z) of this range at any position from
+        ``low`` to ``high``.
         """
         return self.upper.compute_height_range(low, high)[1] - self.lower.compute_height_range(low, high)[0]
 
@@ -538,7 +550,7 @@ class CoveredPiece:
 
     Parameters
     ----------
-    piece : of the border.
+    piece : piece of the border.
     low, high : positions on its carrier.
     runs : from the lowest up.
     faces : indices of the walls over it, sorted.
@@ -570,8 +582,8 @@ class CoveredPiece:
         return found if self.piece.forward else found[::-1]
 
     def measure_longest_run_at(self, position: float) -> float:
-        """Return the height in mm (upper minus lower z) of the
-        longest range that walls cover at a position; 0 without any.
+        """Return the height in mm (upper minus lower z) of the longest range that walls
+        cover at a position; 0 where walls cover nothing.
         """
         return max((measure_band(run.compute_heights_at(position)) for run in self.runs), default=0.0)
 
@@ -594,8 +606,8 @@ class UprightWall:
 
     Parameters
     ----------
-    index : of the face.
-    branches : of its edges that are not upright.
+    index : index of the face.
+    branches : branches of the face's edges that are not upright.
     """
 
     index: int
@@ -608,7 +620,7 @@ class UprightWall:
         a position, from the lowest up, as (z0, z1, run), z in mm.
 
         The ranges are limited to the heights ``low`` to ``high``, and those shorter than ``LEAST_GAP`` are
-        left out. The run gives the same range at other positions of the piece.
+        left out. The run of each range gives its heights at other positions of the piece, too.
         """
         passed = sorted(
             (
@@ -639,8 +651,8 @@ class KnownWalls:
     branches: dict[tuple[int, Segment], tuple[EdgeBranch, ...]] = field(factory=dict)
 
     def find_branches_over(self, carrier: Segment, wall_edge: WallEdge) -> tuple[EdgeBranch, ...]:
-        """Return the monotonic pieces of a wall's edge over a line
-        or circle; they are made once and keep computed heights.
+        """Return the monotonic pieces of a wall's edge over a line or circle; the pieces are cached and keep
+        the heights that they have computed.
         """
         key = id(wall_edge.edge.curve), carrier
         if key not in self.branches:
@@ -654,9 +666,9 @@ class WallsByCarrier:
 
     Parameters
     ----------
-    faces, edges : of the solid.
+    faces, edges : all faces and edges of the solid.
     low, high : z in mm between which a peg may press.
-    known : of the solid.
+    known : cache of the solid's wall edges and branches.
     """
 
     faces: Sequence[SolidFace]
@@ -685,8 +697,8 @@ class WallsByCarrier:
         self.places = np.array(places, np.float64).reshape(-1, 5)
 
     def find_wall_edge(self, edge: EdgeCurve, segment: Segment) -> WallEdge:
-        """Return the wall edge of an edge whose projection is
-        ``segment``; it is made once for the two walls it borders.
+        """Return the wall edge of an edge whose projection is ``segment``; the result is cached, because two
+        walls share the edge.
         """
         key = id(edge.points)
         if key not in self.known.edges:
@@ -707,7 +719,8 @@ class WallsByCarrier:
         """Yield (segment, point) for both end points (x, y) of each
         level edge of an upright face, except for whole circles.
 
-        They are needed as cuts only where the edges themselves are no segments of the subdivision.
+        These points are needed as cuts only if the edges themselves are not among the segments that are
+        subdivided.
         """
         for one in self.upright:
             if one.is_level and not (isinstance(one.segment, Arc) and one.segment.is_full):
@@ -727,8 +740,8 @@ class WallsByCarrier:
         return self.found[id(carrier)]
 
     def find_near_edges(self, segment: Segment) -> NDArray[np.intp]:
-        """Return the indices in ``upright`` of edges that,
-        by their ends, lie near a segment's line or circle.
+        """Return the indices in ``upright`` of the edges that lie near a segment's line, judged by both ends,
+        or near its circle, judged by centre and radius.
         """
         radius = self.places[:, 4]
         if isinstance(segment, Arc):
@@ -743,9 +756,9 @@ class WallsByCarrier:
     def find_covered(self, piece: BorderPiece) -> CoveredPiece:
         """Return a piece of the border with the ranges of height that upright faces cover over it.
 
-        The ranges are limited to the heights of pegs; those of several faces that touch or overlap are one.
-        All faces over the piece have their material on the same side: otherwise a peg would meet material,
-        and the piece would be no border.
+        The ranges are limited to the heights of pegs; ranges of several faces that touch or overlap are
+        merged. All faces over the piece have their material on the same side: otherwise a peg would meet
+        material, and the piece would be no border.
         """
         walls = self.find_walls_over(piece.carrier)
         middle = find_clear_place(piece, [branch for wall in walls for branch in wall.branches])
@@ -771,8 +784,8 @@ class WallsByCarrier:
 def find_clear_place(piece: BorderPiece, branches: Sequence[EdgeBranch]) -> float:
     """Return a position of a piece, near its middle, at which no edge piece ends.
 
-    Edges beyond the heights of pegs may end anywhere along the piece. Where every position tried is too near
-    to an end, the one farthest from all ends is returned.
+    Edges beyond the heights of pegs may end anywhere along the piece. If every position tried is too near to
+    an end, the position farthest from all ends is returned.
     """
     ends = np.array([branch.places[[0, -1]] for branch in branches]).ravel()
 

@@ -63,13 +63,13 @@ class HeightView:
     Parameters
     ----------
     axis : direction of the file that points up; z when None.
-    peg_height : up to which pegs reach above the plane on which the part lies, in mm; the part's height when
-        None.
+    peg_height : height in mm, above the plane on which the part lies, up to which pegs reach; the part's
+        height when None.
     head_room : what is kept free above the pegs, in mm.
     least_band : shortest band that may be touched, in mm.
     heights : lowest and highest z in mm over which carriers with heights of their own reach, by their role.
-    peg_diameter : of the pegs in mm, by which a height is chosen where ``peg_height`` is None; None where it
-        is not known.
+    peg_diameter : diameter in mm of the pegs, by which a height is chosen if ``peg_height`` is None; None
+        where it is not known.
     part_number : number or name of the solid to take of several; the largest when None.
     """
 
@@ -120,8 +120,8 @@ class HeightDrawing:
 def read_by_height_apart(
     content: bytes, view: HeightView, or_silhouette: bool = False
 ) -> HeightDrawing | Drawing:
-    """Return what :func:`read_by_height` returns, read in a
-    child process: damaged files crash or hang the library.
+    """Return the result of :func:`read_by_height`, computed in a child process,
+    because damaged files crash or hang the library.
     """
     options = {"view": asdict(view), "or_silhouette": or_silhouette}
     by_height, answered = run_apart(__name__, content, options, "the STEP file")
@@ -129,7 +129,9 @@ def read_by_height_apart(
 
 
 def restore_height_drawing(answered: Any) -> HeightDrawing:
-    """Return the drawing from the plain data that :func:`convert_height_drawing_to_data` returns."""
+    """Return the drawing made from ``answered``, the plain data that :func:`convert_height_drawing_to_data`
+    returns.
+    """
     loops, solid, remarks, rows, own, solids, usual = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
@@ -143,10 +145,11 @@ def restore_height_drawing(answered: Any) -> HeightDrawing:
 
 
 def read_as_plain_data(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
-    """Return (is by height, plain data) of what :func:`read_by_height` returns; called in the child process.
+    """Return (is by height, plain data) for the result of
+    :func:`read_by_height`; called in the child process.
 
-    The flag is False for a silhouette. Raises InputError also where the library, or the arithmetic after it,
-    fails over the file.
+    The flag is True for an outline by height and False for a silhouette. Raises InputError also where the
+    library, or the arithmetic after it, fails over the file.
     """
     found = read_guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
     return (
@@ -157,11 +160,12 @@ def read_as_plain_data(content: bytes, view: dict[str, Any], or_silhouette: bool
 
 
 def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
-    """Return the outline by height of one of the solids; its silhouette instead where the outline is refused.
+    """Return the outline by height of the solid that the view chooses, or its silhouette if that outline is
+    refused.
 
-    That is where such pegs can touch nothing, or the border has a curve that is neither line nor arc. The
-    silhouette has proposed lines and arcs instead of such curves. It has no heights, and leaning faces may be
-    touched.
+    An outline is refused where pegs of this height can touch nothing, or where its border has a curve that is
+    neither line nor arc. The silhouette proposes lines and arcs in place of such curves; it has no heights,
+    and pegs may touch leaning faces.
     """
     chosen = choose_solid(solids, view.part_number)
     solid = read_guarded(lambda: turn_solid_up(chosen, view))
@@ -192,7 +196,7 @@ def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightD
 
 
 def takes_long_by_sections(solid: StandingSolid) -> bool:
-    """Return whether the library would take too long to make a solid's silhouette from sections."""
+    """Return whether making a solid's silhouette from sections would take the library too long."""
     heights = {round(z, 5) for face in solid.faces if face.lie != "upright" for z in (face.low, face.high)}
     return len(heights) * len(solid.faces) > MOST_SECTIONS
 
@@ -236,15 +240,15 @@ def draw_shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDraw
 
 
 def draw_shapes_at_usual_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
-    """Return :func:`draw_at_usual_height` of the solids in
-    Open CASCADE's shapes; None for shapes without a solid.
+    """Return the result of :func:`draw_at_usual_height` for the solids in Open
+    CASCADE's shapes; None for shapes without a solid.
     """
     solids = list_solids_of_shapes(shapes)
     return draw_at_usual_height(solids, view) if solids else None
 
 
 def draw_by_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
-    """Return the outline by height of the solid that the view chooses, with a remark on the others."""
+    """Return the outline by height of the solid that the view chooses, with a remark on the other solids."""
     chosen = choose_solid(solids, view.part_number)
     drawing = draw_solid_by_height(chosen.shape, turn_solid_up(chosen, view), view)
     return evolve(
@@ -253,8 +257,10 @@ def draw_by_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing
 
 
 def turn_solid_up(chosen: Solid, view: HeightView) -> StandingSolid:
-    """Return a solid moved and turned as a view has it, its
-    lowest point at z = 0; raise InputError for an unknown axis.
+    """Return a solid turned so that the view's axis points up, and moved
+    so that its lowest point is at z = 0.
+
+    Raises InputError for an unknown axis.
     """
     axis = check_axis_name(view.axis)
     # Along z it is not turned, and its box is known.
@@ -276,9 +282,10 @@ def draw_solid_by_height(
     Parameters
     ----------
     shape : the solid as the file has it.
-    solid : the same, standing.
+    solid : the same solid turned with its axis up, its lowest point at z = 0.
     is_advised : whether a refusal names a height that helps.
-    has_table : whether ``heights`` is filled. Both try many heights, which takes time.
+    has_table : whether ``heights`` of the result is filled. Like ``is_advised``, this tries many heights,
+        which takes time.
     """
     axis, room, least = check_axis_name(view.axis), view.head_room, view.least_band
     plain_prism = view.peg_height is None and is_prism(solid)
@@ -317,7 +324,7 @@ def add_height_advice(refusal: InputError, solid: StandingSolid, view: HeightVie
 
 
 def is_prism(solid: StandingSolid) -> bool:
-    """Return whether a solid has only upright faces and level ones at its bottom and top."""
+    """Return whether a solid has only upright faces, and level faces at its bottom and top."""
     ends = (0.0, solid.height)
     return all(
         face.lie == "upright" or (face.lie == "level" and min(abs(face.low - z) for z in ends) <= SAME_HEIGHT)

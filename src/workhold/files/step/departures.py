@@ -38,9 +38,10 @@ class FoundOutline:
 
     Parameters
     ----------
-    area : in mm².
+    area : area of the outline in mm².
     low, high : z of the solid's lowest and highest point, in mm.
-    insets, overhangs : of each face, in mm; 0 where it does not go inside, or outside.
+    insets, overhangs : how far each face goes inside the outline, and how far outside, in mm; 0 where it does
+        not.
     departure : largest distance in mm of lines and arcs from curves of the border; a face may lie off them by
         as much.
     """
@@ -90,7 +91,8 @@ class FoundOutline:
 
 
 def make_oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
-    """Return the kernel rows of all loops of a part, turned so that the material is on the left.
+    """Return the rows (N, 10) of the segments of all loops of a part for the kernels. Each loop runs with the
+    material on its left.
 
     The first loop of the part is its outer one.
     """
@@ -104,10 +106,11 @@ def make_oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
 
 
 def refuse_overhang(outline: FoundOutline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
-    """Raise InputError if a face reaches out of the silhouette:
-    then its true border is not made of lines and circles.
+    """Raise InputError if a face reaches out of the silhouette, whose true
+    border is then not made of lines and circles.
 
-    ``solid`` is the one in the file's position, ``axis`` the direction that points up; for advice.
+    For the advice in the message, ``solid`` is the solid as the file has it, and ``axis`` the direction that
+    points up.
     """
     worst = int(np.argmax(outline.overhangs))
     if outline.overhangs[worst] <= OVERHANG + outline.departure:
@@ -138,8 +141,8 @@ def describe_departures(
 
     Parameters
     ----------
-    layers : of the faces, see :func:`workhold.files.step.faces.make_layers`.
-    shape, solid : the solid with its axis up, and as the file has it.
+    layers : layers of the faces, see :func:`workhold.files.step.faces.make_layers`.
+    shape, solid : the same solid with its axis up (``shape``) and as the file has it (``solid``).
     section_height : height in mm of the section that was chosen; None for the silhouette.
     """
     groups = list_departures(outline, faces)
@@ -175,8 +178,9 @@ def suggest_other_axis(solid: Any, axis: str) -> list[str]:
 
 
 def list_departures(outline: FoundOutline, faces: Sequence[SolidFace]) -> list[str]:
-    """Return phrases on the faces that are no part of the
-    outline, alike ones together, the farthest off first.
+    """Return phrases on the faces that are not part of the outline, those farthest from it first.
+
+    Faces that are described alike share one phrase.
     """
     together: dict[tuple[str, str], list[float]] = defaultdict(list)
     for face, inset, overhang in zip(faces, outline.insets, outline.overhangs, strict=True):
@@ -202,8 +206,9 @@ def describe_height_range(outline: FoundOutline, low: float, high: float) -> str
 
 
 def describe_silhouette(outline: FoundOutline, layers: Sequence[HeightRange], shape: Any) -> str:
-    """Return a sentence on the heights at which the section is
-    the whole silhouette, and what the smallest section lacks.
+    """Return a sentence on the heights at which the section equals the whole silhouette.
+
+    It also says at which height the section is smallest, and by which area it is smaller than the silhouette.
     """
     whole: list[tuple[float, float]] = []
     lacks: list[tuple[float, float]] = []

@@ -126,8 +126,8 @@ class EdgeCurve:
         )
 
     def find_crossings_with_height(self, z: float) -> list[Point]:
-        """Return the points (x, y) at which the edge crosses a height;
-        its ends and points where it only touches do not count.
+        """Return the points (x, y) at which the edge crosses the height ``z``; its ends, and points where it
+        only touches, are left out.
         """
         heights = self.points[:, 2] - z
         passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
@@ -149,8 +149,8 @@ class EdgeCurve:
 
 
 def list_edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
-    """Return the edges of all faces, in the order of the
-    faces; an edge between two faces is there once for each.
+    """Return the edges of all faces, in the order of the faces. An edge
+    between two faces comes twice, once for each face.
 
     Both entries share one curve and its points; ``face`` is the index in ``faces``. Degenerate edges, and
     edges inside a face that bound nothing, are left out.
@@ -161,7 +161,7 @@ def list_edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     fresh = count()
 
     def number_of(edge: Any) -> int:
-        """Return the number of an edge, the same for both directions of it."""
+        """Return a number that identifies an edge, the same for both directions of the edge."""
         same = known.setdefault(hash(edge), [])
         for other, number in same:
             if other.IsSame(edge):
@@ -202,16 +202,16 @@ def find_wall_carrier(face: SolidFace) -> Segment | None:
 
 
 def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
-    """Return an edge with its projection replaced by a segment
-    of the wall's line or circle, if it is nearly on it.
+    """Return an edge with its projection replaced by a segment of the wall's line or circle, if the edge lies
+    nearly on that line or circle.
 
-    Edges farther than ``DISGUISE`` from it are returned unchanged. Where a leaning face meets a wall,
-    programs write a spline off by up to 0.001 mm. And the circle that best fits a short arc is not the wall's
-    within rounding, so that edges of one wall would lie on different circles.
+    Edges farther than ``DISGUISE`` from the line or circle are returned unchanged. Where a leaning face meets
+    a wall, programs write a spline off by up to 0.001 mm. And the circle that best fits a short arc is not
+    the wall's within rounding, so that edges of one wall would lie on different circles.
 
     Parameters
     ----------
-    carrier : of :func:`find_wall_carrier`; None for an edge of no wall.
+    carrier : the wall's segment from :func:`find_wall_carrier`; None for an edge of no wall.
     """
     if carrier is None or (edge.segment is None and not edge.is_other):
         return edge
@@ -246,7 +246,8 @@ def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
 def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
     """Return whether a segment has the same line or circle as a wall within rounding.
 
-    ``carrier`` is a segment of the wall's line or circle, ``off`` the edge's distance from it in mm.
+    ``carrier`` is a segment of the wall's line or circle; ``off`` is the distance in mm of the edge from that
+    line or circle.
     """
     if isinstance(segment, Arc) and isinstance(carrier, Arc):
         away = max(dist(segment.center, carrier.center), abs(segment.radius - carrier.radius))
@@ -255,7 +256,9 @@ def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
 
 
 def make_edge_curve(face: int, curve: Any) -> EdgeCurve:
-    """Return an edge of the face with index ``face`` from Open CASCADE's curve of it."""
+    """Return the :class:`EdgeCurve` of an edge from Open CASCADE's curve of it, for the face with index
+    ``face``.
+    """
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
     if kind == occ.GeomAbs_Line:
@@ -397,8 +400,8 @@ def flatten_points(points: NDArray[np.float64]) -> Segment | None:
 def find_zero_crossing(value: Function, low: Known, high: Known) -> float:
     """Return the argument at which a function changes from below 0 to 0 or more.
 
-    ``low`` and ``high`` are (argument, value) at both ends: below 0 first. The first argument may be the
-    greater one.
+    ``low`` is (argument, value) at the end where the value is below 0, ``high`` at the end where it is not.
+    The argument of ``low`` may be greater than that of ``high``.
     """
     a, b = low[0], high[0]
     first, last = narrow_zero_crossing(value, low, high)
@@ -408,14 +411,14 @@ def find_zero_crossing(value: Function, low: Known, high: Known) -> float:
 def bisect_condition(
     low: float, high: float, holds: Callable[[float], bool], known: tuple[float, float], steps: int
 ) -> tuple[float, float]:
-    """Return the last interval (low, high) of a bisection for the place from which on a condition holds.
+    """Return the last interval (low, high) of a bisection for the place at which a condition begins to hold.
 
     The condition does not hold at ``low`` and holds at ``high``; ``low`` may be the greater number.
 
     Parameters
     ----------
-    known : two places between: the condition does not hold up to the first and holds from the second on, so
-        it is evaluated only between them.
+    known : two places between ``low`` and ``high``. The condition does not hold from ``low`` to the first
+        place, and it holds from the second place to ``high``. So it is evaluated only between these places.
     steps : most halvings.
     """
     turn = 1.0 if high >= low else -1.0
@@ -437,8 +440,8 @@ def bisect_condition(
 def narrow_zero_crossing(value: Function, low: Known, high: Known) -> tuple[float, float]:
     """Return two near arguments (a, b) with the function below 0 at a and 0 or more at b, by false position.
 
-    ``low`` and ``high`` are as in :func:`find_zero_crossing`; where their values are not so, their arguments
-    are returned.
+    ``low`` and ``high`` are as in :func:`find_zero_crossing`. If the value of ``low`` is not below 0, or that
+    of ``high`` is below 0, their arguments are returned.
     """
     (a, fa), (b, fb) = low, high
     beside = NARROW * (b - a)

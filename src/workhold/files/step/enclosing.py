@@ -72,8 +72,8 @@ class Enclosure:
         self.boxes = None
 
     def add_points(self, points: Iterable[Point], safe: float = SAFE) -> None:
-        """Add the convex hull of points along a curve, simplified;
-        as a line from first to last point if it is that thin.
+        """Add the simplified convex hull of points along a curve; a hull that is thin enough is added as a
+        line from the first to the last point.
 
         For ``safe`` see :func:`simplify_hull`. Points all in one place add nothing.
         """
@@ -104,8 +104,8 @@ class Enclosure:
         return [*self.segments, *sides]
 
     def may_hold(self, point: Point) -> bool:
-        """Return whether a point is in one of the polygons,
-        where it is not known on which side of a curve it lies.
+        """Return whether a point is in one of the polygons; there it is not known
+        on which side of the curve the point lies.
         """
         if not self.polygons:
             return False
@@ -152,7 +152,9 @@ def compute_cross_product(a: Array, b: Array) -> float:
 
 
 def intersect_lines(a: Array, b: Array, c: Array, d: Array) -> Array | None:
-    """Return where the line through a and b crosses the line through c and d; None for parallel ones."""
+    """Return the point (2,) where the line through ``a`` and ``b`` crosses the line through ``c`` and ``d``;
+    None for parallel lines.
+    """
     one, other = b - a, d - c
     turn = compute_cross_product(one, other)
     if abs(turn) <= SHORTEST * float(np.hypot(*one) * np.hypot(*other)):
@@ -163,8 +165,8 @@ def intersect_lines(a: Array, b: Array, c: Array, d: Array) -> Array | None:
 def split_near_chords(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
     """Yield the control points (N, 2) of consecutive runs of a curve, each within ``safe`` mm of its chord.
 
-    Along the chord the points only move ahead. Runs are as long as can be. Raises InputError for a curve that
-    takes more than ``MOST_PIECES``.
+    Along its chord each run only moves forward. Each run is as long as these conditions allow. Raises
+    InputError for a curve that takes more than ``MOST_PIECES``.
     """
     run: Array | None = None
     for control in split_each_piece(pieces, safe):
@@ -191,8 +193,8 @@ def is_near_chord(control: Array, safe: float) -> bool:
 
 
 def split_each_piece(pieces: Pieces, safe: float) -> Iterator[Array]:
-    """Yield control points as :func:`split_near_chords`, but
-    without joining neighbouring pieces into longer runs.
+    """Yield control points as :func:`split_near_chords` does, but do not join neighbouring pieces into longer
+    runs.
     """
     waiting, found = [pieces[k : k + 1] for k in reversed(range(len(pieces)))], 0
     while waiting:
@@ -218,8 +220,8 @@ def enclose_curves(
     squares: Squares,
     is_there: Callable[[Point], bool],
 ) -> Enclosure:
-    """Return lines and polygons that enclose all curves, neither
-    line nor arc, that can bound a part of a solid from above.
+    """Return lines and polygons that enclose all curves that can bound a part of a
+    solid seen from above and are neither lines nor arcs.
 
     Raises InputError for curves that take too many pieces.
 
@@ -269,8 +271,8 @@ def enclose_curves(
 
 
 def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
-    """Return whether points just outside a convex polygon
-    (N, 2) differ in whether they belong to the region.
+    """Return whether, of points just outside a convex polygon (N, 2), some belong to the region and others do
+    not.
     """
     corners = np.concatenate([polygon, (polygon + np.roll(polygon, -1, axis=0)) / 2])
     away = corners - polygon.mean(axis=0)
@@ -285,8 +287,8 @@ def enclose_edge(found: Enclosure, edge: Any, points: Array | None, safe: float)
 
     Parameters
     ----------
-    points : (N, 2) along the edge. Where the library has no curve of the edge, boxes around their steps
-        enclose it; None raises InputError then.
+    points : (N, 2) along the edge. They are used where the library has no curve of the edge: boxes around the
+        steps from point to point then enclose it. None raises InputError in that case.
     safe : see :func:`split_near_chords`.
     """
     try:
@@ -312,14 +314,14 @@ def list_box_corners(low: Array, high: Array) -> list[Point]:
 def list_fold_boxes(
     squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]
 ) -> list[Array]:
-    """Return boxes (4, 2) that enclose a curve along which a
-    face stands upright, where some of the region is at it.
+    """Return boxes (4, 2) around a curve along which a face stands upright, only where the curve runs at or
+    beside the region.
 
     Parameters
     ----------
-    squares : (column, row) of the raster squares that enclose the curve; of a long one four are merged at a
-        time.
-    size : of a square, in mm.
+    squares : (column, row) of the raster squares that enclose the curve. If there are very many, four at a
+        time are merged into one.
+    size : side of a square in mm.
     is_there : see :func:`enclose_curves`.
     """
     while len(squares) > MOST_SQUARES:

@@ -132,8 +132,8 @@ def make_solid_face(face: Any) -> SolidFace:
 
 
 def find_surface(face: Any) -> Any:
-    """Return the surface of a face as the library's adaptor;
-    a spline that is a plane or a quadric as that surface.
+    """Return the surface of a face as the library's adaptor. A spline that is in truth a plane or a quadric
+    is converted to that plane or quadric.
 
     Some programs write every surface as a spline. The parameter ranges of a converted surface may reach
     beyond the face, which does no harm where folds and cuts are looked for.
@@ -162,8 +162,9 @@ def find_surface(face: Any) -> Any:
 
 
 def measure_span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
-    """Return the least and greatest coordinate of a face's
-    bounding box along a direction, from the origin of a position.
+    """Return the least and greatest coordinate in mm of a face's bounding box along ``direction``.
+
+    Coordinates are measured from the location of ``place``, Open CASCADE's position of a surface.
     """
     start = place.Location()
     along = [
@@ -174,8 +175,8 @@ def measure_span_along(place: Any, direction: Any, face: Any) -> tuple[float, fl
 
 
 def compute_plane_height(surface: Any) -> float | None:
-    """Return the z in mm of a level plane; None for any
-    other surface. Unlike a box, it has no tolerance added.
+    """Return the z in mm of a level plane; None for any other surface. Unlike the z of a bounding box, it
+    contains no tolerance.
     """
     if surface.GetType() != occ.GeomAbs_Plane or classify_lie(surface, 2) != "level":
         return None
@@ -276,8 +277,8 @@ def find_fold_height(surface: Any) -> float | None:
 
 
 def make_layers(faces: Sequence[SolidFace]) -> list[HeightRange]:
-    """Return the ranges between the heights at which level
-    and leaning faces begin or end, from the lowest up.
+    """Return the ranges of height between neighbouring heights at which level and leaning faces begin or end,
+    from the lowest up.
 
     A leaning face is neither level nor upright; a range without one inside is prismatic.
     """
@@ -292,8 +293,8 @@ def make_layers(faces: Sequence[SolidFace]) -> list[HeightRange]:
 
 
 def sample_surface_points(face: SolidFace) -> NDArray[np.float64]:
-    """Return points (N, 2), x and y in mm, along the edges
-    of a face; of a curved leaning face also all over it.
+    """Return points (N, 2), x and y in mm, along the edges of a face and, for a curved leaning face, all over
+    the face.
     """
     points = []
     for edge in list_sub_shapes(face.shape, "EDGE"):

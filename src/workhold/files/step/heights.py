@@ -78,7 +78,8 @@ class HeightOutline:
     Parameters
     ----------
     loops : strips in running order with the material on the left.
-    peg_height, head_room, least_band : in mm.
+    peg_height, head_room, least_band : height of the pegs, space kept free above them, and shortest band that
+        may be touched, in mm.
     """
 
     loops: tuple[tuple[Strip, ...], ...]
@@ -100,8 +101,8 @@ class HeightOutline:
 
     @property
     def bands(self) -> tuple[Band | None, ...]:
-        """The heights (z0, z1) in mm touchable all along each
-        segment, loop by loop as in ``ordered``; None for none.
+        """The heights (z0, z1) in mm touchable all along each segment, loop by loop as in ``ordered``; None
+        where no height is touchable.
         """
         return tuple(strip.band for loop in self.ordered for strip in loop)
 
@@ -112,8 +113,9 @@ class HeightOutline:
 
     @property
     def runs(self) -> tuple[RunRows, ...]:
-        """For every segment the covered height range that holds
-        its band, as :func:`run_rows`; () when all are empty.
+        """For every segment, the range of heights covered by walls that contains the segment's band.
+
+        Rows are those of :func:`run_rows`; the whole tuple is () when the rows of all segments are empty.
         """
         found = tuple(run_rows(strip) for loop in self.ordered for strip in loop)
         return found if any(found) else ()
@@ -125,9 +127,7 @@ class HeightOutline:
 
 
 def collect_vertices(loop: Sequence[Any]) -> NDArray[np.float64]:
-    """Return the vertices (N, 3), x and y in mm and bulge,
-    of a loop of strips, each of which runs to the next.
-    """
+    """Return the vertices (N, 3), x and y in mm and bulge, of a loop of strips in running order."""
     return np.array([(*strip.start, strip.bulge) for strip in loop])
 
 
@@ -165,8 +165,8 @@ class StandingSolid:
 
     @property
     def height(self) -> float:
-        """z in mm of the highest level face if that is at
-        the top within rounding, else of the highest point.
+        """z in mm of the top: of the highest level face if it is within rounding
+        of the highest point, otherwise of that point.
         """
         top = max(face.high for face in self.faces)
         level = [face.high for face in self.faces if face.lie == "level" and top - face.high <= SAME_HEIGHT]
@@ -185,8 +185,8 @@ class StandingSolid:
         return PlainCurves.from_segments([*edges, *(one for one in every if isinstance(one, Line | Arc))])
 
     def find_folds_of_face(self, index: int) -> list[Found]:
-        """Return the curves along which a leaning face stands upright,
-        seen from above; ``index`` is the face's. Computed once.
+        """Return the curves, seen from above, along which the leaning face with index ``index`` stands
+        upright; the result is cached.
         """
         if index not in self.folds:
             self.folds[index] = find_folds(self.faces[index])
@@ -204,10 +204,10 @@ class StandingSolid:
 
         Parameters
         ----------
-        peg_height : up to which pegs reach, in mm; the solid's height when None.
+        peg_height : height in mm up to which pegs reach; the solid's height when None.
         head_room : kept free above the pegs, in mm.
         least_band : shortest band in mm that may be touched.
-        low : from which pegs reach, in mm; for 0 or less they reach from below the part.
+        low : height in mm from which pegs reach; 0 or less stands for pegs that reach from below the part.
         silhouette : segments of the border, where it is known that the outline is the silhouette; else empty.
 
         Raises
@@ -229,8 +229,8 @@ class StandingSolid:
         return outline
 
     def make_walls(self, top: float, low: float = 0.0) -> WallsByCarrier:
-        """Return the upright faces, with heights limited to
-        those between ``low`` and ``top`` in mm and to the solid.
+        """Return the upright faces, with their heights limited to the range from ``low`` to ``top`` mm and to
+        the solid.
         """
         return WallsByCarrier(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.known_walls)
 
@@ -238,8 +238,8 @@ class StandingSolid:
         """Return the area in mm² of the outline of pegs that
         reach from below the part up to ``peg_height`` mm.
 
-        ``head_room`` mm above are kept free. None if the outline is refused; the face that refused it is then
-        remembered in ``suspect`` and tested first in the next call.
+        ``head_room`` mm above are kept free. None if the outline is refused. If the curve of a face is the
+        reason, the face is stored in ``suspect`` and tested first in the next call.
         """
         high = peg_height + head_room
         suspect = self.suspect
@@ -258,16 +258,18 @@ class StandingSolid:
         return sum(compute_signed_area(make_loop_segments(collect_vertices(loop))) for loop in loops)
 
     def make_inside_test(self, low: float, high: float) -> Inside:
-        """Return a function that says for points (x, y) whether
-        the solid has material over each between two z in mm.
+        """Return a function that takes points (x, y) and returns for each whether the
+        solid has material over it between two z in mm.
         """
         return lambda points: self.material.lies_between(points, low, high)
 
     def find_border(
         self, low: float, high: float, walls: WallsByCarrier | None = None, silhouette: Sequence[Segment] = ()
     ) -> list[list[BorderPiece]]:
-        """Return the loops of the solid's projection between
-        two z in mm, as border pieces; -inf is below the solid.
+        """Return the border of the projection of the solid's part between two z in mm, as loops of border
+        pieces.
+
+        ``low`` is -inf where the part reaches from below the solid.
 
         Parameters
         ----------
@@ -362,8 +364,10 @@ WHOLE = 1e-9
 
 
 def measure_outline(outline: HeightOutline) -> tuple[float, float, float, float]:
-    """Return the area in mm² of an outline, and in mm its
-    border, its touchable border and its shortest band (or 0).
+    """Return (area, border, touchable border, shortest band) of an outline: mm² for the area, mm for the
+    lengths.
+
+    The shortest band is 0 where nothing may be touched.
     """
     border = touchable = area = 0.0
     bands = []
@@ -393,7 +397,8 @@ def tabulate_peg_heights(solid: StandingSolid, room: float, least: float) -> lis
     area and touchable border of the outline at its upper end.
 
     Ranges end where a face begins or ends, or meets the head room, and where a wall becomes high enough to be
-    touched. Ranges with the same outline are one; those whose outline is refused are left out.
+    touched. Neighbouring ranges with the same outline are merged; ranges whose outline is refused are left
+    out.
 
     Parameters
     ----------
@@ -440,11 +445,12 @@ def tabulate_peg_heights(solid: StandingSolid, room: float, least: float) -> lis
 class WholeOutline:
     """The outline of the highest pegs.
 
-    Outlines grow with the height of the pegs, so a lower one of the same area is the same outline.
+    Outlines grow with the height of the pegs, so the outline of lower pegs is the same if it has the same
+    area.
 
     Parameters
     ----------
-    row : what it offers.
+    row : peg heights that give it, with its area and touchable border.
     border : segments of its border.
     """
 
@@ -483,9 +489,10 @@ def make_height_row(
     before: float = 0.0,
     border: Sequence[Segment] = (),
 ) -> HeightRow | None:
-    """Return the range from ``low`` to ``high`` in mm with what pegs of height ``high - before`` touch.
+    """Return the row for peg heights from ``low`` to ``high`` mm, with area and
+    touchable border of the outline at ``high - before``.
 
-    None where their outline is refused.
+    None where that outline is refused.
 
     Parameters
     ----------
@@ -511,14 +518,14 @@ def list_height_rows_between(
     """Yield the parts of a range of peg heights, ``low``
     to ``high`` in mm, in which the outline is not refused.
 
-    Within the range no face begins or ends. A face cut in curves that are neither lines nor arcs may be
-    refused in parts of it; their ends are found by bisection.
+    Within the range no face begins or ends. In parts of the range the outline may be refused, because a face
+    is cut there in curves that are neither lines nor arcs. The ends of these parts are found by bisection.
 
     Parameters
     ----------
     room, least : see :func:`tabulate_peg_heights`.
     whole : outline of the highest pegs, if there is one.
-    is_whole : whether that is known to be the outline at all heights of the range.
+    is_whole : whether ``whole`` is known to be the outline at all heights of the range.
     """
     if is_whole or not any(
         face.lie == "leaning"
@@ -631,7 +638,8 @@ def describe_outline_by_height(
 def suggest_better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
     """Return one sentence naming the peg height at which most can be touched, or [].
 
-    ``touchable`` is the length in mm touchable now; there is a sentence only if another height has more.
+    ``touchable`` is the length in mm of the border that can be touched at the present height. There is a
+    sentence only if more can be touched at another height.
     """
     best = find_longest_row(rows)
     if best is None or slides_at_every_height(rows) or best.touchable <= touchable * (1 + 1e-6):
@@ -645,7 +653,7 @@ class OwnDrawing:
 
     Parameters
     ----------
-    role : of the carriers.
+    role : role of the carriers.
     loops : vertices, x and y in mm and bulge.
     """
 

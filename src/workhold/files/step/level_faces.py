@@ -73,10 +73,10 @@ class LevelTop:
 
     Parameters
     ----------
-    height : of the faces, in mm.
+    height : height of the faces in mm.
     open : the parts of the faces that are open, outer loops counter-clockwise, openings clockwise.
     rising : what rises above the height.
-    hanging : the open parts that hang.
+    hanging : those parts of ``open`` under which the material does not reach down to z = 0.
     is_unclear : whether nothing is open because it is not known what rises or hangs there.
     """
 
@@ -139,16 +139,17 @@ def find_lying_borders(solid: StandingSolid) -> list[FaceBorder]:
 
 
 def find_open_level_tops(solid: StandingSolid) -> list[LevelTop]:
-    """Return the upper level faces of each height that have nothing of the solid above some of them.
+    """Return the upper level faces of each height, leaving out heights at which all of them are covered by
+    material.
 
-    They are in the order of the solid's faces. Faces of one height that lie side by side are one face; those
-    of other heights stay faces of their own.
+    They are in the order of the solid's faces. Faces of the same height are one entry, faces of different
+    heights are different entries.
     """
     return [top for top in find_level_tops(solid) if top.open]
 
 
 def find_level_tops(solid: StandingSolid) -> list[LevelTop]:
-    """Return the upper level faces of every height, also where material covers all of them."""
+    """Return the upper level faces of every height, including those that other material covers completely."""
     groups: list[list[SolidFace]] = []
     for face in solid.faces:
         if face.lie == "level" and face.upward:
@@ -164,8 +165,8 @@ def find_level_tops(solid: StandingSolid) -> list[LevelTop]:
 def make_level_top(
     solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool], places: Budget
 ) -> LevelTop:
-    """Return the open parts of upper faces of one height,
-    the solid above that height, and which open parts hang.
+    """Return the open parts of upper faces of one height, the regions of the solid above that height, and the
+    open parts that hang.
 
     A part is open where nothing of the solid lies above, and hangs where the material below does not reach
     down to z = 0. Nothing is open, and ``is_unclear`` is set, where a border cannot be traced or the budget
@@ -175,7 +176,8 @@ def make_level_top(
     ----------
     faces : all at the same height.
     lies_on : returns whether a point is surely on a face on which the solid lies.
-    places : budget of points at which the material above and below may still be asked for; it is spent.
+    places : budget of points at which the material above and below may still be computed; each one is
+        subtracted.
     """
     height, box = faces[0].low, compute_box_around(faces)
     face_borders = read_borders(faces)
@@ -213,8 +215,8 @@ def make_rises_above_test(
 ) -> Callable[[Point], bool]:
     """Return a function that says whether the solid has material above a height over a point (x, y).
 
-    At its lower edge a fillet is hardly above the level face that it runs into; there the point counts as on
-    the face.
+    A fillet is hardly above the level face that it runs into: points at its lower edge count as on the face,
+    so the answer there is False.
 
     Parameters
     ----------
@@ -237,10 +239,10 @@ def make_rises_above_test(
 def find_bounds_between(
     solid: StandingSolid, low: float, high: float, is_there: Callable[[Point], bool]
 ) -> tuple[Enclosure, list[tuple[Segment, Point]]]:
-    """Return all curves that can bound the part of a solid
-    between two z, seen from above, and points to cut them at.
+    """Return (1) all curves that can bound the part of a solid between two z, seen from above, and (2) the
+    points at which to cut them, as (segment, point).
 
-    Curves that are neither line nor arc are enclosed in polygons. The points are (segment, point).
+    Curves that are neither line nor arc are enclosed in polygons.
 
     Parameters
     ----------
@@ -273,7 +275,7 @@ def find_hanging_loops(
     Parameters
     ----------
     open_ : loops of the open parts.
-    height : of the faces, in mm.
+    height : height of the faces in mm.
     """
     segments = make_segments(open_)
     boxes = np.array([compute_bounding_box(one) for one in segments])
@@ -315,11 +317,10 @@ def trace_region(
     inside: Callable[[Point], bool],
     cuts: Sequence[tuple[Segment, Point]] = (),
 ) -> list[Array]:
-    """Return the loops (N, 3) around a region, which lies
-    on their left, by signed area from the largest down.
+    """Return the loops (N, 3) around a region, each with the region on its left.
 
-    So outer loops come first. Loops around less than ``SLIVER`` are left out. Raises InputError for a border
-    that does not close.
+    They are in order of signed area, from the largest down, so that outer loops come first. Loops around less
+    than ``SLIVER`` are left out. Raises InputError for a border that does not close.
 
     Parameters
     ----------
@@ -389,7 +390,7 @@ def compute_box_around(faces: Sequence[SolidFace]) -> Box:
 
 
 def boxes_overlap(a: Box, b: Box) -> bool:
-    """Return whether two boxes (x0, y0, x1, y1) overlap by more than ``OFF`` in both directions."""
+    """Return whether two boxes (x0, y0, x1, y1) overlap by more than ``OFF`` mm in x and in y."""
     return a[0] < b[2] - OFF and b[0] < a[2] - OFF and a[1] < b[3] - OFF and b[1] < a[3] - OFF
 
 
@@ -470,7 +471,7 @@ def replace_curves_by_chords(chain: Chain, curves: Mapping[str, Pieces], bounds:
     Parameters
     ----------
     chain : the border, with lines and arcs that approximate its curves.
-    curves : exact pieces of each curve by the label that the chain has for it.
+    curves : exact pieces of each curve, by its label in the chain.
     bounds : extended in place by the border's lines and arcs, and by polygons that enclose its curves.
     """
     vertices: list[tuple[float, float, float]] = []

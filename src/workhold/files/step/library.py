@@ -90,10 +90,11 @@ def explain_missing_library(error: ImportError) -> str:
 
 
 def read_guarded(read: Callable[[], T], *further: type[Exception]) -> T:
-    """Return ``read()``; raise InputError where the library,
-    or the arithmetic after it, fails over a damaged file.
+    """Return the result of ``read()``; raise InputError if the library, or
+    later arithmetic, fails because of a damaged file.
 
-    ``further`` are exception types that count as such failures here; others, and InputError, pass unchanged.
+    ``further`` are more exception types that count as such failures. All other exceptions, and InputError,
+    pass unchanged.
     """
     try:
         return read()

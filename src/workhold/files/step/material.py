@@ -51,8 +51,8 @@ class PlaneFaces:
 
     Parameters
     ----------
-    planes : (F, 6) of each face: z in mm at the origin, and the slope along x and y. Of cones the slope away
-        from the axis, and x and y of the axis in mm.
+    planes : (F, 6), a row for each of F faces: z in mm at the origin (of a cone, at its axis), slope along x,
+        slope along y, and for cones the slope away from the axis and the axis's x and y in mm, otherwise 0.
     lines : (L, 4) start and step (x, y, dx, dy) of the straight edges, in mm, face by face.
     line_ends : (F + 1,) row in ``lines`` at which the edges of each face begin, and the number of rows.
     arcs : (A, 5) centre, radius, middle angle and half the sweep of the round edges, face by face.
@@ -73,14 +73,11 @@ class PlaneFaces:
     def from_faces(
         cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]
     ) -> tuple[PlaneFaces, list[int]]:
-        """Return the flat faces and cones among some faces,
-        and the indices of all others that are not upright.
+        """Return (1) the flat faces and cones among ``faces``, and (2) the
+        indices of all other faces that are not upright.
 
-        Faces with an edge that is neither line nor arc seen from above are among the others.
-
-        Parameters
-        ----------
-        edges : of all faces.
+        Faces with an edge that is neither line nor arc seen from above are in (2). ``edges`` are those of all
+        faces.
         """
         planes = {
             k: plane
@@ -122,10 +119,10 @@ class PlaneFaces:
         return [float(levels[k]) for k in near if self.contains(k, point)]
 
     def find_any_crossing_heights(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """Return for each point some z in mm, strictly between two
-        others, at which its upright line meets a face, else inf.
+        """Return for each of N points some z in mm, strictly between ``low`` and ``high``, at which the
+        upright line through it meets a face; inf where there is none.
 
-        A face counts only if both rays find the point in it.
+        A face counts only if both rays of :meth:`surely_contains` find the point in it.
         """
         if not len(self.planes):
             return [inf] * len(points)
@@ -149,7 +146,9 @@ class PlaneFaces:
         return self.known[key]
 
     def compute_heights_at(self, points: Sequence[Point]) -> Array:
-        """Return the z (N, F) in mm of each face's whole plane or cone over N points."""
+        """Return (N, F), the z in mm over each of N points of each of F faces, as if its plane or cone had no
+        border.
+        """
         origin, rise_x, rise_y, outward, axis_x, axis_y = self.planes.T
         x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
         away = np.hypot(x - axis_x, y - axis_y)
@@ -184,9 +183,10 @@ class PlaneFaces:
 
 
 def find_boxes_holding(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
-    """Return which boxes contain which points, (N, F), for points (N, 2) and boxes (F, 4 or more).
+    """Return (N, F), whether each of N points (x, y) lies in each of F boxes.
 
-    The boxes are x0, y0, x1, y1 in mm, and are widened by ``more`` mm on all sides.
+    The first four columns of ``boxes`` are x0, y0, x1, y1 in mm; each box is widened by ``more`` mm on all
+    sides.
     """
     x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
     near: NDArray[np.bool_] = (boxes[:, 0] - more <= x) & (x <= boxes[:, 2] + more)
@@ -209,8 +209,8 @@ def find_plane(face: SolidFace) -> Sheet | None:
 
 
 def find_cone(face: SolidFace) -> Sheet | None:
-    """Return a face's upright cone as a row of :class:`PlaneFaces`;
-    None for others and for one on both sides of its tip.
+    """Return a face's upright cone as a row of :class:`PlaneFaces`; None for other faces and for a cone that
+    reaches over both sides of its tip.
     """
     surface = occ.BRepAdaptor_Surface(face.shape)
     if surface.GetType() != occ.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
@@ -312,7 +312,7 @@ class Material:
         return sorted(found)
 
     def find_faces_near(self, points: Sequence[Point]) -> NDArray[np.bool_]:
-        """Return which faces of ``meeting`` may lie over which points by their boxes, (N, F)."""
+        """Return (N, F), whether the box of each of the F faces in ``meeting`` is over each of N points."""
         return find_boxes_holding(points, self.boxes, ON_FACE)
 
     def find_crossings_with_face(self, point: Point, index: int) -> list[float]:
@@ -346,8 +346,11 @@ class Material:
         return [high >= self.reached[point, low][0] for point in points]
 
     def find_within(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """Return for each point an upper z in mm, at most ``high``,
-        from which on there is material above ``low``, else inf.
+        """Return for each point an upper z in mm such that there is material between ``low`` and it, and so
+        between ``low`` and anything higher.
+
+        It is at most ``high``; inf where there is no material between ``low`` and ``high``. It need not be
+        the least such z.
         """
         # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
         # because they answer much faster.

@@ -133,8 +133,8 @@ def list_levels(solid: SolidOutline) -> Levels:
 def read_as_plain_data(
     content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels
 ) -> Any:
-    """Return mesh and text of the solid that gives some loops;
-    called in the child process of :func:`make_part_shape`.
+    """Return mesh and text of the solid whose outline is ``loops``; called in the child process of
+    :func:`make_part_shape`.
     """
     wanted = [np.array(loop) for loop in loops]
     return read_guarded(
@@ -150,13 +150,13 @@ def find_shape_of_outline(
 
     Parameters
     ----------
-    height : of the solid, in mm; solids of another height are passed over.
+    height : height of the solid in mm; solids of other heights are left out.
     levels : see :func:`list_levels`.
 
     Raises
     ------
     InputError
-        Where no solid of the file gives them.
+        Where no solid of the file gives these loops and levels.
     """
     for solid in read_solids(content):
         found = turn_solid_up(solid, view)
@@ -186,7 +186,10 @@ def are_same_loops(loops: list[Array], others: tuple[Array, ...]) -> bool:
 
 
 def has_levels(levels: Levels, others: Levels) -> bool:
-    """Return whether two solids have the same bands and level faces; faces are compared if both have some."""
+    """Return whether two solids have the same bands and the same level faces.
+
+    Level faces are compared only if both solids have some.
+    """
     faces, other_faces = levels["faces"], others["faces"]
     if faces and other_faces and (len(faces) != len(other_faces) or not hold_same_pairs(faces, other_faces)):
         return False

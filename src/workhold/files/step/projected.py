@@ -140,7 +140,8 @@ def list_bounding_edges(
 ) -> Iterator[EdgeCurve]:
     """Yield the edges that can bound the projection along z of the solid between two z in mm.
 
-    These are the edges that reach between the heights, and all edges of an upright face that does.
+    These are the edges that reach between the heights, and all edges of each upright face that reaches
+    between them.
     """
     for edge in edges:
         # A wall that reaches up into the slab stands on edges below it.
@@ -207,8 +208,10 @@ def has_plain_cuts(face: SolidFace) -> bool:
 
 
 def cut_plane_at_height(plane: Any, face: SolidFace, z: float) -> list[Found]:
-    """Return the line in which a sloping plane meets the level
-    plane at z, as far as the face's box reaches; [] outside.
+    """Return the line in which a sloping plane meets the level plane at z.
+
+    It is as long as the extent of the face's box in the line's direction, and may lie beside the box; []
+    where that extent is 0.
     """
     normal, place = plane.Axis().Direction(), plane.Location()
     across = hypot(normal.X(), normal.Y())
@@ -250,13 +253,13 @@ def is_open(ring: Any) -> bool:
 
 
 def cut_lying_ring(surface: Any, z: float) -> list[Found]:
-    """Return the curves in which a torus with a level axis meets
-    the level plane at z, within the tube's angles of a face.
+    """Return the curves in which a torus with a level axis meets the level plane at z, within the range of
+    tube angles that the face covers.
 
     With the axis d, the upward direction e, and b across both, a point of the torus is c + (R + r cos v) (cos
     u b + sin u e) + r sin v d, so at a height h above c it is sin u = h / (R + r cos v). A cut that coincides
-    with the fold of the torus is left out. Near the fold a cut is returned as points even where an arc would
-    fit it: two such arcs would cross each other.
+    with the fold of the torus is left out. Near the fold a cut is returned as points even if an arc fits it,
+    because two such arcs would cross.
     """
     ring = surface.Torus()
     major, minor = ring.MajorRadius(), ring.MinorRadius()
@@ -328,10 +331,10 @@ def find_folds(face: SolidFace) -> list[Found]:
 def find_lying_ring_folds(surface: Any) -> list[Found]:
     """Return the curves along which a torus with a level axis stands upright, seen from above.
 
-    They are limited to the tube's angles of the face. With the axis d and the radial direction r(u), the
-    normal at the angle v of the tube is cos v r(u) + sin v d. It is level at cos v = 0, a line, and where r
-    is level: at b and -b, across the axis, an arc. An arc beyond those angles would run beside that of the
-    neighbouring face.
+    They are limited to the range of tube angles that the face covers. With the axis d and the radial
+    direction r(u), the normal at the angle v of the tube is cos v r(u) + sin v d. It is level at cos v = 0, a
+    line, and where r is level: at b and -b, across the axis, an arc. An arc beyond the face's angles would
+    run beside the arc of the neighbouring face.
     """
     ring = surface.Torus()
     center, axis = ring.Location(), ring.Axis().Direction()
@@ -514,12 +517,12 @@ class PlainCurves:
         return cls(segments, make_segment_rows(segments) if segments else np.zeros((0, 10)))
 
     def are_all_on_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
-        """Return whether lines and arcs run so near to all places
-        (N, 2) of another curve that they are the border instead.
+        """Return whether all places (N, 2) of another curve are so near to these lines and arcs that the
+        border is these, not the other curve.
 
-        A torus or a sphere cut just beside its widest place has its cut too near to the line or arc there for
-        points between to be tested. Where a place is not within ``ONE_CURVE`` of a line or arc, the point
-        halfway between must be inside the region.
+        This happens where a torus or a sphere is cut just beside its widest place: the cut is then too near
+        to the line or arc there for points in between to be tested. A place farther than ``ONE_CURVE`` from
+        every line or arc passes only if the point halfway between is inside the region.
 
         Parameters
         ----------
@@ -556,8 +559,8 @@ def refuse_others(
     middle = (every.min(axis=0) + every.max(axis=0)) / 2
 
     def place(one: Other) -> tuple[bool, float]:
-        """Return a sort key: curves that curved faces make
-        first, and of those the ones that reach farthest out.
+        """Return a sort key that puts curves of curved faces first, and among these the curves that reach
+        farthest out.
         """
         # The face that makes the curve rather than the flat one that it cuts.
         return faces[one[0]].kind in FLAT, -float(np.hypot(*(one[1] - middle).T).max())
@@ -583,7 +586,7 @@ def find_border_places(
     Parameters
     ----------
     points : (N, 2) along the curve, in mm.
-    looked : indices of the points to test; none is the first or last.
+    looked : indices of the points to test; the first and the last point must not be among them.
     inside : returns which of some points (x, y) belong to the region.
     """
     steps = points[looked + 1] - points[looked - 1]

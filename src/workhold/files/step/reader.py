@@ -65,8 +65,8 @@ __all__ = [
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
-    """Return the drawing of :func:`read_step`, read in a
-    child process: damaged files crash or hang the library.
+    """Return the drawing of :func:`read_step`, computed in a child process,
+    because damaged files crash or hang the library.
     """
     return restore_drawing(run_apart(__name__, content, options, "the STEP file"))
 
@@ -157,7 +157,9 @@ def read_solid(
     part_number: int | str | None,
     fit: float | None,
 ) -> Drawing:
-    """Return the outline of one of a file's solids; arguments and errors are those of :func:`read_step`."""
+    """Return the outline of one of ``solids``; the other arguments and the errors are those of
+    :func:`read_step`.
+    """
     axis = check_axis_name(axis)
     solid = choose_solid(solids, part_number)
     shape = turn_axis_up(solid.shape, axis)
@@ -234,8 +236,9 @@ def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None
 
 
 def has_layer(layers: Sequence[HeightRange], z: float, *, below: bool) -> bool:
-    """Return whether a prismatic layer contains z, or has its
-    upper end (``below``) or its lower end (not ``below``) there.
+    """Return whether a prismatic layer contains z or ends there.
+
+    With ``below`` the layer's upper end may be at z, otherwise its lower end.
 
     A layer is a range of heights; it is prismatic if its section is the same at all of them.
     """
@@ -280,8 +283,8 @@ def read_shapes(
     part_number: int | str | None = None,
     fit: float | None = None,
 ) -> tuple[Drawing, int | str | None]:
-    """Return the drawing of Open CASCADE's shapes in mm,
-    and the part number that still has to be chosen from it.
+    """Return (1) the drawing of Open CASCADE's shapes in mm, and (2) the number of
+    the part that still has to be chosen from the drawing.
 
     The number is None where there are solids, of which one has been chosen already; of flat faces it is
     ``part_number``. For the choices see :func:`workhold.files.step.reader.read_step`; for flat faces the axis

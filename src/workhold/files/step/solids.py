@@ -60,9 +60,9 @@ class Solid:
 
     Parameters
     ----------
-    number : from 1, by decreasing volume.
+    number : number of the solid, from 1 by decreasing volume.
     shape : Open CASCADE's solid, in mm.
-    volume : in mm³.
+    volume : volume in mm³.
     low, high : corners (x, y, z) of its bounding box in mm.
     name : as the file calls it; empty where it does not.
     """
@@ -143,7 +143,7 @@ def count_solids_in_text(content: bytes) -> int:
 
 
 def describe_lost_solids(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
-    """Return one sentence if the file defines more solids than could be read, else []."""
+    """Return one sentence if the text of the file defines more solids than ``solids`` has, otherwise []."""
     if count_solids_in_text(content) <= len(solids):
         return []
     return [
@@ -204,9 +204,9 @@ def measure_solid(shape: Any) -> Solid:
 
 
 def choose_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
-    """Return the solid of a number (from 1) or a name; the largest for None.
+    """Return the solid with the given number (from 1) or name; the largest for None.
 
-    Raises InputError for a number or a name that no solid has, and a name that several have.
+    Raises InputError for a number or a name that no solid has, and for a name that several solids have.
     """
     if number is None:
         return solids[0]
@@ -219,10 +219,10 @@ def choose_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
 
 
 def find_solid_by_name(solids: tuple[Solid, ...], name: str) -> Solid:
-    """Return the only solid of a name; if none is written so, the only one in any mixture of capitals.
+    """Return the only solid of a name; if no name is spelled so, the only one in any mixture of capitals.
 
-    Raises InputError: where there is none naming close ones, where there are several naming their numbers,
-    and always for a file with a single solid.
+    Raises InputError in three cases: no solid has the name (the message suggests similar names), several have
+    it (the message gives their numbers), or the file has a single solid, so that no name is needed.
     """
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
@@ -269,7 +269,7 @@ def list_named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
     """Return (solid, name) for every solid that a STEP
     reader has read; the name is "" where the file has none.
 
-    None where the names cannot be read or belong to other solids than the reader's.
+    None where the names cannot be read, or where they belong to solids that the reader does not have.
     """
     # Whatever fails over names, the solids are there without them.
     with suppress(Exception):
@@ -310,12 +310,13 @@ def list_child_labels(label: Any) -> Iterator[Any]:
 def list_places_under(
     label: Any, moved: Any, names: tuple[str, ...]
 ) -> Iterator[tuple[Any, tuple[str, ...]]]:
-    """Yield (shape, names) for every use of a product that is no assembly, at a label or below.
+    """Yield (shape, names) for every use, at a label or below it, of a product that is not an assembly.
 
     Parameters
     ----------
     moved : placement of the label by the assemblies around it.
-    names : of these, from the outermost inward; those of the label and its product are appended.
+    names : names of these assemblies, from the outermost inward. The yielded names are these and those of the
+        label and its product.
     """
     product = label
     if occ.XCAFDoc_ShapeTool.IsReference_s(label):
@@ -349,10 +350,10 @@ def clean_name(name: str) -> str:
 
 
 def read_name(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str:
-    """Return a solid's own name, or that of the innermost named product or assembly around it.
+    """Return a solid's own name, or else the name of the innermost named product or assembly around it.
 
-    The product's name is preferred where it has one solid (``count`` is 1). ``names`` are those of
-    :func:`list_places_under`, ``process`` is Open CASCADE's transfer process.
+    The product's name is preferred where it has one solid (``count`` is 1). ``names`` are the names that
+    :func:`list_places_under` yields, ``process`` is Open CASCADE's transfer process.
     """
     own = ""
     with suppress(Exception):

@@ -55,7 +55,7 @@ class Strip:
     Parameters
     ----------
     start, end : (x, y) in mm, run with the material on the left.
-    bulge : of the segment.
+    bulge : bulge of the segment.
     band : (z0, z1) in mm that all its points have in common; None where nothing may touch.
     faces : sorted indices of the solid's upright faces over it; empty where nothing may touch.
     covered : the pieces that it consists of, in running order.
@@ -90,10 +90,10 @@ def make_strips(loop: Sequence[BorderPiece], walls: WallsByCarrier, least: float
 
 
 def continues_piece(before: CoveredPiece, after: CoveredPiece, least: float) -> bool:
-    """Return whether a piece of border continues the one before:
-    same line or circle and direction, and no range ends.
+    """Return whether a piece of border continues the piece before it.
 
-    Ranges of height that upright faces cover end there if they jump, or if none on the other side has the
+    It does if both have the same line or circle and direction, and no range of height ends between them. A
+    range that upright faces cover ends there if its heights jump, or if no range on the other side has the
     same ends. Ranges shorter than ``least`` mm do not count.
     """
     if before.piece.carrier is not after.piece.carrier or before.piece.forward != after.piece.forward:
@@ -123,8 +123,8 @@ def list_runs_at_end(covered: CoveredPiece, end: int) -> list[tuple[Band, float,
     inward = 1.0 if position == covered.low else -1.0
 
     def beside(steps: float) -> float:
-        """Return the position ``steps`` point tolerances
-        inward from the end, at most a quarter of the piece.
+        """Return the position ``steps`` point tolerances inward from the end,
+        but not farther than a quarter of the piece.
         """
         return position + inward * min(steps * carrier.slack, covered.size / 4)
 
@@ -145,7 +145,7 @@ def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
     where the longest range of covered heights is shortest.
 
     So halving gives the same strips however the circle is turned and whichever way it runs. The circle stays
-    whole if the heights common to all of it suffice, or if nothing of it may be touched.
+    whole if the heights common to all its points suffice, or if no part of it may be touched.
     """
     if (
         is_enough(pieces, find_common_band(pieces), least)
@@ -176,8 +176,8 @@ def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
 def cut_stretch_into_strips(stretch: Stretch, least: float) -> list[Strip]:
     """Return the strips over neighbouring pieces of one line or circle, in running order.
 
-    It is cut where it becomes touchable (covered over ``least`` mm of height), and halved where the heights
-    common to a strip are too few.
+    The stretch is cut where it becomes touchable (covered over ``least`` mm of height), and its parts are
+    halved while the range of heights common to a part is too short.
     """
     found: list[Strip] = []
     for part, is_touched in split_touched_parts(stretch, least):
@@ -243,8 +243,8 @@ def find_threshold_positions(
     """Yield positions strictly between nodes at which the longest
     covered height range may just reach or miss ``least``.
 
-    Between neighbouring nodes both ends of every range are monotonic, and so they bound its length; a
-    position is looked for only where the bounds leave a change open.
+    Between neighbouring nodes both ends of every range are monotonic, so their heights at the nodes bound its
+    length. Positions are sought only where these bounds do not decide the question.
 
     Parameters
     ----------
@@ -267,8 +267,10 @@ def is_past(value: Callable[[float], float], sign: float, position: float) -> bo
 
 
 def find_extreme_place(value: Callable[[float], float], low: float, high: float, sign: float) -> float:
-    """Return the place between two others at which a function
-    is greatest (sign 1) or least (sign -1), by ternary search.
+    """Return the place from ``low`` to ``high`` at which a function is
+    greatest (``sign`` 1) or least (``sign`` -1).
+
+    Ternary search: the function must have one extreme there.
     """
     for _ in range(HALVINGS):
         a, b = low + (high - low) / 3, high - (high - low) / 3
@@ -282,8 +284,8 @@ def find_extreme_place(value: Callable[[float], float], low: float, high: float,
 
 
 def bound_run_length(one: CoveredPiece) -> float:
-    """Return an upper bound in mm of the height ranges that
-    upright faces cover along a piece; exact for level edges.
+    """Return an upper bound in mm of the height ranges that upright faces cover
+    along a piece; exact where all edges are level.
     """
     return max((run.bound_length(one.low, one.high) for run in one.runs), default=0.0)
 
@@ -327,8 +329,8 @@ def intersect_bands(a: Band, b: Band) -> Band:
 
 
 def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
-    """Return whether a band is at least ``least`` mm long, and
-    half as long as the longest covered range over the pieces.
+    """Return whether a band is at least ``least`` mm long and at least half as
+    long as the longest covered range over the pieces.
     """
     if measure_band(band) < least - SAME_HEIGHT:
         return False
@@ -355,9 +357,9 @@ def halve_stretch(stretch: Stretch, least: float) -> list[Strip]:
 
 
 def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
-    """Return consecutive pieces up to a place, and from there on.
+    """Return (1) the parts of consecutive pieces up to a place and (2) the parts from that place on.
 
-    ``size`` is the place's distance from the start, in mm on a line and radians on a circle.
+    ``size`` is the place's distance from the start, in mm on a line and in radians on a circle.
     """
     left = size
     slack = stretch[0].piece.carrier.slack
@@ -373,8 +375,9 @@ def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
 
 
 def join_strips(strips: Sequence[Strip]) -> list[Strip]:
-    """Return the strips with neighbours of the same band
-    merged; all lie on one line or circle, in running order.
+    """Return the strips with neighbours of the same band merged.
+
+    ``strips`` must lie on one line or circle, in running order.
     """
     groups: list[list[Strip]] = []
     for strip in strips:
@@ -399,8 +402,8 @@ def join_strips(strips: Sequence[Strip]) -> list[Strip]:
 
 
 def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]:
-    """Return the strip over consecutive pieces as a list: two
-    for an arc above half a circle, none for rounding's length.
+    """Return the strips over consecutive pieces: usually one, two for an arc above half a circle, none where
+    the length is within rounding of 0.
     """
     carrier, forward = stretch[0].piece.carrier, stretch[0].piece.forward
     begin, size = stretch[0].ends[0], sum(one.size for one in stretch)
@@ -450,7 +453,9 @@ def run_rows(strip: Strip) -> RunRows:
 
 
 def find_run_holding(one: CoveredPiece, band: Band) -> WallRun:
-    """Return the covered range of heights, of those over a piece, that has most in common with a band."""
+    """Return, of the height ranges that walls cover over a piece, the one whose intersection with a band is
+    longest.
+    """
     shared = [
         measure_band(intersect_bands(run.compute_common_band(one.low, one.high), band)) for run in one.runs
     ]
@@ -460,8 +465,8 @@ def find_run_holding(one: CoveredPiece, band: Band) -> WallRun:
 def split_into_cubics(
     run: WallRun, one: CoveredPiece, first: float, last: float
 ) -> Iterator[tuple[float, Band]]:
-    """Yield (position, (z0, z1)) at four equally spaced
-    positions of each part over which cubics fit a height range.
+    """Yield (position, (z0, z1)) at four equally spaced positions of each part in which cubics fit a height
+    range, part by part.
 
     Between ``first`` and ``last`` the part is halved until the cubics through its four places, one for each
     end of the range, are within ``CUBIC`` mm. Neighbouring parts both yield their common position.

@@ -31,9 +31,9 @@ class UsualPegHeight:
 
     Parameters
     ----------
-    peg_height : in mm.
-    height : of the part, in mm.
-    diameter : of the pegs, in mm.
+    peg_height : height of the pegs in mm.
+    height : height of the part in mm.
+    diameter : diameter of the pegs in mm.
     decides_numbers : whether the numbers of faces depend on it, as they do unless the part is a prism.
     slides : whether pegs of no height keep the part from sliding.
     """
@@ -76,15 +76,16 @@ def choose_usual_height(
     least: float,
     is_prism: bool,
 ) -> UsualPegHeight:
-    """Return the height of pegs to take, at most twice their
-    diameter if that touches enough, else the least that does.
+    """Return the height of pegs to take: the highest one up to twice their diameter that touches enough, or
+    else the lowest one above that does.
 
-    Enough is half of the touchable border of the best height. All lengths are in mm.
+    Enough is half of the touchable border of the best height. If no height touches enough, the part's height
+    is taken. All lengths are in mm.
 
     Parameters
     ----------
     rows : ranges of peg heights with what they offer; not used for a prism.
-    diameter : of the pegs.
+    diameter : diameter of the pegs.
     room : head room kept free above the pegs.
     least : shortest band that may be touched.
     """

@@ -76,12 +76,12 @@ def write_setup_step(
 
     Parameters
     ----------
-    thickness : height of the part in mm; that of its solid if None, or 10.
-    plate_thickness : of all plates, in mm; 10 if None. Their holes go through.
-    peg_height : how far the pegs stand out of the plates, in mm; as far as the part's solid says, or as the
-        part itself, if None.
-    peg_length : in mm; down to the plates' lower sides if None.
-    zero : part zero; that of :func:`choose_part_zero` without a wish if None.
+    thickness : height of the part in mm; if None, the height of its solid, or 10 without a solid.
+    plate_thickness : thickness of all plates in mm; 10 if None. Holes go through the plates.
+    peg_height : height in mm to which the pegs stand out of the plates. If None: the peg height of the part's
+        solid, or without a solid the height of the part.
+    peg_length : length of the pegs in mm; if None they reach down to the plates' lower sides.
+    zero : part zero; if None, the one that :func:`choose_part_zero` chooses by itself.
     overwrite : whether a file that workhold has not written may be replaced.
 
     Raises
@@ -110,7 +110,9 @@ def make_setup_step(
     zero: PartZero | None = None,
     **sizes: Any,
 ) -> bytes:
-    """Return the bytes of a set-up's STEP assembly; arguments are those of :func:`write_setup_step`."""
+    """Return the bytes of a set-up's STEP assembly; the arguments, with ``sizes``, are those of
+    :func:`write_setup_step`.
+    """
     bodies = list_fixture_bodies(fixture, workpiece, toolkit, BodySizes.from_workpiece(workpiece, **sizes))
     return make_bodies_step(bodies, toolkit, (zero or choose_part_zero(workpiece)).point, fixture.pose)
 
@@ -122,9 +124,9 @@ def make_bodies_step(
 
     Parameters
     ----------
-    bodies : of the set-up, the part first.
+    bodies : bodies of the set-up, the part first.
     zero : part zero (x, y) in mm, in the part's frame.
-    pose : of the part.
+    pose : pose of the part.
     part : Open CASCADE's solid of the part in its pose; the prism of its body if None.
 
     Raises
@@ -160,8 +162,8 @@ def make_named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Col
 
 
 def make_axes_at(point: Point, pose: Pose, length: float) -> Any:
-    """Return two edges at z = 0 from a point of the part: along
-    the part's x of the given length in mm, along y half that.
+    """Return two edges at z = 0 from a point of the part: one along the part's x, ``length`` mm long, and one
+    along its y, half as long.
 
     The point is in the part's frame, the edges in the frame of the set-up.
     """
@@ -260,7 +262,7 @@ def make_plates_step(plates: Sequence[JawPlate], thickness: float | None = None)
 
     Parameters
     ----------
-    thickness : of the plates, in mm; 10 if None.
+    thickness : thickness of the plates in mm; 10 if None.
 
     Raises
     ------

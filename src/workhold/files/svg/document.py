@@ -54,7 +54,9 @@ def get_local_name(element: Element) -> str:
 
 
 def shorten_text(text: str, most: int = 60) -> str:
-    """Return the beginning of a text from a file on one line, at most ``most`` characters, for messages."""
+    """Return the beginning of a text from a file, on one line and cut
+    to ``most`` characters, for messages.
+    """
     return " ".join(text[: 10 * most].split())[:most]
 
 
@@ -86,8 +88,8 @@ class SvgDocument:
     parents: dict[Element, Element]
 
     def name(self, element: Element) -> str:
-        """Return an element's name for messages: its tag with
-        its id, or else with its number among those of its kind.
+        """Return an element's name for messages: its tag with its id; without an id
+        its tag and its number among elements of that tag.
         """
         tag = get_local_name(element)
         if element.get("id"):
@@ -193,7 +195,9 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
     given = count = 0
 
     def attribute_declared(_: str, name: str, __: str, default: str | None, ___: int) -> None:
-        """Refuse declarations of attributes with a default, but for a few namespaces."""
+        """Refuse declarations of attributes with a default value, except
+        for declarations of a few namespaces.
+        """
         # Every element gets what is declared: only namespaces, which drawings do declare, stay harmless.
         nonlocal given, count
         given, count = given + (default is not None), count + 1
@@ -292,7 +296,9 @@ EMBEDDED = re.compile(r"[A-Za-z0-9+/=]{1000,}")
 
 @frozen
 class DeclaredValue:
-    """A declared value; ``css`` says whether it is of CSS, which has stricter rules than attributes."""
+    """A declared value; ``css`` says whether it comes from CSS, whose grammar is stricter than that of
+    attributes.
+    """
 
     text: str
     css: bool
@@ -363,7 +369,9 @@ class DeclaredStyles:
         return found
 
     def parse_style_attribute(self, element: Element) -> tuple[Block, Block]:
-        """Return the plain and the important declarations of an element's ``style``, cached by its text."""
+        """Return (plain, important), the declarations of an element's
+        ``style`` attribute; cached by its text.
+        """
         text = element.get("style", "")
         if text not in self.attributes:
             place = f"the style of {self.document.name(element)}"
@@ -397,9 +405,9 @@ class StyleRules:
         self.add(tokenize_css(text, place, self.budget), place)
 
     def add(self, tokens: list[Any], place: str, counts: bool = True) -> bool:
-        """Add the rules in some tokens, and return whether any of them could change an outline.
+        """Add the rules in some tokens, and return whether at least one of them could change an outline.
 
-        With ``counts`` False nothing is added: the rules are within a rule that does not apply to screens.
+        With ``counts`` False nothing is added: the tokens are inside a rule that does not apply to screens.
         """
         import cssselect2
         import tinycss2
@@ -446,14 +454,16 @@ def refuse_media(media: str, place: str) -> None:
 
 
 def count_css_letters(text: str) -> int:
-    """Return the number of characters of CSS without embedded fonts and pictures, which take little time."""
+    """Return the number of characters of CSS, leaving out embedded fonts and pictures, because reading them
+    takes little time.
+    """
     return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
 
 def tokenize_css(text: str, place: str, budget: Budget) -> list[Any]:
     """Return the tokens of CSS; ``place`` names it in messages.
 
-    Raises InputError for what is too long or nested too deeply, and for numbers that cannot be read.
+    Raises InputError for a text that is too long or nested too deeply, and for numbers that cannot be read.
     """
     import tinycss2
 
@@ -471,7 +481,8 @@ def tokenize_css(text: str, place: str, budget: Budget) -> list[Any]:
 
 
 def parse_declarations(content: Any, place: str) -> tuple[Block, Block]:
-    """Return the known properties of a block of declarations, (name, value): plain ones, and important ones.
+    """Return (plain, important): the declarations (name, value) of known properties in a block, in these two
+    groups.
 
     Raises InputError for rules within the block.
     """

@@ -47,10 +47,11 @@ def read_svg(
     Parameters
     ----------
     unit : the length of one user unit; None to go by the file's physical size.
-    usual_unit : the same for a file without a physical size, where ``unit`` is None.
+    usual_unit : the length of one user unit for a file without a physical size, where ``unit`` is None.
     fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
         ``Drawing``.
-    budget : work and time that may still be spent on the file; None is that of a file of these bytes.
+    budget : work and time that may still be spent on the file; None gives the usual budget for a file of this
+        size.
 
     Raises
     ------
@@ -100,8 +101,8 @@ Size = tuple[float | None, float | None]
 def make_page_placement(
     root: ShapeElement, box: ViewBox | None, unit: str | None, usual_unit: str | None
 ) -> tuple[Placement, list[str]] | None:
-    """Return the map from user units to mm with y up, and a
-    list with a remark when ``unit`` overrides the file's size.
+    """Return (1) the map from user units to mm with y up, and (2) a list with a remark if ``unit`` overrides
+    the file's size, otherwise [].
 
     None when the size of a user unit is not known. ``box`` is the root's viewBox.
     """
@@ -148,7 +149,8 @@ def remark_on_unit(
 ) -> list[str]:
     """Return a list with a remark when a unit that was asked for is not the file's; [] otherwise.
 
-    ``scales`` are the file's own mm per user unit, or None; ``millimetres`` are those asked for.
+    ``scales`` are the file's own mm per user unit in x and y, or None; ``millimetres`` is the mm per user
+    unit that was asked for.
     """
     if scales is not None and max(abs(scale - millimetres) for scale in scales) > 1e-9 * millimetres:
         return [f"The file's size makes a user unit {scales[0]:.6g} mm; it was read as 1 {unit} as asked."]

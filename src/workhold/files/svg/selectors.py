@@ -46,10 +46,11 @@ class OpenElement:
     Parameters
     ----------
     element : None around the root.
-    reached : compound selectors that the element matches together with all that stand before them in their
-        selector.
+    reached : compound selectors that the element matches, if all compound selectors before them in the same
+        selector are matched, too.
     around : the union of ``reached`` for this element and those around it.
-    last, before : ``reached`` of the child visited last, and the union for all children visited so far.
+    last, before : ``reached`` of the child visited last, and the union of ``reached`` for all children
+        visited so far.
     """
 
     element: Element | None
@@ -82,7 +83,8 @@ class SelectorMatcher:
         self.count = 0
 
     def add(self, prelude: Tokens) -> list[int]:
-        """Add a list of selectors; return the number of each one that does not select a pseudo-element.
+        """Add a list of selectors separated by commas, and return their numbers; selectors of pseudo-elements
+        have none.
 
         Raises
         ------
@@ -94,7 +96,7 @@ class SelectorMatcher:
         return [number for tokens in split_at_commas(prelude) for number in self.add_selector(tokens)]
 
     def add_selector(self, tokens: Tokens) -> list[int]:
-        """Add one selector; return a list with its number, or [] for one of a pseudo-element."""
+        """Add one selector, and return a list with its number; [] for a selector of a pseudo-element."""
         import cssselect2
 
         chain = split_compound_selectors(tokens)
@@ -131,10 +133,10 @@ class SelectorMatcher:
     def match_elements(
         self, root: Element, budget: Budget
     ) -> Iterator[tuple[Element, list[tuple[Any, ...]]]]:
-        """Yield (element, rows) for every element of a tree; a row
-        (*specificity, number) for each selector that selects it.
+        """Yield (element, rows) for every element of a tree.
 
-        Rows are sorted, from the weakest to the strongest.
+        ``rows`` has one tuple (*specificity, number) for each selector that selects the element. Rows are
+        sorted, from the weakest selector to the strongest.
         """
         import cssselect2
 
@@ -183,8 +185,8 @@ def split_at_commas(tokens: Tokens) -> list[list[Any]]:
 
 
 def split_compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
-    """Return (combinator, tokens) for the compound selectors
-    of one selector; the combinator stands before, first "".
+    """Return (combinator, tokens) for each compound selector of one selector; the combinator is the one in
+    front of it, "" for the first.
 
     Raises cssselect2.SelectorError for combinators with nothing before or after them.
     """
@@ -220,8 +222,8 @@ def trim_blanks(tokens: Tokens) -> list[Any]:
 def refuse_slow(compound: Tokens, relational: bool = False) -> None:
     """Raise cssselect2.SelectorError for a compound selector that cssselect2 would match too slowly.
 
-    That is one with many parts, combinators within a part, ``:has`` in ``:has``, or "of" in ``:nth-child``.
-    ``relational`` says whether the tokens are inside a ``:has``.
+    Such a selector has many parts, combinators within a part, ``:has`` inside ``:has``, or "of" inside
+    ``:nth-child``. ``relational`` says whether the tokens are inside a ``:has``.
     """
     import cssselect2
 

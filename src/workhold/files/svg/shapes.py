@@ -48,7 +48,7 @@ class SvgShape:
     curved: Mapping[int, Pieces] = field(factory=dict)
 
     def close(self) -> SvgShape:
-        """Return the shape with a line from its end to its start, unless it ends there."""
+        """Return the shape with a line added from its end to its start; unchanged if it ends at its start."""
         if are_equal_points(self.points[0], self.points[-1]):
             return self
         label = (
@@ -182,8 +182,8 @@ def split_path_commands(data: str) -> Iterator[str]:
 
 
 def convert_path_command(segment: Any, kind: str, label: str) -> list[PathStep]:
-    """Return the steps of one path command: one or two arcs for
-    an arc of a circle, none for one without length, else one.
+    """Return the steps of one path command: one or two for an arc of a circle, none for a command without
+    length, otherwise one.
 
     ``kind`` is the class name of svgelements' segment. Raises InputError for numbers that are missing or not
     finite.
@@ -265,8 +265,8 @@ def read_ellipse(figure: ShapeElement) -> Iterator[SvgShape]:
 
 
 def make_oval(label: str, center: Point, rx: float, ry: float) -> Iterator[SvgShape]:
-    """Yield an ellipse, or a circle as two halves where
-    the radii are equal; nothing where one of them is 0.
+    """Yield one shape: an ellipse, or a circle as two half circles where the radii are equal; nothing where a
+    radius is 0.
     """
     x, y = center
     if not (rx > 0 and ry > 0):
@@ -279,8 +279,8 @@ def make_oval(label: str, center: Point, rx: float, ry: float) -> Iterator[SvgSh
 
 
 def read_radii(figure: ShapeElement) -> tuple[float, float]:
-    """Return ``rx`` and ``ry``: one that is not given, or
-    negative, equals the other; both are 0 when neither is given.
+    """Return (rx, ry) of a shape. A radius that is not given, or negative, takes the value of the other; both
+    are 0 when neither is given.
     """
     rx, ry = (figure.read_length(a, default=-1.0) for a in ("rx", "ry"))
     return max(ry if rx < 0 else rx, 0.0), max(rx if ry < 0 else ry, 0.0)

@@ -135,7 +135,7 @@ def compute_style(
         return inherited
 
     def painted(text: str) -> str | None:
-        """Return what a paint shows; None for a text that is not a paint."""
+        """Return "none", "seen" or "currentcolor" for a paint; None for a text that is not a paint."""
         return resolve_paint(text, styles)
 
     display = value("display", lambda text: text if DISPLAYS.match(text) else None, "inline", "inline")
@@ -236,7 +236,8 @@ def resolve_paint(text: str, styles: DeclaredStyles) -> str | None:
 
 
 def shows_paint(server: Element, styles: DeclaredStyles, deepest: int = 50) -> bool:
-    """Return whether a gradient has a visible stop, or a pattern has content, itself or through its link.
+    """Return whether a gradient has a visible stop, or a pattern has content; both may have it themselves or
+    through a link.
 
     ``deepest`` limits the number of links that are followed.
     """
@@ -263,7 +264,8 @@ def shows_paint(server: Element, styles: DeclaredStyles, deepest: int = 50) -> b
 
 
 def keep_painted_boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
-    """Return the chains that have paint on exactly one side by the nonzero rule.
+    """Return the chains that have paint on exactly one side, when all of
+    them are filled together by the nonzero rule.
 
     There is paint where the winding number, the sum of the signed turns of all loops around a point, is not
     zero. A loop that meets others is kept, so that it is refused later with its place.

@@ -104,7 +104,8 @@ def read_transform_origin(figure: ShapeElement) -> tuple[float, float]:
 def parse_transform_functions(text: str, css: bool, figure: ShapeElement) -> Placement:
     """Return the map of a list of transform functions; the last one is applied first.
 
-    ``css`` selects the grammar of CSS. Raises InputError for functions that are not supported.
+    ``css`` selects CSS's grammar instead of that of the attribute ``transform``. Raises InputError for
+    functions that are not supported.
     """
     text, label = text.strip(), figure.label
     placement = Placement()
@@ -132,8 +133,8 @@ def parse_transform_functions(text: str, css: bool, figure: ShapeElement) -> Pla
 
 
 def read_css_arguments(name: str, text: str) -> list[float] | None:
-    """Return the arguments of a CSS transform function in
-    user units and degrees; None when one is not valid.
+    """Return the arguments of a CSS transform function in user units and
+    degrees; None when one of them is not valid.
     """
     values: list[float] = []
     for word in text.split(","):

@@ -88,8 +88,8 @@ def is_physical_length(text: str) -> bool:
 def read_numbers(text: str, what: str, budget: Budget) -> list[float]:
     """Return all numbers of a list separated by blanks and commas.
 
-    Raises InputError for anything else, too large numbers, and more than ``budget`` has; ``what`` begins the
-    message.
+    Raises InputError for anything else, for numbers that are too large, and for more numbers than ``budget``
+    allows; ``what`` begins the message.
     """
     values: list[float] = []
     text, position = text.rstrip(), 0
@@ -194,7 +194,8 @@ def read_viewbox(text: str | None, label: str, budget: Budget) -> ViewBox | None
 def fit_viewbox(box: ViewBox, width: float, height: float, aspect: str, label: str) -> Placement:
     """Return the map from a viewBox to a viewport at the origin (SVG 2, 8.2).
 
-    Raises InputError for a ``preserveAspectRatio``, ``aspect``, that cannot be read.
+    ``width`` and ``height`` are the viewport's, ``aspect`` is the text of ``preserveAspectRatio``. Raises
+    InputError if that text cannot be read.
     """
     words = aspect.removeprefix("defer").split() or ["xMidYMid"]
     sx, sy = width / box[2], height / box[3]
@@ -231,7 +232,7 @@ class ClipPolygon:
 
     Parameters
     ----------
-    corners : N + 1 points, the last the first.
+    corners : N + 1 points in running order, the last equal to the first.
     label : name for messages, such as ``the clip-path of g 'a'``.
     """
 
@@ -239,10 +240,10 @@ class ClipPolygon:
     label: str
 
     def classify_visibility(self, chain: Chain, budget: Budget) -> Literal["all", "some", "nothing"]:
-        """Return whether all, some or nothing of a chain is inside.
+        """Return "all", "some" or "nothing": how much of a chain is inside the polygon.
 
-        Each edge is tested by itself, so that "some" may also be said of a chain that is outside near a
-        corner.
+        Each edge of the polygon is tested by itself. So "some" may also be returned for a chain that is
+        outside near a corner.
         """
         area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
         size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))

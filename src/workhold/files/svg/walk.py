@@ -162,8 +162,8 @@ class SvgWalk:
         )
 
     def visit_children(self, parent: Element, nest: ElementNesting) -> None:
-        """Visit the elements in a container; of a <switch>,
-        only the first whose conditions hold (SVG 2, 5.9.2).
+        """Visit the elements in a container; in a <switch> only the first
+        element whose conditions hold (SVG 2, 5.9.2).
         """
         for element in parent:
             if not self.document.is_svg_element(element):
@@ -181,8 +181,8 @@ class SvgWalk:
             self.visit(element, nest)
 
     def visit_shape(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Append the chains of a shape that is seen; raise
-        InputError for one that a window cuts or a transform crushes.
+        """Append the chains of a shape that is seen; raise InputError for a shape that a window cuts or a
+        transform makes flat.
         """
         style, label = nest.style, figure.label
         if not style.shown or not (style.stroked or style.filled):
@@ -213,7 +213,11 @@ class SvgWalk:
             self.looks.update((label, look) for chain in found for label in chain.labels)
 
     def place_shape(self, figure: ShapeElement, nest: ElementNesting) -> Iterator[Chain]:
-        """Yield the chains of a shape in mm; those of a shape without stroke are closed as its fill is."""
+        """Yield the chains of a shape in mm.
+
+        A shape without a stroke is closed, because a fill is bounded by closed loops; a single line without a
+        stroke yields nothing.
+        """
         for shape in SHAPES[get_local_name(figure.element)](figure):
             if not nest.style.stroked:
                 if len(shape.bulges) == 1 and not shape.bulges[0] and not shape.curved:
@@ -226,8 +230,10 @@ class SvgWalk:
                 yield chain
 
     def visit_use(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Visit what a <use> shows; raise InputError for
-        links to nothing, to other files and to themselves.
+        """Visit the elements that a <use> shows.
+
+        Raises InputError for a link to nothing or to another file, and for a <use> that shows itself,
+        directly or through another <use>.
         """
         label, link = figure.label, read_link(figure.element)
         target = self.document.find_linked(link)
@@ -247,8 +253,9 @@ class SvgWalk:
             self.visit(target, inner)
 
     def count_shown_elements(self, element: Element, depth: int = 0) -> int:
-        """Return a lower bound of the number of elements visited
-        where an element is shown, with those that <use> repeats.
+        """Return a lower bound of the number of elements visited where an element is shown.
+
+        Elements inside it count, and those that a <use> shows count each time.
         """
         tag = get_local_name(element)
         if (
@@ -271,7 +278,7 @@ class SvgWalk:
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
         """Visit a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
 
-        Raises InputError for a transform, and for a size or reference point of a symbol, which programs draw
+        Raises InputError for a transform, and for a size or reference point of a symbol that programs draw
         differently.
         """
         own = self.make_shape_element(target, nest)
@@ -448,15 +455,15 @@ def suits_conditions(element: Element, label: str) -> bool:
 
 
 def shows_overflow(declarations: dict[str, list[DeclaredValue]]) -> bool:
-    """Return whether a nested drawing shows what reaches over its edge."""
+    """Return whether a nested drawing shows what reaches beyond its edge, from its declared ``overflow``."""
     names = ("overflow", "overflow-x", "overflow-y")
     given = [declarations[name][0].text for name in names if name in declarations]
     return bool(given) and all(text in ("visible", "auto") for text in given)
 
 
 def may_be_hidden(element: Element, declarations: dict[str, list[DeclaredValue]]) -> bool:
-    """Return whether an element has a condition, ``display``
-    or ``opacity``, which may hide it with all that is in it.
+    """Return whether an element has a condition, a ``display`` or an ``opacity``,
+    any of which may hide it and everything in it.
     """
     is_conditional = any(element.get(name) is not None for name in CONDITIONS)
     return is_conditional or "display" in declarations or "opacity" in declarations

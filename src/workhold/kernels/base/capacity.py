@@ -20,7 +20,7 @@ class Capacity:
         self.rows = rows
 
     def give(self, write: Callable[[int], Made | None]) -> Made:
-        """Return the first result of ``write(rows)`` that is not None.
+        """Return the first result of ``write(rows)`` that is not None, calling it with ever more rows.
 
         ``rows`` begins with the number of rows of the last success, and is doubled after each None.
         """

@@ -56,8 +56,8 @@ INNER: list[Any] = []
 
 
 def inner(function: Function) -> Function:
-    """Mark a function that only kernels call: return it compiled in
-    the modes "building" and "callable", else as it is.
+    """Mark a function that only kernels call, and return it: compiled in the modes "building" and "callable",
+    else as it is.
 
     Kernels avoid what is slow to compile: assignments of slices, and long kernels that call other long ones.
     """
@@ -116,7 +116,8 @@ class Kernel:
 
     @cached_property
     def takers(self) -> list[Taker]:
-        """For each argument in order, the function that appends its words to a list."""
+        """For each argument in order, the function that appends the argument's words (of eight bytes) to a
+        list."""
         return [make_taker(kind, f"{self.name}: {name}") for name, kind in self.arguments.items()]
 
     @cached_property
@@ -160,9 +161,8 @@ def list_fields(record: Any) -> list[tuple[str, Any]] | None:
 
 
 def make_format_letters(kind: Any) -> str:
-    """Return the format letters of :mod:`struct` for the words of a
-    type; an array has its address and its shape.
-    """
+    """Return the format letters of :mod:`struct` for the words of a type; an array has the words of its
+    address and its shape."""
     if (parts := list_fields(kind)) is not None:
         return "".join(make_format_letters(part) for _, part in parts)
     return LETTERS[kind] if kind in LETTERS else "q" * (1 + count_dimensions(kind))
@@ -179,8 +179,8 @@ def get_element_type(kind: Any) -> np.dtype[Any]:
 
 
 def make_taker(kind: Any, name: str) -> Taker:
-    """Return a function ``take(value, words)`` that checks an
-    argument of this type and appends its words to a list.
+    """Return a function ``take(value, words)`` that checks an argument of the type ``kind`` and appends its
+    words to a list.
 
     ``name`` names the argument in the message of the TypeError that ``take`` raises for a wrong value.
     """
@@ -190,7 +190,7 @@ def make_taker(kind: Any, name: str) -> Taker:
 
 
 def make_number_taker(kind: type[Any], name: str) -> Taker:
-    """Return the taker of a number (int, float or bool), see :func:`taker`."""
+    """Return the taker of a number (int, float or bool), see :func:`make_taker`."""
     wanted = {int: (int, np.integer), float: (float, int, np.floating, np.integer), bool: (bool, np.bool_)}[
         kind
     ]
@@ -205,7 +205,7 @@ def make_number_taker(kind: type[Any], name: str) -> Taker:
 
 
 def make_array_taker(kind: Any, name: str) -> Taker:
-    """Return the taker of a C-contiguous array of an annotated type, see :func:`taker`."""
+    """Return the taker of a C-contiguous array of the annotated type ``kind``, see :func:`make_taker`."""
     wanted, count = get_element_type(kind), count_dimensions(kind)
 
     def take(value: Any, words: list[Any]) -> None:
@@ -231,15 +231,15 @@ def find_address(array: np.ndarray[Any, Any]) -> int:
 
 
 def remember_arrays(take: Taker) -> Taker:
-    """Return a taker of arrays that remembers the words of each array
-    object that it has seen, as long as that lives.
+    """Return a taker like ``take`` that remembers the words of each array object as long as the object lives.
 
-    Arrays in records are handed over again and again, and looking up an address takes longer than all else.
+    Arrays in records are handed over again and again, and looking up the address of an array takes most of
+    the time.
     """
     known: dict[int, tuple[ref[Any], list[Any]]] = {}
 
     def take_known(value: Any, words: list[Any]) -> None:
-        """Append the words of an array to ``words``: remembered ones, or those that ``take`` appends."""
+        """Append the words of an array to ``words``: from memory, or else by calling ``take``."""
         found = known.get(id(value))
         if found is not None and found[0]() is value:
             words += found[1]
@@ -254,7 +254,8 @@ def remember_arrays(take: Taker) -> Taker:
 
 
 def make_record_taker(kinds: list[tuple[str, Any]], name: str) -> Taker:
-    """Return the taker of a named tuple or tuple with fields ``kinds`` [(name, type)], see :func:`taker`."""
+    """Return the taker of a named tuple or tuple with fields ``kinds`` [(name, type)], see
+    :func:`make_taker`."""
     takers = [
         remember_arrays(take) if get_origin(kind) is Annotated else take
         for kind, take in ((kind, make_taker(kind, f"{name}.{field}")) for field, kind in kinds)

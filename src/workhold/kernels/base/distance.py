@@ -1,7 +1,8 @@
 """Distances from points and from straight pieces to the segments of an outline and to what a tool sweeps.
 
-How an outline turns around a point stands here, too. A clamp's body is a capsule, what lies within a radius
-of a straight piece: it may lie where that piece is far enough from the outline.
+The angle that an outline turns around a point is computed here, too. A clamp's body is a capsule: all points
+within a radius of a straight piece. The body is clear of the part where that piece is far enough from the
+outline.
 
 Swept pieces are segments or arcs along which an axis runs, each with the radius of its cylinder. The nearest
 is found in a tree of boxes. The tree is a heap: node k has the nodes 2 k and 2 k + 1, and the last half of
@@ -124,8 +125,8 @@ def measure_winding_angle(x: float, y: float, row: Array) -> float:
 
 @compiled
 def measure_winding(x: float, y: float, rows: Matrix) -> float:
-    """Return the angle in radians that (N, 10) segments turn around a
-    point, as :func:`sum_winding_angles`, for Python.
+    """Return the angle in radians that (N, 10) segments turn around a point; :func:`sum_winding_angles` for
+    Python.
 
     See ``base.feature`` for the layout of ``rows``.
     """
@@ -134,8 +135,8 @@ def measure_winding(x: float, y: float, rows: Matrix) -> float:
 
 @inner
 def sum_winding_angles(x: float, y: float, rows: Array) -> float:
-    """Return the sum in radians of the :func:`measure_winding_angle` of
-    (N, 10) segments about a point on none of them.
+    """Return the sum in radians of :func:`measure_winding_angle` over (N, 10) segments, about a point on none
+    of them.
 
     It is 2 pi inside a closed counter-clockwise outline and 0 outside. See ``base.feature`` for the layout of
     ``rows``.
@@ -177,7 +178,7 @@ def measure_piece_distance(start: Array, end: Array, row: Array) -> float:
     ``end`` to one segment (see ``base.feature``).
 
     The distance is least at an end of either, or where they cross, or, outside an arc's circle, at the foot
-    of the perpendicular from its centre. Inside the circle it has no minimum but at an end.
+    of the perpendicular from its centre. Inside the circle it is least at an end.
     """
     length = hypot(end[0] - start[0], end[1] - start[1])
     best = measure_segment_distance(start[0], start[1], row)
@@ -260,8 +261,8 @@ def write_nearest_swept(
     least: Vector,
     which: IntVector,
 ) -> None:
-    """Write, for each of M straight pieces, its least distance minus
-    radius in mm to the swept pieces, and which is nearest.
+    """Write, for each of M straight pieces, the least value of (distance - radius) in mm over all swept
+    pieces, and the swept piece that has it.
 
     Parameters
     ----------

@@ -83,11 +83,11 @@ def compute_exact_dot(ax: float, ay: float, bx: float, by: float) -> float:
 def compute_middle_coordinate(
     center: float, center_rest: float, radius: float, along: float, excess: float
 ) -> float:
-    """Return center + radius * along, scaled to a unit direction, as
-    one coordinate accurate to about one rounding.
+    """Return one coordinate of an arc's middle: centre + radius times a unit direction, accurate to about one
+    rounding.
 
-    ``center_rest`` is the rounding error of ``center``; ``along`` is the coordinate of the direction, whose
-    squared length is 1 + ``excess``.
+    ``center`` + ``center_rest`` is the coordinate of the centre. ``along`` is the coordinate of a vector in
+    the direction of the middle, whose squared length is 1 + ``excess``.
     """
     way, rest = multiply_exactly(radius, along)
     total = center + way
@@ -114,7 +114,7 @@ def find_arc_middle(row: Array) -> tuple[float, float]:
 
 @inner
 def compute_local_size(row: Array) -> float:
-    """Return a length in mm to which rounding errors of a feature's coordinates are relative.
+    """Return a length in mm to which rounding errors of coordinates of a feature's points are relative.
 
     See ``base.feature`` for the layout of ``row``.
     """

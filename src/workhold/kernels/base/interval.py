@@ -58,7 +58,7 @@ def imul(a: Interval, b: Interval) -> Interval:
 
 @inner
 def iscale(c: float, a: Interval) -> Interval:
-    """Return an enclosure of c a for a number c."""
+    """Return an enclosure of c times a for an exact or rounded number c."""
     if c >= 0.0:
         return widen_outward(c * a[0], c * a[1])
     return widen_outward(c * a[1], c * a[0])
@@ -82,9 +82,8 @@ def isquare(a: Interval) -> Interval:
 
 @inner
 def isqrt(a: Interval) -> Interval:
-    """Return an enclosure of the square roots of the non-negative
-    part of a, (0, about 0) where a is negative.
-    """
+    """Return an enclosure of the square roots of the non-negative numbers in a; about (0, 0) where a has
+    none."""
     low, high = widen_outward(sqrt(max(a[0], 0.0)), sqrt(max(a[1], 0.0)))
     return (max(low, 0.0), high)
 

@@ -127,7 +127,7 @@ def find_library(room: str) -> Path | None:
 
 
 def find_in(folder: Path, room: str) -> Path | None:
-    """Return the file of a room's library in a folder, or None where there is none."""
+    """Return the file of a room's library in ``folder``, or None where the folder has none."""
     paths = (folder / make_library_name(room, ending) for ending in ENDINGS)
     return next((path for path in paths if path.exists()), None)
 
@@ -207,8 +207,8 @@ def build_libraries(
     Parameters
     ----------
     folder : receives the libraries; None for :func:`find_library_folder`.
-    report : is called with the share that is done, from 0 to 1.
-    cancel : ends all when it is set, with libraries missing.
+    report : is called with the share of the work that is done, from 0 to 1.
+    cancel : ends all processes when it is set; libraries are then missing.
 
     Raises
     ------
@@ -261,8 +261,8 @@ def build_libraries(
 def start_compiling(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[str]:
     """Start and return the process that builds the library of a room into ``folder``.
 
-    Its standard output has a line with the progress from 0 to 1 now and then; ``said`` receives its standard
-    error. It ends when this process ends, in whatever way.
+    Its standard output has a line with the progress, from 0 to 1, every few seconds; ``said`` receives its
+    standard error. The process ends when this process ends, in whatever way.
     """
     processor = PLAIN_PROCESSORS.get(platform.machine(), "generic")
     settings = {

@@ -1,7 +1,7 @@
 """Named records that the kernels of a search take, and the columns of the tables among them.
 
-Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.problem``). Pegs
-of the carrier that stands still come first.
+Kernels work in the frame in which the moving carrier of the toolkit slides along +x (``contact.problem``).
+Pegs of the carrier that stands still come first.
 
 Whole numbers of a curve (C, 7), the same for a sliding pair:
 
@@ -18,7 +18,7 @@ Reals of a curve (C, 16):
 - BACKWARD_ERROR (see ``chord.evaluation``);
 - COINCIDENCE (its kind, see ``chord.coincidences``), MIDDLE (alpha) and SIDE of the coincidence;
 - KAPPA (sum of the features' curvatures in 1 / mm);
-- NEAR_FROM and NEAR_TO (alpha): the part of the range in which its pegs may be of interest.
+- NEAR_FROM and NEAR_TO (alpha): the part of the range in which ``NearSpots`` allows both pegs.
 
 Reals of a sliding pair (P, 5): SLIDE_FROM and SLIDE_TO (parameter of the tail on its feature), DIRECTION
 (alpha), STEP_LENGTH, ORIENTATION (psi in radians).
@@ -59,7 +59,7 @@ from workhold.kernels.base.compiling import (
 
 
 class Precision(NamedTuple):
-    """Tolerances and data for bounds of location errors, and the errors that are of interest
+    """Tolerances and data for bounds of location errors, and the largest errors allowed
     (``contact.location_bounds``).
 
     Parameters
@@ -71,8 +71,8 @@ class Precision(NamedTuple):
     probes : (P, 3) points of the silhouette with a direction: movement per unit along x, along y, and of a
         turn times L.
     peg, face : tolerances in mm.
-    most, most_aslant : largest effective error of interest in mm where the part is square to its drawing, and
-        at other orientations; inf where all are.
+    most, most_aslant : largest effective error allowed in mm where the part is square to its drawing, and at
+        other orientations; inf where errors are not limited.
     """
 
     faces: IntVector
@@ -86,15 +86,17 @@ class Precision(NamedTuple):
 
 
 class NearSpots(NamedTuple):
-    """Stretches of features, and which two or three of them locators of interest may touch
-    (``contact.location_bounds``).
+    """Spots (numbered stretches of features), and which two or three of them locators may touch together.
+
+    Where locators would have too large a location error, the entries are 0 (``contact.location_bounds``).
 
     Parameters
     ----------
-    starts : (F + 1,) number of the first stretch of each feature, then M; stretches of one feature are
-        equally long.
-    joined : (M, M) 1 for two stretches that may be touched together; (0, 0) where nothing is ruled out.
-    triples : (M, M, M) 1 for three stretches that may, in any order; (0, 0, 0) where that is not kept.
+    starts : (F + 1,) number of the first spot of each feature, then M, the number of all spots; spots of one
+        feature are equally long.
+    joined : (M, M) 1 for two spots that may be touched together; (0, 0) where nothing is ruled out.
+    triples : (M, M, M) 1 for three spots that may be touched together, in any order; (0, 0, 0) where triples
+        are not known.
     """
 
     starts: IntVector
@@ -103,16 +105,16 @@ class NearSpots(NamedTuple):
 
 
 class Features(NamedTuple):
-    """Contact features; the pegs of each carrier touch a range of them, those of their own radius.
+    """Contact features; the pegs of each carrier touch a range of them, which belongs to their radius.
 
     Parameters
     ----------
     loose : (F, 10) rows with ends moved out slightly, for searching.
     rows : (F, 12) rows with the slack of their ends, for checking.
-    standing, moving : first and past-the-last number of those that pegs of each carrier touch; the ranges are
-        equal or disjoint.
+    standing, moving : first and past-the-last number of the features that pegs of each carrier touch; the
+        ranges are equal or disjoint.
     precision : data for bounds of location errors.
-    near : where three standing pegs may touch.
+    near : which spots three standing pegs may touch together.
     """
 
     loose: Matrix
@@ -124,8 +126,10 @@ class Features(NamedTuple):
 
 
 class Lattice(NamedTuple):
-    """The lattice of holes, common to both carriers, in mm; ``row_offset`` is the height of the moving
-    carrier's row 0 above that of the standing one."""
+    """Lattice of holes, common to both carriers: pitches in mm along x and y, and a row offset.
+
+    ``row_offset`` is the height in mm of the moving carrier's row 0 above the standing carrier's row 0.
+    """
 
     pitch_x: float
     pitch_y: float
@@ -143,10 +147,10 @@ class Limits(NamedTuple):
     most_column_steps : largest column difference between pegs of one carrier.
     clamping : 1 when the moving carrier clamps by pushing towards -x, -1 when it clamps by pushing towards
         +x.
-    least_margin : smallest closure margin of interest.
+    least_margin : smallest closure margin that a fixture may have.
     most_listed : how many contacts a block lists when it counts them.
-    pairing : 1 when the peg that moves is one of two clamps: nothing need close yet, but the standing pegs
-        alone must fix the pose, and the clamp must push. Else 0.
+    pairing : 1 when the peg that moves is one of two clamps, else 0. With one of two clamps the four wrenches
+        need not close, but the standing pegs alone must fix the pose, and the clamp must push.
     """
 
     gap: float

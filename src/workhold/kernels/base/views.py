@@ -1,9 +1,9 @@
 """Arrays of kernels while they are compiled: views of memory that somebody else owns.
 
-A view is an address and a shape; its elements lie one after the other. Numba's own arrays know besides who
-owns their memory, and each copy of one counts. Kernels hand arrays on thousands of times and own none, so
-they are compiled for views, which makes them shorter, and faster to compile and to run. A view can do what
-kernels do: ``view[i, j]``, ``view[i]``, ``view[i:j]``, ``view.shape``, ``len(view)``. Indices are not
+A view is an address and a shape; its elements lie one after the other. Numba's own arrays also know who owns
+their memory, and every copy of such an array is counted. Kernels hand arrays on thousands of times and own
+none, so they are compiled for views, which makes them shorter, and faster to compile and to run. A view can
+do what kernels do: ``view[i, j]``, ``view[i]``, ``view[i:j]``, ``view.shape``, ``len(view)``. Indices are not
 negative.
 """
 

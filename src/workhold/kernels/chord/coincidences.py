@@ -28,7 +28,7 @@ With s = 1 in the first case and -1 in the second,
 
     omega = (1 + (d^2 - c^2) / G) / 2 -+ s sqrt(c d / S) cos(gamma / 2) (1 - D / G).
 
-What these lengths miss each other by, m, moves the tail of the part itself by m / abs(X), see :func:`misfit`.
+Where these lengths differ by m, the tail on the part itself is off by m / abs(X), see :func:`bound_misfit`.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ EPSILON = 4e-16
 
 @inner
 def find_line_side(line: Array, arc: Array, d: float) -> float:
-    """Return 1 or -1 when a line and an arc coincide with the chord
-    along or against the line's normal, else 0.
+    """Return the side of the coincidence of a chord between a line and an arc: 1 or -1 where the chord is
+    then along or against the line's normal, 0 where there is no coincidence.
 
     Return 0 for a shallow arc as well: the formulas for shallow arcs do not divide by zero there. See
     ``base.feature`` for the layout of ``line`` and ``arc``.
@@ -103,10 +103,11 @@ def are_one_chord_apart(a: Array, b: Array, d: float) -> bool:
 
 @inner
 def find_touching_side(a: Array, b: Array, d: float) -> float:
-    """Return 1 or -1 when two arcs touch where the chord runs along
-    or against the line from centre a to b, else 0.
+    """Return the side of the coincidence of a chord between two arcs that touch each other when one is moved
+    by the chord.
 
-    See ``base.feature`` for the layout of ``a`` and ``b``.
+    It is 1 or -1 where they do so with the chord along or against the line from the centre of ``a`` to that
+    of ``b``, 0 where they never do. See ``base.feature`` for the layout of ``a`` and ``b``.
     """
     if a[IS_ARC] == 0.0 or b[IS_ARC] == 0.0 or is_shallow(a) or is_shallow(b):
         return 0.0
@@ -160,7 +161,7 @@ def measure_from_coincidence(alpha: float, middle: float) -> float:
 
 @inner
 def get_regular_radius(a: Array, b: Array, kind: float) -> float:
-    """Return the radius in mm that :func:`is_regular` needs for a kind of coincidence.
+    """Return the ``radius`` in mm to pass to :func:`is_regular` for a kind of coincidence.
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
     """
@@ -187,13 +188,13 @@ def bound_touching_speed(a: Array, b: Array, side: float, d: float) -> float:
 
 @inner
 def bound_misfit(a: Array, b: Array, curve: Array, turn: float) -> float:
-    """Return a bound in mm of the distance from a tail on arcs that
-    nearly touch to that on arcs that touch exactly.
+    """Return a bound in mm of the distance between a tail on arcs that nearly touch and the tail on arcs that
+    touch exactly.
 
     ``turn`` is X of the chord; return 0 for curves of other kinds. The part of the tail along J g is the root
-    of a square that is off by 2 m R_a R_b / g, so it is off by m / abs(X). Nearer to the coincidence than
-    that says anything, chords are those of arcs that touch. See ``base.feature`` for the layout of ``a`` and
-    ``b``, ``base.tables`` for that of ``curve``. Symbols are those of ``chord.coincidences``.
+    of a square that is off by 2 m R_a R_b / g, so it is off by m / abs(X). So near to the coincidence that
+    this bound says nothing, a fixed bound is used. See ``base.feature`` for the layout of ``a`` and ``b``,
+    ``base.tables`` for that of ``curve``. Symbols are those of ``chord.coincidences``.
     """
     if curve[COINCIDENCE] != TOUCHING:
         return 0.0
@@ -210,7 +211,7 @@ def is_regular(kind: float, radius: float, d: float, gamma: float) -> bool:
     """Return whether to use the regular formulas at an angle
     ``gamma`` in radians from a coincidence of this kind.
 
-    ``radius`` is that of :func:`regular_radius`, d the chord's length in mm. Symbols are those of
+    ``radius`` is that of :func:`get_regular_radius`, d the chord's length in mm. Symbols are those of
     ``chord.coincidences``.
     """
     if kind in (NONE, CONCENTRIC) or abs(gamma) > 1.0:
@@ -421,8 +422,8 @@ def enclose_angle(low: float, high: float, middle: float) -> tuple[float, Interv
     """Return the angle gamma from the coincidence to the middle of
     [low, high], and an enclosure of gamma over the range.
 
-    Directions are below 16 radians, so three sums are off by half a unit in the last place of that each.
-    Symbols are those of ``chord.coincidences``.
+    Directions must be below 16 radians; each of three sums is then off by at most half a unit in the last
+    place of 16. Symbols are those of ``chord.coincidences``.
     """
     center, reach = (
         measure_from_coincidence((low + high) / 2.0, middle),

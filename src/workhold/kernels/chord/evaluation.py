@@ -90,10 +90,11 @@ ROUNDINGS = 32.0 * 1.2e-16
 
 @inner
 def compute_line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """Return the chord w with its tail on line a and its head on arc b, as :func:`compute_chord_along` does.
+    """Return the chord w, with its tail on line ``a`` and its head on arc ``b``, in the form of
+    :func:`compute_chord_along`.
 
-    The head lies where the line moved by w meets the circle of b. See ``base.feature`` for the layout of
-    ``a`` and ``b``.
+    The head lies where the line, moved by w, meets the circle of ``b``. See ``base.feature`` for the layout
+    of ``a`` and ``b``.
     """
     if is_shallow(b):
         return compute_line_to_shallow(a, b, wx, wy, branch)
@@ -108,10 +109,11 @@ def compute_line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float)
 def compute_arc_to_arc(
     a: Array, b: Array, wx: float, wy: float, branch: float, one_chord_apart: bool
 ) -> Chord:
-    """Return the chord w with its tail on arc a and its head on arc b, as :func:`compute_chord_along` does.
+    """Return the chord w, with its tail on arc ``a`` and its head on arc ``b``, in the form of
+    :func:`compute_chord_along`.
 
-    The tail lies where the circle of a meets the circle of b moved by -w. See ``base.feature`` for the layout
-    of ``a`` and ``b``.
+    The tail lies where the circle of ``a`` meets the circle of ``b`` moved by -w. See ``base.feature`` for
+    the layout of ``a`` and ``b``.
     """
     if (is_shallow(a) or is_shallow(b)) and not one_chord_apart:
         return compute_shallow_to_arc(a, b, wx, wy, branch)
@@ -140,8 +142,8 @@ def compute_chord_along(
 ) -> Chord:
     """Return the tail and the two contact directions of a chord w from feature a to feature b.
 
-    The features count as whole lines and circles. Where these do not meet, the nearest chord of a tangency is
-    given. See ``base.feature`` for the layout of ``a`` and ``b``.
+    The features count as whole lines and circles. Where no chord w fits between these, the nearest chord at a
+    tangency is given. See ``base.feature`` for the layout of ``a`` and ``b``.
 
     Parameters
     ----------
@@ -168,7 +170,8 @@ def compute_chord_along(
 
 @inner
 def compute_chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> Chord:
-    """Return the chord of length d in mm and direction alpha in radians, in the form of :func:`compute_chord_along`.
+    """Return the chord of length d in mm and direction alpha in radians, in the form of
+    :func:`compute_chord_along`.
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
     """
@@ -263,9 +266,9 @@ def compute_curvature(row: Array) -> float:
 
 @inner
 def bound_regular_error(curve: Array) -> float:
-    """Return a bound in mm of the error of a tail found by the regular formulas near a coincidence.
+    """Return a bound in mm of the error of a tail that the regular formulas for coincidences compute.
 
-    See ``base.tables`` for the layout of ``curve``.
+    See ``chord.coincidences`` for these formulas, ``base.tables`` for the layout of ``curve``.
     """
     return 2.0 * curve[BACKWARD_ERROR] + 4.0 * EXACT
 
@@ -353,9 +356,10 @@ def compute_chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: fl
 def evaluate_state(
     a: Array, b: Array, state: State, cosine: float, sine: float, mode: float
 ) -> tuple[float, float, float, float]:
-    """Return the value of a chord in place, its derivative over psi, and bounds of the errors of both.
+    """Return (value of a computed chord, its derivative over psi, bound of the value's error, bound of the
+    derivative's error).
 
-    ``state`` is that of :func:`chord_state`; see :func:`curve_value` for ``mode`` and units. See
+    ``state`` is that of :func:`compute_chord_state`; see :func:`evaluate_curve` for ``mode`` and units. See
     ``base.feature`` for the layout of ``a`` and ``b``.
     """
     ux, uy, px, py = state[0], state[1], state[6], state[7]

@@ -1,4 +1,4 @@
-"""The ranges of direction over which a chord exists, with closed-form ends.
+"""Ranges of direction over which a chord exists, with closed-form ends.
 
 A chord of length d from feature a to feature b can begin or cease to exist in three ways only. Its tail
 reaches an end of a, its head reaches an end of b, or the chord is a tangency. All these directions are arc
@@ -7,7 +7,7 @@ the middle decides.
 
 The ranges hold every chord between the features, in spite of rounding. The features' ends have been moved out
 by far more than rounding (``conventions.LOOSE``). A range too narrow for the test counts wherever the
-carriers of the features meet, and what is found past an end is discarded later. The end of a range at a
+carriers of the features meet, and contacts found past an end are discarded later. The end of a range at a
 tangency is known to a stated error.
 """
 
@@ -80,7 +80,8 @@ def add_event(events: Array, count: int, alpha: float, kind: float, error: float
 
 @inner
 def add_pair(events: Array, count: int, middle: float, cosine: float, kind: float, rounding: float) -> int:
-    """Append both solutions alpha of cos(alpha - middle) = cosine as events, if there are any.
+    """Append both solutions alpha of cos(alpha - middle) = cosine as events of a kind; none where |cosine| >
+    1.
 
     ``rounding`` bounds the cosine's error. Return the new number of events. See ``chord.intervals`` for the
     layout of ``events``.
@@ -131,8 +132,8 @@ def add_end_events(events: Array, count: int, moving: Array, fixed: Array, d: fl
 
 @inner
 def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: float, turned: float) -> int:
-    """Append the directions at which a chord between a line and an
-    arc is a tangency, or ranges are cut at a coincidence.
+    """Append the directions at which a chord between a line and an arc is a tangency, or at which ranges are
+    cut because of a coincidence.
 
     ``turned`` is 0 when the tail is on the line, pi when the head is. Return the new number of events. See
     ``chord.intervals`` for the layout of ``events``, ``base.feature`` for that of ``line`` and ``arc``.
@@ -158,8 +159,8 @@ def add_line_tangencies(events: Array, count: int, line: Array, arc: Array, d: f
 
 @inner
 def add_arc_tangencies(events: Array, count: int, a: Array, b: Array, d: float) -> int:
-    """Append the directions at which a chord between two arcs is a
-    tangency, or ranges are cut at a coincidence.
+    """Append the directions at which a chord between two arcs is a tangency, or at which ranges are cut
+    because of a coincidence.
 
     Return the new number of events. See ``chord.intervals`` for the layout of ``events``, ``base.feature``
     for that of ``a`` and ``b``.
@@ -291,11 +292,13 @@ def are_parallel(a: Array, b: Array) -> bool:
 
 @inner
 def share_one_line(a: Array, b: Array, d: float) -> bool:
-    """Return whether pegs d mm apart that touch two features always do so along one line of action.
+    """Return whether two pegs d mm apart, wherever they touch two features, push along one common line of
+    action.
 
-    This is the case square to parallel lines, on a diameter through a common centre, and where the lines or
-    circles only touch. Wrenches of opposite or equal contacts are dependent: with a third they fix no pose,
-    and nothing closes. See ``base.feature`` for the layout of ``a`` and ``b``.
+    This is the case (a) between parallel lines, square to them, (b) on a diameter through a common centre,
+    and (c) where the lines or circles, moved by the chord, only touch. Wrenches of opposite or equal contacts
+    are dependent: with a third they fix no pose, and nothing closes. See ``base.feature`` for the layout of
+    ``a`` and ``b``.
     """
     if are_parallel(a, b):
         apart = a[AXIS_Y] * (b[X] - a[X]) - a[AXIS_X] * (b[Y] - a[Y])

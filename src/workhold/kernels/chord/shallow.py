@@ -1,14 +1,15 @@
-"""Chords one of whose features is a shallow arc (see ``base.feature``), without numbers of the size of its
-radius.
+"""Chords between two features of which one or both are shallow arcs (see ``base.feature``), computed without
+numbers of the size of the radius.
 
 Let m be the arcs' middles, t their directions, k their curvatures and q = m_b - m_a. The law of cosines gives
 the cosine xi of the angle between both contact directions of a chord w,
 
     1 - xi = |t_a - t_b|^2 / 2 + (q - w) . (k_b t_a - k_a t_b) + k_a k_b |q - w|^2 / 2,
 
-so X^2 = (1 - xi) (1 + xi), and both are a constant and a multiple of cos(alpha - beta), beta the direction
-from centre to centre. Between a line of normal n and an arc X^2 = tau^2 - k e (2 nu + k e). Here nu and tau
-are the parts of t along and square to n, and e is how far the contact is from m along n.
+so X^2 = (1 - xi) (1 + xi). Each factor is the sum of a constant and a multiple of cos(alpha - beta), where
+beta is the direction from centre to centre. Between a line of normal n and an arc X^2 = tau^2 - k e (2 nu + k
+e). Here nu and tau are the components of t along n and square to n, and e is how far the contact is from m
+along n.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ Chord = tuple[float, float, float, float, float, float]
 
 @inner
 def compute_line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """Return ``evaluation.compute_line_to_arc`` for a shallow arc b.
+    """Return the chord w from line ``a`` to the shallow arc ``b``, in the form of
+    ``evaluation.compute_line_to_arc``.
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
     """
@@ -60,7 +62,8 @@ def compute_line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: fl
 
 @inner
 def compute_shallow_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float) -> Chord:
-    """Return ``evaluation.compute_arc_to_arc`` where one arc or both are shallow.
+    """Return the chord w from arc ``a`` to arc ``b``, one or both shallow, in the form of
+    ``evaluation.compute_arc_to_arc``.
 
     The tail lies where the circle of a meets the line on which both circles' equations agree. See
     ``base.feature`` for the layout of ``a`` and ``b``.
@@ -97,11 +100,10 @@ def split_direction(line: Array, arc: Array) -> tuple[float, float]:
 
 @inner
 def compute_tangent_offset(line: Array, arc: Array) -> float:
-    """Return e in mm of the tangency at a shallow arc's near side,
-    along the line's normal from the arc's middle.
+    """Return e in mm at the tangency of a line and a shallow arc, on the near side of the arc.
 
-    Its size is R tau^2 / (1 + |nu|). See ``base.feature`` for the layout of ``line`` and ``arc``. Symbols are
-    those of ``chord.shallow``.
+    e is measured along the line's normal from the arc's middle; its size is R tau^2 / (1 + |nu|). See
+    ``base.feature`` for the layout of ``line`` and ``arc``. Symbols are those of ``chord.shallow``.
     """
     along, across = split_direction(line, arc)
     off = arc[RADIUS] * across * across / (1.0 + abs(along))
@@ -110,10 +112,10 @@ def compute_tangent_offset(line: Array, arc: Array) -> float:
 
 @inner
 def is_turned(a: Array, b: Array, wx: float, wy: float) -> bool:
-    """Return whether a chord w fits between the whole lines or
-    circles of two features, one of them a shallow arc.
+    """Return whether a chord w fits between the whole lines or circles of two features, one of them a shallow
+    arc.
 
-    It does where X^2 is positive. See ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those
+    It fits where X^2 is positive. See ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those
     of ``chord.shallow``.
     """
     if a[IS_ARC] != 0.0 and b[IS_ARC] != 0.0:
@@ -131,10 +133,10 @@ def is_turned(a: Array, b: Array, wx: float, wy: float) -> bool:
 
 @inner
 def enclose_arcs_cosine(a: Array, b: Array, d: float) -> tuple[Interval, Interval, float, float]:
-    """Return near, far, swing and beta of the cosine xi between the contact directions on two arcs.
+    """Return four terms of the cosine xi of the angle between the contact directions on two arcs.
 
-    1 - xi = near - swing cos(alpha - beta), 1 + xi = far + swing cos(alpha - beta). See ``base.feature`` for
-    the layout of ``a`` and ``b``. Symbols are those of ``chord.shallow``.
+    1 - xi = near - swing cos(alpha - beta), and 1 + xi = far + swing cos(alpha - beta). See ``base.feature``
+    for the layout of ``a`` and ``b``. Symbols are those of ``chord.shallow``.
 
     Returns
     -------

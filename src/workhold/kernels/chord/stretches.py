@@ -75,7 +75,8 @@ ANYTHING = (-inf, inf)
 
 @inner
 def enclose_line_to_arc(a: Array, b: Array, wx: Interval, wy: Interval, branch: float) -> ChordBox:
-    """Return an enclosure of ``evaluation.compute_line_to_arc`` for all w in a box (wx, wy).
+    """Return an enclosure of the results of ``evaluation.compute_line_to_arc`` for all chords w in a box (wx,
+    wy).
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
     """
@@ -94,7 +95,8 @@ def enclose_line_to_arc(a: Array, b: Array, wx: Interval, wy: Interval, branch: 
 def enclose_arc_to_arc(
     a: Array, b: Array, wx: Interval, wy: Interval, branch: float, one_chord_apart: bool
 ) -> ChordBox:
-    """Return an enclosure of ``evaluation.compute_arc_to_arc`` for all w in a box (wx, wy).
+    """Return an enclosure of the results of ``evaluation.compute_arc_to_arc`` for all chords w in a box (wx,
+    wy).
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
     """
@@ -138,7 +140,8 @@ def enclose_line_to_line(a: Array, b: Array, wx: Interval, wy: Interval) -> Chor
 
 @inner
 def enclose_chord(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) -> ChordBox:
-    """Return an enclosure of ``evaluation.compute_chord_along`` for all w in a box (wx, wy).
+    """Return an enclosure of the results of ``evaluation.compute_chord_along`` for all chords w in a box (wx,
+    wy).
 
     See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
     """
@@ -161,10 +164,10 @@ def enclose_chord(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) 
 
 @inner
 def cut_to_side(turn: Interval, sign: float) -> Interval:
-    """Return an interval cut to non-negative numbers where ``sign``
-    is positive, else to non-positive numbers.
+    """Return the part of an interval with the sign ``sign``: its non-negative numbers if that is positive,
+    else the others.
 
-    It is a cross product known to keep its sign, 0 at a tangency.
+    The interval encloses a cross product that keeps its sign and is 0 at a tangency. 0 is in both parts.
     """
     if sign > 0.0:
         return (max(turn[0], 0.0), max(turn[1], 0.0))
@@ -210,7 +213,8 @@ def enclose_turn(a: Array, b: Array, d: float, low: float, high: float) -> Inter
 def enclose_center_motion_of_arcs(
     a: Array, b: Array, wx: Interval, wy: Interval, chord: ChordBox, turn_sign: float
 ) -> CenterMotion:
-    """Return :func:`enclose_center_motion` for a chord between two arcs whose contact directions nearly agree.
+    """Return the result of :func:`enclose_center_motion` for a chord between two arcs with nearly equal
+    contact directions.
 
     ``chord`` is its enclosure; the last two intervals, which are not bounded here, are infinite. See
     ``base.feature`` for the layout of ``a`` and ``b``.
@@ -242,7 +246,8 @@ def enclose_center_motion_of_arcs(
 def enclose_center_motion(
     a: Array, b: Array, curve: Array, low: float, high: float, turn_sign: float
 ) -> CenterMotion:
-    """Return enclosures over alpha in [low, high] of the terms of the instant centre's velocity P'.
+    """Return enclosures, over alpha in [low, high], of the terms that make up the instant centre's velocity
+    P'.
 
     See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are
     those of ``chord.stretches``.
@@ -256,7 +261,7 @@ def enclose_center_motion(
     Returns
     -------
     Intervals (X, x and y of X^3 P', X^3 P' . r_a, part of X^3 P' along r_a, part against r_b). Near a
-        coincidence P' itself is enclosed, X is 1, and what cannot be bounded is (-inf, inf)
+        coincidence P' itself is enclosed, X is given as 1, and terms that cannot be bounded are (-inf, inf)
     """
     unit, zero = (1.0, 1.0), (0.0, 0.0)
     if curve[COINCIDENCE] == CONCENTRIC:
@@ -311,10 +316,10 @@ def write_stretch(row: Array, a: Array, b: Array, curve: Array, low: float, high
     """Write the stretch over [low, high] to ``row`` (13,); return
     whether it is good enough not to be divided.
 
-    ``sign`` is that of X. The speed is good enough when it is of the order of that in the middle, so that a
-    shorter stretch would bound it no better. It also is when P moves no farther than ``MOST_MOTION`` chord
-    lengths. See ``chord.stretches`` for the layout of ``row``, ``base.feature`` for that of ``a`` and ``b``,
-    ``base.tables`` for that of ``curve``. Symbols are those of ``chord.stretches``.
+    ``sign`` is that of X. It is good enough in two cases: (a) the bound of the speed of P is of the order of
+    the speed in the middle, so that a shorter stretch would bound it no better; (b) P moves no farther than
+    ``MOST_MOTION`` chord lengths. See ``chord.stretches`` for the layout of ``row``, ``base.feature`` for
+    that of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are those of ``chord.stretches``.
     """
     turn, x, y, along, part_a, part_b = enclose_center_motion(a, b, curve, low, high, sign)
     row[STRETCH_HIGH], row[PARTS] = high, 0.0

@@ -91,33 +91,30 @@ class Hardware(NamedTuple):
 
 @inner
 def get_null_entry(clamp: Array, k: int, own: int) -> float:
-    """Return entry k (0 to 4) of a clamp's null vector: (a, 1, 0)
-    where ``own`` is 3, (a, 0, 1) where it is 4.
+    """Return entry k (0 to 4) of a clamp's null vector: (a, 1, 0) if ``own`` is 3, (a, 0, 1) if ``own`` is 4.
 
-    ``clamp`` is a (7,) row of ``Clamps.reals``; a is at its columns TAKEN. See ``contact.clamp_pairs`` for
-    the layout of ``clamp``.
+    ``clamp`` is a (7,) row of ``Clamps.reals``; the three numbers a are in its columns TAKEN. See
+    ``contact.clamp_pairs`` for the layout of ``clamp``.
     """
     return clamp[TAKEN + k] if k < 3 else (1.0 if k == own else 0.0)
 
 
 @inner
 def compute_closure_margin(one: Array, other: Array) -> tuple[float, float]:
-    """Return the closure margin of three locators and two clamps, and its lead.
+    """Return (closure margin, lead) of three locators and two clamps.
 
     ``one`` and ``other`` are (7,) clamp rows, of which only the columns TAKEN are read: a_1 and a_2, the
-    locators' forces per unit of each clamp's. A null vector holds forces of locators and clamps that balance:
-    (a_1, 1, 0), (a_2, 0, 1) and their combinations. See ``contact.clamp_pairs`` for the layout of ``one`` and
-    ``other``.
+    locators' forces per unit of each clamp's force. A null vector holds forces of locators and clamps that
+    balance: (a_1, 1, 0), (a_2, 0, 1) and their combinations.
 
     Returns
     -------
-    (largest least entry of null vectors scaled to sum 1, -1 where no null vector has a positive sum; the
-        lead)
+    (closure margin: the largest least entry of null vectors scaled to sum 1, or -1 where no null vector has a
+        positive sum; lead: the most by which the least entry of a null vector (1 - s) (a_1, 1, 0) + s (a_2,
+        0, 1) exceeds ``LEAST_CLOSURE`` times its sum)
 
-    The lead is the most by which the least entry of a null vector (1 - s) (a_1, 1, 0) + s (a_2, 0, 1) exceeds
-    ``LEAST_CLOSURE`` times its sum. Its sign decides whether the five close, and it is off by no more than
-        entries
-    of a_1 and a_2 are.
+    The sign of the lead decides whether the five close. The lead is off by no more than the entries of a_1
+        and a_2 are.
     """
     best, lead = -1.0, -inf
     for i in range(5):
@@ -147,10 +144,10 @@ def compute_closure_margin(one: Array, other: Array) -> tuple[float, float]:
 
 @inner
 def narrow_pressed_range(low: float, high: float, a: float, b: float) -> tuple[float, float]:
-    """Return (low, high) narrowed to the ratios t at which a locator
-    that carries a + b t is pressed (a + b t > 0).
+    """Return the part (low, high) of an open interval of ratios t in which a locator with the force a + b t
+    is pressed.
 
-    Where none is, low >= high.
+    A locator is pressed where a + b t > 0. Where it is pressed nowhere, low >= high.
     """
     if b > 0.0:
         low = max(low, -a / b)
@@ -163,11 +160,10 @@ def narrow_pressed_range(low: float, high: float, a: float, b: float) -> tuple[f
 
 @inner
 def find_ratio_range(one: Array, other: Array) -> tuple[float, float]:
-    """Return (low, high), the open interval of f2 / f1 in which all
-    three locators are pressed; low >= high for none.
+    """Return (low, high), the open interval of the ratio f2 / f1 in which all three locators are pressed.
 
-    ``one`` and ``other`` are (7,) rows of the clamps that push with forces f1 and f2. See
-    ``contact.clamp_pairs`` for the layout of ``one`` and ``other``.
+    ``one`` and ``other`` are (7,) rows of the clamps that push with forces f1 and f2; low >= high where there
+    is no such ratio. See ``contact.clamp_pairs`` for the layout of ``one`` and ``other``.
     """
     low, high = 0.0, inf
     for k in range(3):
@@ -179,11 +175,11 @@ def find_ratio_range(one: Array, other: Array) -> tuple[float, float]:
 
 @inner
 def measure_box_distance(one: Array, hole: Array, other: Array, other_hole: Array) -> float:
-    """Return the distance in mm between the pieces from the tip of each of two clamps to its hole.
+    """Return the distance in mm between the bounding boxes of two clamps, each reaching from its tip to its
+    hole.
 
-    The pieces are parallel to the axes; the distance is that of their bounding boxes. ``one`` and ``other``
-    are (7,) clamp rows, ``hole`` and ``other_hole`` (5,) hole rows. See ``contact.clamp_pairs`` for the
-    layout of ``one``, ``hole``, ``other`` and ``other_hole``.
+    ``one`` and ``other`` are (7,) clamp rows, ``hole`` and ``other_hole`` (5,) hole rows, see
+    :class:`Clamps`. Boxes are parallel to the plate's axes.
     """
     ax, ay, bx, by = one[TIP], one[TIP + 1], hole[HOLE_X], hole[HOLE_Y]
     cx, cy, dx, dy = other[TIP], other[TIP + 1], other_hole[HOLE_X], other_hole[HOLE_Y]
@@ -197,7 +193,8 @@ def widen_spread(clamps: Clamps, m: int, hole: Array, bolted: bool, out: IntArra
     """Widen ``out`` in place to hold clamp number ``m`` in a hole.
 
     ``out`` (4,) holds the least and largest column, then the least and largest row, of what stands on the
-    plate. Along its push, only a bolted clamp counts. See ``contact.clamp_pairs`` for the layout of ``hole``.
+    plate. Along the clamp's push, its hole counts only if ``bolted``. See ``contact.clamp_pairs`` for the
+    layout of ``hole``.
     """
     line = clamps.integers[m, LINE]
     if clamps.integers[m, DIRECTION] < ALONG_X:
@@ -281,10 +278,11 @@ def add_pair(out: Array, count: int, kind: int, i: int, j: int, seat: ClampedSea
 
 @inner
 def keep_best(out: Array, first: int, count: int) -> int:
-    """Reduce ``out[first:count]``, all pairs of one seat and kind, in
-    place to the best pair and the undecided ones.
+    """Reduce the rows ``first`` to ``count`` - 1 of ``out`` in place to the undecided pairs and the best
+    decided one.
 
-    The best pair's COUNT becomes the number of decided pairs. Return the new number of rows.
+    The rows are all pairs of one seat and kind. The best pair's column COUNT becomes the number of decided
+    pairs. Return the new number of rows.
     """
     pairs = 0
     freest, widest = -inf, -inf
@@ -332,11 +330,11 @@ def add_pairs_of_kind(out: Array, count: int, one: int, two: int, seat: ClampedS
 
 @inner
 def add_pairs(out: Array, count: int, half: bool, seat: ClampedSeat, every: bool) -> int:
-    """Append the pairs of a seat to ``out``, see :func:`write_pairs`;
-    return the new number of rows, -1 when it is full.
+    """Append the pairs of clamps of a seat to ``out``, see :func:`write_pairs`.
 
-    ``half`` tells whether the orientation is in the first half turn. Pairs of opposite directions are left
-    out elsewhere, as half a turn makes such a pair one of the same kind.
+    ``count`` rows are written already. Return the new number of rows, -1 when ``out`` is full. ``half`` tells
+    whether the orientation is in the first half turn: elsewhere, pairs of opposite directions are left out,
+    as half a turn makes of such a pair one of the same kind.
     """
     for one in range(4):
         for two in range(one, 4):
@@ -362,9 +360,8 @@ def list_pairs(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hard
     """
 
     def write(rows: int) -> Array | None:
-        """Write the pairs to an array with ``rows`` rows; return those written, None where there is
-        no room.
-        """
+        """Return the pairs, written to an array with room for ``rows`` rows; None where that is not enough
+        room."""
         out = np.empty((rows, PAIR_LENGTH))
         count = write_pairs(seats, halves, clamps, hardware, every, np.empty(4, np.int64), out)
         return None if count < 0 else out[:count].copy()

@@ -48,11 +48,11 @@ from workhold.kernels.chord.evaluation import find_parameter, measure_end_distan
 
 @inner
 def measure_edge_distance(row: Array, s: float) -> float:
-    """Return the distance in mm along a feature from the parameter s
-    to its nearer end that is not a tangent joint.
+    """Return the distance in mm along a feature from the parameter s to the nearer end, tangent joints not
+    counted.
 
-    Return inf where neither end is such, as on a whole circle. A contact may slide across a tangent joint.
-    See ``base.feature`` for the layout of ``row``.
+    A contact may slide across a joint at which two features meet tangentially. Return inf where both ends are
+    such joints, and on a whole circle. See ``base.feature`` for the layout of ``row``.
     """
     if row[IS_ARC] != 0.0 and row[HALF_EXTENT] >= pi:
         return inf
@@ -96,10 +96,10 @@ def write_contact_matrices(
     points : (N, P, 2) receives the peg centres in the part's frame about c, in mm.
     normals : (N, P, 2) receives the outward unit normals in the part's frame.
     ends : (N, P) receives the distances in mm along the features to their nearer ends.
-    edges : (N, P) receives the distances in mm along them to their nearer edges, see
-        :func:`measure_edge_distance`.
-    inverses : (N, 4, P) receives the inverses where P is 4; NaN, as are ends and edges, where there is none
-        or a face has no feature.
+    edges : (N, P) receives the distances in mm along the features to their nearer ends that are no tangent
+        joints, see :func:`measure_edge_distance`.
+    inverses : (N, 4, P) receives the inverses of the contact matrices where P is 4. ``inverses``, ``ends``
+        and ``edges`` become NaN where there is no inverse or a face has no feature.
     matrix : (P, 4) work space.
     """
     count = pegs.shape[1]

@@ -2,8 +2,10 @@
 
 The location error is the largest movement of a point of the silhouette when all pegs and faces are off by
 their tolerances. Here the movement is taken of a few points and along a few directions only, the probes. So
-it comes out too small, never too large. The movement of a probe is a sum over contacts, each with its error.
-Signs of errors are free, so the largest sum is that of the sizes:
+it comes out too small, never too large. The *effective* error is the location error times the largest of 1
+and ``Precision.doubts`` of the features touched. A *spot* is a short stretch of a feature (columns SPOT_...
+below), a *seat* the contacts of three locators that fix the pose. The movement of a probe is a sum over
+contacts, each with its error. Signs of errors are free, so the largest sum is that of the sizes:
 
     sum of peg |a_i| + sum over faces of face |sum of a_i at the face|.
 
@@ -79,10 +81,11 @@ def cross_rows(one: Array, two: Array, out: Array) -> None:
 
 @inner
 def probe_error(moves: Array, features: Array, count: int, precision: Precision, probe: int) -> float:
-    """Return the largest movement in mm of one probe over all signs of the errors of pegs and faces.
+    """Return the largest movement in mm of one probe when pegs and faces are off by their tolerances, with
+    any signs.
 
-    See :func:`bound_error` for ``moves``, ``features`` and ``count``; ``probe`` is the row of
-    ``precision.probes``.
+    A probe is a point of the silhouette with a direction; ``probe`` is its row in ``precision.probes``. See
+    :func:`bound_error` for ``moves``, ``features`` and ``count``.
     """
     total, probes, faces = 0.0, precision.probes, precision.faces
     x, y, turn = probes[probe, 0], probes[probe, 1], probes[probe, 2]
@@ -103,13 +106,14 @@ def probe_error(moves: Array, features: Array, count: int, precision: Precision,
 
 @inner
 def bound_error(moves: Array, features: Array, count: int, precision: Precision, enough: float) -> float:
-    """Return a lower bound in mm of the location error: the largest movement of any probe.
+    """Return a lower bound in mm of the location error: the largest movement of any probe in
+    ``precision.probes``.
 
-    A bound above ``enough`` is as good as any larger one.
+    The search for the largest ends at a movement above ``enough``.
 
     Parameters
     ----------
-    moves : (C, 3) movement of the part (x, y, turn times L) per unit error of each contact. Where it is
+    moves : (C, 3) movement of the part (x, y, turn times L) per unit error of each contact. If all moves are
         multiplied by a number, so is the result.
     features : (C,) index of the feature that each contact touches.
     count : C.
@@ -124,8 +128,10 @@ def bound_error(moves: Array, features: Array, count: int, precision: Precision,
 
 @inner
 def find_doubt(features: Array, count: int, precision: Precision) -> float:
-    """Return the largest of 1 and ``precision.doubts`` of the first
-    ``count`` features (C,), the factor on their errors.
+    """Return the factor on the location error of contacts on the first ``count`` of ``features`` (C,), at
+    least 1.
+
+    It is the largest of ``precision.doubts`` of these features.
     """
     doubt = 1.0
     for i in range(count):
@@ -135,10 +141,11 @@ def find_doubt(features: Array, count: int, precision: Precision) -> float:
 
 @inner
 def find_most_allowed(low: float, high: float, precision: Precision) -> float:
-    """Return the largest error of interest in mm at orientations from ``low`` to ``high`` in radians.
+    """Return the largest effective error in mm that is allowed at orientations from ``low`` to ``high`` in
+    radians.
 
-    It is ``precision.most`` where the range holds, or nearly holds, a multiple of a quarter turn, else
-    ``most_aslant``.
+    Two cases: (a) the range holds, or nearly holds, a multiple of a quarter turn: ``precision.most``; (b)
+    otherwise ``precision.most_aslant``.
     """
     quarter = TURN / 4.0
     if floor((high + SQUARE) / quarter) > floor((low - SQUARE) / quarter):
@@ -150,7 +157,7 @@ def find_most_allowed(low: float, high: float, precision: Precision) -> float:
 def is_beyond(
     moves: Array, features: Array, count: int, size: float, band: float, psi: float, precision: Precision
 ) -> bool:
-    """Return whether contacts certainly have a larger effective error than is of interest.
+    """Return whether contacts certainly have a larger effective error than is allowed.
 
     Parameters
     ----------
@@ -180,8 +187,8 @@ def is_two_and_two_beyond(
     precision: Precision,
     room: Array,
 ) -> bool:
-    """Return whether two pegs on each of two carriers certainly have
-    a larger effective error than is of interest.
+    """Return whether two pegs on each of two carriers certainly have a larger effective error than is
+    allowed.
 
     The moving carrier's travel is free, so its two pegs together constrain only one wrench, a combination
     without a component along the travel.
@@ -226,12 +233,11 @@ def write_spot(
     length: float,
     out: Array,
 ) -> None:
-    """Write a contact at (x, y) on a feature, known to ``radius`` in
-    mm, to ``out`` as the first five columns of a spot.
+    """Write a contact at (x, y), known to ``radius`` mm, as a spot to the first five columns of ``out``.
 
-    ``row`` is the feature numbered ``feature``; ``length`` is L in mm, by which moments are divided.
-    SPOT_GIVE becomes the contact's error for a location error of 1 that follows from the radius. See
-    ``base.feature`` for the layout of ``row``.
+    The contact is on the feature numbered ``feature``, whose row is ``row``; ``length`` is L in mm, by which
+    moments are divided. SPOT_GIVE becomes how far the contact's own error may be, for a location error of 1,
+    because of the radius. See ``base.feature`` for the layout of ``row``.
     """
     nx, ny = compute_outward_normal(row, x, y)
     out[SPOT_NX], out[SPOT_NY], out[SPOT_FEATURE] = nx, ny, feature
@@ -242,8 +248,7 @@ def write_spot(
 
 @inner
 def bound_normal_swing(row: Array, radius: float) -> float:
-    """Return by how many radians a contact's normal may be off when
-    the contact is known to ``radius`` in mm, 0 on a line.
+    """Return by how many radians the normal of a contact known to ``radius`` mm may be off; 0 on a line.
 
     See ``base.feature`` for the layout of ``row``.
     """
@@ -259,9 +264,8 @@ def bound_least_error(
 ) -> float:
     """Return a lower bound in mm of the effective error of every seat with contacts in three spots.
 
-    ``first``, ``second`` and ``third`` are spot rows, ``room`` is (4, 3) work space. A bound above ``enough``
-    is as good as any larger one. See ``contact.location_bounds`` for the layout of ``first``, ``second`` and
-    ``third``.
+    ``first``, ``second`` and ``third`` are spot rows, ``room`` is (4, 3) work space. The search for a good
+    bound ends at one above ``enough``. See the comment at SPOT_NX for the columns of a spot.
     """
     cross_rows(second, third, room[0])
     cross_rows(third, first, room[1])
@@ -295,20 +299,21 @@ def bound_least_error_of_four(
     numbers: Array,
     enough: float,
 ) -> float:
-    """Return a lower bound in mm of the effective error of every seat
-    of two and two pegs with contacts in four spots.
+    """Return a lower bound in mm of the effective error of every fixture of two standing and two moving pegs
+    with contacts in four spots.
 
-    See ``contact.location_bounds`` for the layout of ``first``, ``second``, ``third`` and ``fourth``.
+    See the comment at SPOT_NX for the columns of a spot.
 
     Parameters
     ----------
     first, second : spot rows of the standing pegs.
     third, fourth : spot rows of the moving pegs.
-    along : component along the travel of the normal at each moving peg.
-    extra : additional error of each moving peg's contact for a location error of 1, because of the travel.
+    along : for each moving peg, the component of its outward normal along the travel.
+    extra : for each moving peg, the additional error of its contact, per unit of location error, because of
+        the travel.
     room : (8, 3) work space.
     numbers : (4,) work space.
-    enough : a bound above this is as good as any larger one.
+    enough : the search for a good bound ends at one above this.
     """
     across, moves = room[3], room[4:]
     for n in range(3):
@@ -339,7 +344,7 @@ def bound_least_error_of_four(
 
 @inner
 def mark_triple(triples: ByteArray, a: int, b: int, c: int) -> None:
-    """Set ``triples`` to 1 at the indices a, b, c in every order."""
+    """Set ``triples`` to 1 at the indices (a, b, c) and at all their permutations."""
     triples[a, b, c] = triples[a, c, b] = 1
     triples[b, a, c] = triples[b, c, a] = 1
     triples[c, a, b] = triples[c, b, a] = 1
@@ -356,18 +361,18 @@ def join_near_spots(
     stack: IntMatrix,
     room: Matrix,
 ) -> None:
-    """Mark the pairs and triples of finest spots that locators with
-    an effective error up to ``most`` may touch.
+    """Mark the pairs and triples of finest spots that three locators may touch with an effective error up to
+    ``most`` mm.
 
-    See ``contact.location_bounds`` for the layout of ``spots``.
+    A finest spot is one that is not divided further. See the comment at SPOT_NX for the columns of ``spots``.
 
     Parameters
     ----------
-    spots : (S, 7) spots, each a stretch of a feature, with those that it is divided into further down; the
-        first ``roots`` rows are whole, in the order of features.
+    spots : (S, 7) spots. The first ``roots`` rows are those that belong to no larger spot, in the order of
+        features; the spots that a spot is divided into stand in later rows.
     most : effective error in mm.
-    near : ``joined`` and ``triples`` receive 1 for finest spots that may be touched together; other entries
-        stay.
+    near : its arrays ``joined`` and ``triples`` receive 1 for finest spots that may be touched together;
+        other entries stay as they are.
     counts : (2,) to which the numbers of triples examined and of triples ruled out are added.
     stack : (MOST_WAITING, 3) work space.
     room : (4, 3) work space.
@@ -406,10 +411,10 @@ def join_near_spots(
 
 @inner
 def get_part(spots: Array, spot: int, number: int) -> int:
-    """Return the index of child ``number`` of a spot, one of those that
-    it is divided into; a finest spot is its own child.
+    """Return the row of a spot's child ``number``: of one of the spots that it is divided into.
 
-    See ``contact.location_bounds`` for the layout of ``spots``.
+    A finest spot, which is not divided, is its own child. See the comment at SPOT_NX for the columns of
+    ``spots``.
     """
     return int(spots[spot, SPOT_FIRST]) + number if spots[spot, SPOT_COUNT] > 0.0 else spot
 
@@ -418,8 +423,8 @@ def get_part(spots: Array, spot: int, number: int) -> int:
 def find_least_middle_error(spots: Matrix, roots: int, precision: Precision, room: Matrix) -> float:
     """Return the least effective error in mm of three contacts in the middles of the first ``roots`` spots.
 
-    Two or three of the contacts may be in one spot. Return inf when no three fix the pose. ``room`` is (4, 3)
-    work space. See ``contact.location_bounds`` for the layout of ``spots``.
+    Contacts may share a spot. Return inf when no three fix the pose. ``room`` is (4, 3) work space. See the
+    comment at SPOT_NX for the columns of ``spots``.
     """
     least = np.inf
     for i in range(roots):

@@ -45,20 +45,21 @@ def find_largest_value(x: float, y: float, load: Array) -> float:
 
 @inner
 def find_largest_reaction(inverse: Array, length: float, loads: Array) -> float:
-    """Return the largest peg force in N over all loads, each with the
-    least clamping that leaves no force negative.
+    """Return the largest peg force in N over all loads, each resisted with the least clamping force that
+    suffices.
 
-    Forces that balance a load are f = f0 + k lambda for any k. The smallest k without a negative force is the
-    largest of -f0_i / lambda_i, so f_j is the largest over i of f0_j - f0_i lambda_j / lambda_i. This is a
-    sinusoid in the load's direction for each i. Ranking by this force: R. C. Brost, K. Y. Goldberg, *A
-    complete algorithm for designing planar fixtures using modular components*, IEEE Transactions on Robotics
-    and Automation 12 (1996). See ``contact.quality`` for the layout of ``loads``.
+    Clamping suffices when no peg force is negative. Forces that balance a load are f = f0 + k lambda for any
+    k. The smallest k without a negative force is the largest of -f0_i / lambda_i, so f_j is the largest over
+    i of f0_j - f0_i lambda_j / lambda_i. This is a sinusoid in the load's direction for each i. Ranking by
+    this force: R. C. Brost, K. Y. Goldberg, *A complete algorithm for designing planar fixtures using modular
+    components*, IEEE Transactions on Robotics and Automation 12 (1996). See ``contact.quality`` for the
+    layout of ``loads``.
 
     Parameters
     ----------
     inverse : (4, P) of the contact matrix, see ``kernels.contact.contact_matrix``.
     length : L in mm, by which moments are divided.
-    loads : (M, 11) rows; 0 is returned for none.
+    loads : (M, 11) rows; the result is 0 where M is 0.
     """
     most = 0.0
     for m in range(len(loads)):
@@ -94,10 +95,11 @@ def compute_moment(points: Array, normals: Array, k: int, length: float) -> floa
 
 @inner
 def measure_plane_distance(points: Array, normals: Array, length: float, a: int, b: int, c: int) -> float:
-    """Return the distance from the origin to the plane of wrenches a,
-    b, c where it is a facet of the hull of all five.
+    """Return the distance from the origin to the plane through wrenches a, b and c, if a facet of their hull
+    lies in it.
 
-    Return inf where it is no facet, or where the three lie on a line. ``points`` and ``normals`` are (5, 2).
+    The hull is the convex hull of all five wrenches. Return inf where no facet lies in the plane, or where
+    the three wrenches lie on a line. ``points`` and ``normals`` are (5, 2), a, b and c are indices.
     """
     ax, ay, az = normals[a, 0], normals[a, 1], compute_moment(points, normals, a, length)
     ux, uy, uz = normals[b, 0] - ax, normals[b, 1] - ay, compute_moment(points, normals, b, length) - az
@@ -121,8 +123,10 @@ def measure_plane_distance(points: Array, normals: Array, length: float, a: int,
 
 @inner
 def compute_wrench_radius_of_five(points: Array, normals: Array, length: float) -> float:
-    """Return the distance from the origin to the nearest facet plane of
-    the hull of five wrenches, see :func:`compute_wrench_radius`.
+    """Return the distance from the origin to the nearest facet plane of the convex hull of five wrenches; no
+    unit.
+
+    Arguments are those of :func:`compute_wrench_radius` with five rows.
     """
     least = inf
     for a in range(5):
@@ -164,8 +168,8 @@ def compute_wrench_radius(points: Array, normals: Array, length: float) -> float
 
 @inner
 def write_generators(inverse: Array, faces: IntArray, peg: float, face: float, out: Array) -> int:
-    """Write the part's movement for each independent error at its
-    tolerance to ``out``, and return their number.
+    """Write the part's movement for each independent error, as large as its tolerance, to ``out``; return
+    their number.
 
     ``out`` (10, 3) has the columns x and y in mm and turn times L. Each movement may have either sign. A face
     that one peg touches adds its tolerance to the peg's; a face that several pegs touch moves them alike, as
@@ -282,8 +286,9 @@ def compute_location_error(
 
 @inner
 def measure_farthest_point(corners: Array, arcs: Array) -> float:
-    """Return a distance in mm from c that no point of the silhouette exceeds, see
-    :func:`find_farthest_movement`.
+    """Return an upper bound in mm of the distance from c to any point of the silhouette.
+
+    See :func:`find_farthest_movement` for ``corners`` and ``arcs``.
     """
     most = 0.0
     for k in range(len(corners)):
@@ -319,7 +324,7 @@ def write_figures(
     ----------
     points, normals, ends, edges, inverses : see ``kernels.contact.contact_matrix.write_contact_matrices``.
     faces : (N, P) number of the face that each peg touches; P is 4, or 5 with two clamps.
-    length, tolerances, corners, arcs : see :func:`location_error`.
+    length, tolerances, corners, arcs : see :func:`compute_location_error`.
     loads : (M, 11) rows, see ``kernels.contact.quality``.
     out : (N, 7 or more) receives the figures; NaN for the load reaction without loads, and for all where the
         contact matrix has no inverse.

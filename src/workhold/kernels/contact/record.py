@@ -73,7 +73,7 @@ RECORD_LENGTH = 19
 
 @inner
 def make_angle(psi: float) -> Angle:
-    """Return (psi, cos psi, sin psi) of an orientation psi in radians."""
+    """Return (psi, cos psi, sin psi) for an orientation psi in radians."""
     return (psi, cos(psi), sin(psi))
 
 
@@ -135,11 +135,11 @@ WORK_LENGTH = 19
 
 @inner
 def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
-    """Copy a record (19,) to the work space ``w``: its unknowns, and
-    for each peg whether it moves and its lattice place in mm.
+    """Copy a record (19,) to the work space ``w``: its unknowns, which pegs move, and the pegs' lattice
+    places in mm.
 
-    They are the rows UNKNOWNS, MOVING, STEP_X and STEP_Y. See ``contact.record`` for the layout of ``record``
-    and ``w``.
+    They go to the rows UNKNOWNS, MOVING, STEP_X and STEP_Y. See ``contact.record`` for the layout of
+    ``record`` and ``w``.
     """
     w[UNKNOWNS, 0], w[UNKNOWNS, 1] = record[PSI], record[TAIL_X]
     w[UNKNOWNS, 2], w[UNKNOWNS, 3] = record[TAIL_Y], record[SEPARATION]

@@ -49,7 +49,7 @@ def cross(ax: float, ay: float, bx: float, by: float) -> float:
 
 @inner
 def write_minors(points: Array, normals: Array, length: float, out: Array) -> float:
-    """Write the signed 3x3 minors of four wrenches, a null vector that is not scaled, to ``out``.
+    """Write the signed 3x3 minors of four wrenches to ``out``: a null vector of the wrenches, not scaled.
 
     Parameters
     ----------
@@ -107,10 +107,10 @@ def compute_outward_normal(row: Array, x: float, y: float) -> tuple[float, float
 
 @inner
 def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> bool:
-    """Return whether a contact at (x, y), known to ``radius`` in mm,
-    may lie on its feature, ``margin`` mm from its ends.
+    """Return whether a contact at (x, y), known to ``radius`` mm, may lie on its feature and ``margin`` mm
+    from its ends.
 
-    See ``base.feature`` for the layout of ``row``.
+    Coordinates are in mm. See ``base.feature`` for the layout of ``row``.
     """
     return measure_end_slack(row, x, y) >= margin - 1.2 * radius
 
@@ -119,9 +119,8 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
 def hold_along_lines(pegs: Array, count: int, rows: Array) -> bool:
     """Return whether three of the first ``count`` pegs (3 or 4) touch parallel lines.
 
-    Their three forces then have one direction, and nothing balances the fourth force. ``pegs`` are (4, 6),
-    ``rows`` those of the features. See ``contact.record`` for the layout of ``pegs``, ``base.feature`` for
-    that of ``rows``.
+    The forces of these three then have one direction, and nothing balances the fourth force. ``pegs`` (4, 6)
+    are in the layout of ``contact.record``, ``rows`` are the rows of all features (see ``base.feature``).
     """
     for k in range(count):
         three = True
@@ -239,7 +238,7 @@ def share_a_carrier(one: IntArray, two: IntArray, limits: Limits) -> bool:
     """Return whether the heads of two chords with a common tail can be different holes of one carrier.
 
     ``one`` and ``two`` are the whole numbers (7,) of the chords' curves. The columns of tail and heads may
-    differ by ``limits.most_column_steps``. See ``base.tables`` for the layout of ``one`` and ``two``.
+    differ by at most ``limits.most_column_steps``. See ``base.tables`` for the layout of ``one`` and ``two``.
     """
     k, m = one[COLUMN_STEP], two[COLUMN_STEP]
     if k == m and one[ROW_STEP] == two[ROW_STEP]:

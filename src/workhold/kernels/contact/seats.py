@@ -1,13 +1,14 @@
-r"""Seats of three locators: numbers by which they are grouped, and what no pair of clamps at one exceeds.
+r"""Seats of three locators: numbers by which contacts are grouped into seats, and bounds that no pair of
+clamps at a seat exceeds.
 
 Contacts of three locators are grouped by seat, whatever the direction of the clamp. The holes of the locators
-become one number of 64 bits: that two triples agree only puts them together. The place of the part beside the
-holes becomes one number, too.
+become one number of 64 bits. Triples of holes with equal numbers are only compared further, so it does no
+harm where different triples agree by chance. The place of the part beside the holes becomes one number, too.
 
 Bounds of pairs: let the locators carry b_1 f_1 + b_2 f_2, each entry known to within e. Where a force is
-larger, no condition that a locator be pressed is stricter. So the interval of f_2 / f_1 for b + e holds the
-true one, and that for b - e lies in it. At a ratio t the share of a peg of f_1 + f_2 is
-(b_1 + b_2 t) / (1 + t), monotone in t. So over an interval no peg carries less than at one of its ends.
+larger, the condition that a locator be pressed is never stricter. So the interval of f_2 / f_1 for b + e
+holds the true one, and the interval for b - e lies in it. At a ratio t a peg carries the share (b_1 + b_2 t)
+/ (1 + t) of f_1 + f_2, monotone in t. So over an interval no peg carries less than at one of the ends.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def write_seat_numbers(
     theta: Vector,
     places: Vector,
 ) -> None:
-    """Write numbers by which contacts of three locators are grouped into seats.
+    """Write, for each record of three locators, three numbers by which records are grouped into seats.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ def write_seat_numbers(
     turn : (3,) cosine, sine and angle in radians by which the frame is turned on the plate, a multiple of a
         quarter turn.
     pitch : (2,) of the holes in mm, along x and y of the plate.
-    start : the angle in radians from which orientations are counted.
+    start : the orientation in radians that counts as 0.
     holes : (N,) receives a hash of the holes of the locators, the same wherever these are on the plate.
     theta : (N,) receives the orientations of the part, minus ``start``, in [0, 2 pi).
     places : (N,) receives one number in mm for the position of the part beside the lowest holes: x +
@@ -91,12 +92,12 @@ FREE, WIDE = 90.0, 0.2
 
 @inner
 def find_widened_range(one: Array, other: Array, off: float, off_other: float) -> tuple[float, float]:
-    """Return (low, high), the interval of f2 / f1 in which three
-    locators are pressed if their forces are increased.
+    """Return (low, high), the interval of f2 / f1 in which three locators are pressed if their forces are
+    increased.
 
-    ``one`` and ``other`` are (5,) rows of forces per unit of f1 and f2. To each force of a locator ``off`` or
-    ``off_other`` is added. No ratio is left where low >= high. See ``contact.seats`` for the layout of
-    ``one`` and ``other``.
+    ``one`` and ``other`` are (5,) rows of forces per unit of f1 and f2, see :func:`write_pair_bounds`.
+    ``off`` is added to each locator's force in ``one``, ``off_other`` to each in ``other``. Where there is no
+    such ratio, low >= high.
     """
     low, high = 0.0, inf
     for k in range(3):
@@ -106,11 +107,11 @@ def find_widened_range(one: Array, other: Array, off: float, off_other: float) -
 
 @inner
 def bound_amplification(one: Array, other: Array, first: float, last: float) -> float:
-    """Return a lower bound of the largest peg force relative to f1 +
-    f2, for angles of (f1, f2) between two in radians.
+    """Return a lower bound of (largest peg force) / (f1 + f2) over a range of ratios of two clamps' forces f1
+    and f2.
 
-    ``one`` and ``other`` are (5,) rows of forces per unit of f1 and f2; the angles run from ``first`` to
-    ``last``, in [0, pi / 2]. See ``contact.seats`` for the layout of ``one`` and ``other``.
+    The range is given as angles of the vector (f1, f2), from ``first`` to ``last`` in radians, within [0, pi
+    / 2]. ``one`` and ``other`` are (5,) rows of forces per unit of f1 and f2, see :func:`write_pair_bounds`.
     """
     c, s, d, t = cos(first), sin(first), cos(last), sin(last)
     most = max(
@@ -125,12 +126,11 @@ def bound_amplification(one: Array, other: Array, first: float, last: float) -> 
 
 @inner
 def widen(out: Array, one: Array, other: Array, work: Array, wants_margin: bool) -> None:
-    """Widen the bounds ``out`` (3,) of a seat in place to hold those
-    of a pair of clamps, if the pair may close.
+    """Widen the bounds ``out`` (3,) of a seat in place so that they also hold for one pair of clamps.
 
-    ``one`` and ``other`` are (5,) rows of forces; where they are not known (OFF is inf), the bounds are the
-    best possible. ``out`` has the columns FREEDOM, MARGIN, AMPLIFICATION; ``work`` is (2, 3) work space. See
-    ``contact.seats`` for the layout of ``one`` and ``other``.
+    A pair that cannot close changes nothing. ``one`` and ``other`` are the clamps' (5,) rows of forces, see
+    :func:`write_pair_bounds`; where they are not known (OFF is inf), the bounds become the best possible
+    ones. ``out`` has the columns FREEDOM, MARGIN, AMPLIFICATION; ``work`` is (2, 3) work space.
     """
     e, f = one[OFF], other[OFF]
     if e == inf or f == inf:
@@ -165,21 +165,19 @@ def write_pair_bounds(
     out: Matrix,
     work: Matrix,
 ) -> None:
-    """Write, for each of S seats, bounds that no pair of its clamps exceeds.
-
-    See ``contact.seats`` for the layout of ``forces``.
+    """Write, for each of S seats, bounds of three figures that hold for every pair of the seat's clamps.
 
     Parameters
     ----------
     starts : (S + 1,) index of the first clamp of each seat, then M.
     directions : (M,) number of each clamp's direction, 0 to 3.
-    forces : (M, 5) per unit of the clamp's own force: LOCATOR (3), the locators' forces, FACE, that on its
-        face, and OFF, their error bound, inf where they are not known.
-    asked : (4, 4) 1 for pairs of directions that are asked for, else 0.
+    forces : (M, 5) forces per unit of the clamp's own force, with columns LOCATOR (3): of the locators, FACE:
+        of the clamp on its face, OFF: error bound of these forces, inf where they are not known.
+    asked : (4, 4) 1 for each pair of directions of clamps that is asked for, else 0.
     wants_margin : whether to bound closure margins by the pairs; if not, the bound is ``WIDE`` for each seat
         with a pair.
     out : (S, 3) receives the largest clamp freedom in degrees, the largest closure margin and the least clamp
-        amplification of a pair. They are -inf, -inf and inf where none can close.
+        amplification of a pair. They are -inf, -inf and inf where no pair can close.
     work : (2, 3) work space.
     """
     for n in range(len(starts) - 1):

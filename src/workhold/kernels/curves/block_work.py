@@ -1,4 +1,4 @@
-"""Inputs and work space of the kernels of one block of a search, and how these list what they find.
+"""Inputs and work space of the kernels of one block (a share of a search), and how the kernels list fixtures.
 
 Memory is made by the caller, once for many blocks. A kernel that lists fixtures and has no room for all of
 them says so, and is called again with more: :data:`NO_ROOM_FOR_RECORDS`, :data:`NO_ROOM_FOR_PIECES`.
@@ -67,7 +67,7 @@ class BlockSpace(NamedTuple):
 
     Parameters
     ----------
-    stack, roots : see ``roots.crossings``.
+    stack, roots : see ``roots.write_crossings``.
     pegs : (4, 6) pegs in place, see ``kernels.contact.record``.
     contacts, null : see ``contact.rules.is_fixture``.
     triple : (8, 3), see ``moving_pegs.write_triple``.
@@ -184,7 +184,8 @@ def make_block_work(
 
 @inner
 def is_among(feature: int, touched: tuple[int, int]) -> bool:
-    """Return whether ``touched[0] <= feature < touched[1]``: whether pegs of a carrier touch that feature."""
+    """Return whether ``touched[0] <= feature < touched[1]``: whether a feature is in the range ``touched`` of
+    a carrier."""
     return touched[0] <= feature < touched[1]
 
 
@@ -254,17 +255,16 @@ def place_triple(
 
 @inner
 def limits_errors(work: BlockWork) -> bool:
-    """Return whether only fixtures up to some location error are sought (and contacts are not just
-    counted).
-    """
+    """Return whether only fixtures up to a given location error are sought, and contacts are not just
+    counted."""
     return not work.counting and work.features.precision.most < inf
 
 
 @inner
 def is_far_off(angle: Angle, work: BlockWork) -> bool:
-    """Return whether the fixture of two and two pegs in place certainly has too large a location error.
+    """Return whether the fixture of the two and two pegs in place certainly has too large a location error.
 
-    It must be too large whichever carrier stands still, as a half turn may swap the carriers.
+    The error must be too large whichever carrier stands still, as a half turn may swap the carriers.
     ``work.contacts`` must hold what ``is_fixture`` has just written there. False where location errors are
     not limited.
     """

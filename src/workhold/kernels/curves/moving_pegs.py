@@ -1,6 +1,7 @@
-"""Where rows of holes meet features, and one moving peg tried for three standing pegs in place.
+"""Moving pegs tried with three standing pegs: places where rows of holes meet features.
 
-The workpiece stands still there, and each row of the moving carrier meets each feature in at most two points.
+With the three standing pegs in place the workpiece stands still, and each row of the moving carrier meets
+each feature in at most two points.
 """
 
 from __future__ import annotations
@@ -84,10 +85,11 @@ def find_height_range(row: Array, ax: float, ay: float) -> tuple[float, float]:
 
 @inner
 def compute_height_above_middle(row: Array, parameter: float, along: float, across: float) -> float:
-    """Return the height in mm of an arc's point at a parameter above the arc's middle.
+    """Return the height in mm of an arc's point above the arc's middle; the point is given by its parameter
+    in radians.
 
-    The direction of height has the component ``along`` on the arc's axis and ``across`` square to it. See
-    ``base.feature`` for the layout of ``row``.
+    The direction of height is a unit vector: ``along`` is its component on the arc's axis, ``across`` its
+    component square to the axis. See ``base.feature`` for the layout of ``row``.
     """
     sine = sin(parameter / 2.0)
     return row[RADIUS] * (sin(parameter) * across - 2.0 * sine * sine * along)
@@ -134,7 +136,7 @@ def intersect_at_height(
 def intersect_shallow_at_height(
     row: Array, ax: float, ay: float, height: float, error: float, side: float
 ) -> tuple[bool, float, float, float]:
-    """Return the result of :func:`intersect_at_height` for a shallow arc.
+    """Return the result of :func:`intersect_at_height` for a shallow arc; parameters are the same.
 
     See ``base.feature`` for the layout of ``row``.
     """
@@ -153,7 +155,8 @@ def intersect_shallow_at_height(
 
 @inner
 def write_triple(triple: Array, pegs: Array, cx: float, cy: float, features: Array, length: float) -> None:
-    """Write to ``triple`` what is needed to test moving pegs against the three standing pegs ``pegs[:3]``.
+    """Write the numbers to ``triple`` with which moving pegs are tested against the three standing pegs
+    ``pegs[:3]``.
 
     The rows (8, 3), of which the last three are work space: let w_i = (n_i, t_i) be the wrenches of the
     standing pegs and D their determinant. Rows 0 to 2 hold the cross products of the other two wrenches,
@@ -276,21 +279,20 @@ def find_closing_heights(
 
 @inner
 def faces_away(row: Array, cx: float, cy: float, clamping: float, doubt: float) -> bool:
-    """Return whether a moving peg cannot clamp on a feature because
-    that is straight and faces the peg's push direction.
+    """Return whether a moving peg cannot clamp on a feature because the feature is a line that faces the
+    wrong way.
 
-    ``clamping`` is 1 or -1 as in ``Limits``; ``doubt`` is in radians. See ``base.feature`` for the layout of
-    ``row``.
+    (cx, cy) is the direction of the pegs' x axis in the part's frame, known to ``doubt`` radians;
+    ``clamping`` is 1 or -1 as in ``Limits``. False for arcs. See ``base.feature`` for the layout of ``row``.
     """
     return row[IS_ARC] == 0.0 and clamping * (row[AXIS_Y] * cx - row[AXIS_X] * cy) < -HAIR - doubt
 
 
 @inner
 def are_locators_beyond(angle: Angle, work: BlockWork) -> bool:
-    """Return whether the three standing pegs in place certainly have
-    a larger location error than is of interest.
+    """Return whether the three standing pegs in place certainly have a larger location error than is allowed.
 
-    ``work.triple`` must be theirs, see :func:`write_triple`.
+    ``work.triple`` must hold the rows that :func:`write_triple` makes of these pegs.
     """
     triple, length = work.triple, work.limits.wrench_length
     band = bound_minor_error(triple[3, 2], triple[3, 1], length)

@@ -1,4 +1,9 @@
-"""Spots that contacts known to a disc may touch, and whether locators of interest may touch them."""
+"""Spots (numbered stretches of features) that contacts known to a disc may touch, and whether two or three
+locators may touch them together.
+
+Pairs and triples of spots are ruled out beforehand where every seat with contacts there would have too large
+a location error (``contact.location_bounds``).
+"""
 
 from __future__ import annotations
 
@@ -59,11 +64,12 @@ def find_spots(
 def write_piece_spots(
     piece: Array, tail_spot: Array, head_spot: Array, features: Features, curves: Curves, length: float
 ) -> tuple[Disc, Disc]:
-    """Write the contacts of a piece's tail and head as spots to
-    ``tail_spot`` and ``head_spot``; return their discs.
+    """Write the contacts of a piece's tail and head as spots to ``tail_spot`` and ``head_spot``; return their
+    discs.
 
-    Each disc (x, y, radius) in mm holds the contact over the whole piece. ``length`` is L in mm, by which
-    moments are divided. See ``base.tables`` for the layout of ``piece``.
+    The first returned disc (x, y, radius), in mm, holds the tail over the whole piece, the second holds the
+    head. The first five columns of a spot are written, see ``contact.location_bounds.write_spot``. ``length``
+    is L in mm, by which moments are divided. See ``base.tables`` for the layout of ``piece``.
     """
     number, given = int(piece[CURVE]), features.precision
     curve, tail, head = curves.reals[number], curves.integers[number, TAIL], curves.integers[number, HEAD]
@@ -86,10 +92,11 @@ def may_join(
     tail: Disc,
     head: Disc,
 ) -> bool:
-    """Return whether contacts in two discs may be those of two locators of interest.
+    """Return whether two locators with contacts in the discs ``tail`` and ``head`` are not ruled out by
+    ``near``.
 
-    ``tail`` is on the feature ``a`` with the number ``ends[0]``, ``head`` on ``b`` with the number
-    ``ends[1]``. See ``base.feature`` for the layout of ``a`` and ``b``.
+    The tail touches the feature ``a``, whose number is ``ends[0]``, the head ``b``, whose number is
+    ``ends[1]``. Discs are (x, y, radius) in mm. See ``base.feature`` for the layout of ``a`` and ``b``.
     """
     first, end = find_spots(a, ends[0], near, tail[0], tail[1], tail[2])
     begin, last = find_spots(b, ends[1], near, head[0], head[1], head[2])
@@ -98,9 +105,10 @@ def may_join(
 
 @inner
 def may_be_three(near: NearSpots, tail: int, head: int, third: int) -> bool:
-    """Return whether the spots of a tail, a head and a third contact may be those of locators of interest.
+    """Return whether three locators on the spots numbered ``tail``, ``head`` and ``third`` are not ruled out
+    by ``near``.
 
-    Where triples are not kept, only the pairs with the tail are looked up.
+    Where ``near`` has no triples, only the pairs (tail, head) and (tail, third) are looked up.
     """
     if near.triples.shape[0] > 0:
         return near.triples[tail, head, third] != 0
@@ -109,9 +117,7 @@ def may_be_three(near: NearSpots, tail: int, head: int, third: int) -> bool:
 
 @inner
 def is_any_joined(near: NearSpots, first: int, end: int, begin: int, last: int) -> bool:
-    """Return whether a spot in [first, end) and a spot in [begin,
-    last) may be those of two locators of interest.
-    """
+    """Return whether ``near`` allows two locators on a spot in [first, end) and a spot in [begin, last)."""
     for i in range(first, end):
         for j in range(begin, last):
             if near.joined[i, j] != 0:

@@ -1,4 +1,5 @@
-"""Bounds of a piece of a chord curve: discs that hold tails, edges, and directions of forces.
+"""Bounds of a piece of a chord curve: discs that hold its tails, the chords at its ends, and directions of
+forces.
 
 Glossary
 --------
@@ -87,11 +88,11 @@ def bound_tail_error(curve: Array, state: State, reach: float) -> float:
     """Return how far in mm the exact tail may be from the computed
     one ``state`` if psi may be ``reach`` radians off.
 
-    ``state`` is that of ``chord.evaluation.compute_chord_state``. Return inf too near a tangency, where the following
-    does not bound it. With d the chord's length, the tail moves at a speed of at most d / |X|. X^2 changes at
-    a rate of at most 4 d kappa, here by no more than a quarter of itself. So the speed stays below 1.16 d /
-    |X|, and the theorem of ``chord.evaluation`` holds with h <= 1 / 3. By it the tail is off by no more than
-    3 eta / |X|. See ``base.tables`` for the layout of ``curve``.
+    ``state`` is that of ``chord.evaluation.compute_chord_state``. Return inf too near a tangency, where the
+    following bound does not hold. With d the chord's length, the tail moves at a speed of at most d / |X|.
+    X^2 changes at a rate of at most 4 d kappa, here by no more than a quarter of itself. So the speed stays
+    below 1.16 d / |X|, and the theorem of ``chord.evaluation`` holds with h <= 1 / 3. By it the tail is off
+    by no more than 3 eta / |X|. See ``base.tables`` for the layout of ``curve``.
     """
     eta, d = curve[BACKWARD_ERROR], curve[LENGTH]
     kappa = curve[KAPPA]
@@ -104,8 +105,9 @@ def bound_tail_error(curve: Array, state: State, reach: float) -> float:
 
 @inner
 def bound_root_error(square: float, doubt: float) -> float:
-    """Return an error bound of the square root of a number that may
-    be ``doubt`` off; negative numbers count as 0.
+    """Return a bound of the error of the square root of ``square``, a number that may be off by ``doubt``.
+
+    Negative numbers count as 0.
     """
     if square <= 0.0:
         return sqrt(doubt)
@@ -114,11 +116,12 @@ def bound_root_error(square: float, doubt: float) -> float:
 
 @inner
 def bound_arc_tail_error(a: Array, b: Array, state: State, e: float, eta: float) -> float:
-    """Return how far in mm a chord's tail on arc ``a`` may be from
-    the computed one, with the head on arc ``b``.
+    """Return how far in mm a chord's tail on arc ``a`` may be from the computed tail, with the head on arc
+    ``b``.
 
-    The chord is known to ``e`` mm, the tail besides only to ``eta`` mm; ``state`` is the computed chord. See
-    ``base.feature`` for the layout of ``a`` and ``b``. Symbols are those of ``chord.evaluation``.
+    ``state`` is the computed chord. The direction of the exact chord may move its head by up to ``e`` mm
+    against the tail; the computed contacts are off their arcs by up to ``eta`` mm. See ``base.feature`` for
+    the layout of ``a`` and ``b``. Symbols are those of ``chord.evaluation``.
     """
     gap = hypot(a[RADIUS] * state[2] - b[RADIUS] * state[4], a[RADIUS] * state[3] - b[RADIUS] * state[5])
     if gap <= 2.0 * e:
@@ -194,9 +197,9 @@ def compute_tail(
     """Return (x, y, radius) in mm of a chord's tail: the computed
     centre, and how far the exact one may be from it.
 
-    The orientation psi, given with its cosine and sine, is off by up to ``reach`` radians. As tails that
-    count are on their feature, the radius never exceeds about the feature's size. See ``base.feature`` for
-    the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
+    The orientation psi, given with its cosine and sine, is off by up to ``reach`` radians. As only tails on
+    their feature matter, the radius is cut to about the feature's size. See ``base.feature`` for the layout
+    of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
     """
     state = compute_chord_state(a, b, curve, psi, cosine, sine)
     radius = bound_tail_error(curve, state, reach)
@@ -219,8 +222,8 @@ def compute_tail(
 def enclose_value(
     a: Array, b: Array, curve: Array, psi: float, reach: float, mode: float
 ) -> tuple[float, float]:
-    """Return a middle value of a curve for orientations within
-    ``reach`` of psi, and how far its values may be from it.
+    """Return (value, doubt): the values of a curve within ``reach`` radians of psi differ from ``value`` by
+    at most ``doubt``.
 
     ``mode`` is HEIGHT (values in mm) or POSITION (parameter of the tail on ``a``, mm or radians). See
     ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
@@ -242,10 +245,10 @@ HAIR = 1e-6
 
 @inner
 def clear_edges(kept: Array) -> None:
-    """Set ``kept`` (M, 15) to NaN: no curve has a last edge yet.
+    """Set ``kept`` (M, 15) to NaN, which means that no edge of any of M member curves is written yet.
 
-    A row holds the last edge (14) that was written of a member curve, then its psi. The edges serve
-    neighbouring cells, in ascending order and in one mode.
+    A row of ``kept`` holds the edge (14 columns) that was written last for a member curve, then the edge's
+    psi. Neighbouring cells, worked on in ascending order and in one mode, share these edges.
     """
     for k in range(kept.shape[0]):
         for n in range(kept.shape[1]):
@@ -283,14 +286,15 @@ def write_edge(
 
 @inner
 def is_farther(edge: Array, at: float, right: float, speed: float, farthest: float) -> bool:
-    """Return whether all tails of a curve from psi ``at`` to psi
-    ``right`` are certainly right of x = ``farthest`` in mm.
+    """Return whether all tails of a curve, for psi from ``at`` to ``right``, are certainly right of x =
+    ``farthest`` mm.
 
-    ``edge`` is that at psi ``at``; ``speed`` bounds that of the instant centre in between, in mm per radian.
+    ``edge`` is the curve's edge at psi = ``at``; ``speed`` bounds how fast the instant centre P moves between
+    ``at`` and ``right``, in mm per radian.
 
-    The place along x has a slope of at most |P|, and |P| grows by no more than the speed. The test allows at
-    least the slack of a piece's own bound of its place (see ``pieces.write_steady``), so it leaves out
-    nothing that the piece's bound would keep. See ``base.tables`` for the layout of ``edge``. Symbols are
+    The tail's place along x has a slope of at most |P|, and |P| grows by no more than the speed. The test
+    allows at least the slack of a piece's own bound of its place (see ``pieces.write_steady``), so it leaves
+    out nothing that the piece's bound would keep. See ``base.tables`` for the layout of ``edge``. Symbols are
     those of ``chord.evaluation``.
     """
     width = right - at
@@ -313,12 +317,12 @@ def project_direction(x: float, y: float) -> float:
 
 @inner
 def find_force_range(ax: float, ay: float, bx: float, by: float, doubt: float) -> tuple[float, float]:
-    """Return (low, high), the encoded directions with positive x
-    between two directions; (1, -1) when there are none.
+    """Return (low, high), the range of encoded directions with positive x between two directions; (1, -1) for
+    none.
 
-    The directions (ax, ay) and (bx, by) are unit vectors known to ``doubt`` radians; see :func:`front` for
-    the encoding. Where they are nearly opposite, so that it is in doubt which side is "between", return
-    (-1, 1), all directions.
+    The directions (ax, ay) and (bx, by) are unit vectors known to ``doubt`` radians; see
+    :func:`project_direction` for the encoding. Where they are nearly opposite, so that it is in doubt which
+    side is "between", return (-1, 1), all directions.
     """
     turn = ax * by - ay * bx
     if ax * bx + ay * by < 0.0 and abs(turn) <= doubt + DIRECTION_HAIR:
@@ -338,8 +342,10 @@ def find_force_range(ax: float, ay: float, bx: float, by: float, doubt: float) -
 def find_shared_force_range(
     ax: float, ay: float, bx: float, by: float, share: float, doubt: float
 ) -> tuple[float, float]:
-    """Return :func:`find_force_range` of sums of two unit vectors in which
-    neither has less than ``share`` times the other's part.
+    """Return the encoded range (low, high) of the directions of sums p a + q b of two unit vectors a and b.
+
+    Of the non-negative factors p and q, neither is less than ``share`` times the other; a = (ax, ay) and b =
+    (bx, by) are known to ``doubt`` radians. See :func:`find_force_range` for the encoding, and for no range.
     """
     if share <= 0.0:
         return find_force_range(ax, ay, bx, by, doubt)
@@ -350,7 +356,8 @@ def find_shared_force_range(
 
 @inner
 def is_sum_long(edge: Array, share: float) -> bool:
-    """Return whether one normal of an edge plus ``share`` times its other normal is at least 0.5 long.
+    """Return whether the sum of one normal of an edge and ``share`` times its other normal is at least 0.5
+    long.
 
     See ``base.tables`` for the layout of ``edge``.
     """
@@ -379,13 +386,13 @@ def write_force_directions(row: Array, low: Array, high: Array, share: float, tu
     radians how far a normal sags from its interpolation between the ends.
 
     Inside a curve X keeps its sign, so the normals do not pass through opposite directions. The lowest and
-    the highest direction between the forces are where one of them is at an end of the piece, or square to x.
-    So the hull of both ends is given, widened by as much as directions may sag between them. With a ``share``
-    (see :func:`find_shared_force_range`) the directions are of sums p of two normals. Normals turn at a rate that
+    the highest direction occur where a force is at an end of the piece, or square to x. So the hull of both
+    ends is given, widened by as much as directions may sag between them. With a ``share`` (see
+    :func:`find_shared_force_range`) the directions are of sums p of two normals. Normals turn at a rate that
     changes by at most 8 turned / w^2, so w times the rate is at most the turn from end to end and 4 turned.
-    Then abs(p'') w^2 / 8 is at most the square of that over 4 and 2 turned, by less than 0.17. So p, nowhere
-    shorter than 0.4, is seen under 2.6 times that. See ``base.tables`` for the layout of ``row``, ``low`` and
-    ``high``. Symbols are those of ``chord.evaluation``.
+    Then p is off its interpolation by abs(p'') w^2 / 8, which is at most turn^2 / 4 + 2 turned. As p is
+    nowhere shorter than 0.4, its direction is off by at most 2.6 times that. See ``base.tables`` for the
+    layout of ``row``, ``low`` and ``high``. Symbols are those of ``chord.evaluation``.
     """
     write_hull(row, low, high, 0.0, turned)
     turn = bound_normal_turn(low, high) + 4.0 * turned
@@ -406,10 +413,11 @@ def write_force_directions(row: Array, low: Array, high: Array, share: float, tu
 
 @inner
 def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) -> None:
-    """Write the hull of the force directions at both ends of a piece,
-    widened for a ``doubt`` in radians, to ``row``.
+    """Write the smallest range that holds the force directions at both ends of a piece, widened by ``doubt``
+    radians.
 
-    The columns are RIGHTWARD_LOW to LEFTWARD_HIGH; (2, -2) stands for no directions, see
+    It goes to the columns RIGHTWARD_LOW to LEFTWARD_HIGH of ``row``; (2, -2) where there are no directions.
+    ``low`` and ``high`` are the edges of the piece; ``share`` is described at
     :func:`find_shared_force_range`. See ``base.tables`` for the layout of ``row``, ``low`` and ``high``.
     """
     at_ends, between = 2.0 * doubt, 4.0 * doubt + DIRECTION_HAIR
@@ -428,7 +436,8 @@ def write_hull(row: Array, low: Array, high: Array, share: float, doubt: float) 
 
 @inner
 def find_edge_force_range(edge: Array, sign: float, share: float, doubt: float) -> tuple[float, float]:
-    """Return :func:`find_shared_force_range` of the normals of an edge, both multiplied by ``sign``.
+    """Return the result of :func:`find_shared_force_range` for the two normals of an edge, both multiplied by
+    ``sign``.
 
     See ``base.tables`` for the layout of ``edge``.
     """
@@ -440,7 +449,7 @@ def find_edge_force_range(edge: Array, sign: float, share: float, doubt: float) 
 
 @inner
 def write_all_force_directions(row: Array) -> None:
-    """Set the force directions in the row of a piece to all directions.
+    """Set the columns RIGHTWARD_LOW to LEFTWARD_HIGH of a piece's row to the range of all directions.
 
     See ``base.tables`` for the layout of ``row``.
     """

@@ -82,8 +82,8 @@ MOST_TURN = 1.0
 def enclose_second_derivative_beside(
     stretch: Array, a: Array, d: float, reach: float, low: float, high: float, mode: float
 ) -> tuple[float, float]:
-    """Return (low, high) bounds of a curve's second derivative beside
-    a tangency; one of them or both are infinite.
+    """Return (low, high) bounds of a curve's second derivative beside a tangency; at least one of them is
+    infinite.
 
     X^3 h'' = -x . X^3 P' - X^2 C_b y . r_a - X^3 y . u, with |C_b| <= d and |u| <= ``reach``; X^3 s'' = -X^3
     P' . r_a. See ``base.feature`` for the layout of ``a``.
@@ -122,9 +122,10 @@ def enclose_second_derivative_beside(
 
 @inner
 def find_largest_part(one_x: float, one_y: float, two_x: float, two_y: float) -> float:
-    """Return the largest absolute x component of a unit vector that turns evenly from ``one`` to ``two``.
+    """Return the largest absolute x component of a unit vector while it turns at a constant rate between two
+    directions.
 
-    It turns by less than half a turn.
+    It turns from (one_x, one_y) to (two_x, two_y), by less than half a turn.
     """
     if one_y * two_y <= 0.0:
         return 1.0
@@ -143,11 +144,12 @@ def write_steady(
     share: float,
     mode: float,
 ) -> None:
-    """Write the enclosures of a piece whose instant centre moves at a bounded speed to its row (24,).
+    """Write the enclosures of a piece along which the instant centre has a bounded speed to the piece's row
+    (24,).
 
-    They are the columns from SECOND_DERIVATIVE_LOW on that follow from the values and slopes at both ends,
-    which must be written already; force directions only in the mode HEIGHT. See ``base.tables`` for the
-    layout of ``row``, ``curve``, ``low`` and ``high``, ``base.feature`` for that of ``a``.
+    They are the columns from SECOND_DERIVATIVE_LOW on; force directions are written in the mode HEIGHT only.
+    The values and slopes at both ends must be in ``row`` already. See ``base.tables`` for the layout of
+    ``row``, ``curve``, ``low`` and ``high``, ``base.feature`` for that of ``a``.
 
     Parameters
     ----------
@@ -209,12 +211,12 @@ def write_beside(
     tangent_high: float,
     mode: float,
 ) -> None:
-    """Write the enclosures of a piece beside a tangency, and values
-    and slopes at a tangent end, to its row (24,).
+    """Write the enclosures of a piece beside a tangency to the piece's row (24,), and value and slope at the
+    tangency.
 
-    ``tangent_low`` and ``tangent_high`` are the errors in radians of the ends; the tangency is at an end
-    whose error is not 0. See ``base.tables`` for the layout of ``row`` and ``curve``, ``base.feature`` for
-    that of ``a`` and ``b``, ``chord.stretches`` for that of ``stretch``.
+    ``tangent_low`` and ``tangent_high`` are the errors in radians of the low and the high end where that end
+    is the tangency, and 0 where it is not. See ``base.tables`` for the layout of ``row`` and ``curve``,
+    ``base.feature`` for that of ``a`` and ``b``, ``chord.stretches`` for that of ``stretch``.
     """
     middle = (row[LOW] + row[HIGH]) / 2.0
     # The end at a tangency may lie a hair beyond.
@@ -253,10 +255,11 @@ def write_beside(
 def compute_end_slope(
     second_derivative_low: float, second_derivative_high: float, side: float
 ) -> tuple[float, float]:
-    """Return the slope at a tangency and its error.
+    """Return (slope, bound of its error) at an end of a piece that is a tangency.
 
-    The slope is inf or -inf (error 0), with the sign that the second derivative determines, or (0, inf) where
-    that sign is unknown. ``side`` is -1 at the low end of the piece and 1 at the high end.
+    Two cases: (a) the bounds of the second derivative have one sign: the slope is inf or -inf, the error 0;
+    (b) otherwise: (0, inf). ``side`` is -1 where the tangency is the low end of the piece, 1 where it is the
+    high end.
     """
     if second_derivative_low >= 0.0:
         return (side * inf, 0.0)

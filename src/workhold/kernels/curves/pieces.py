@@ -92,7 +92,8 @@ class PieceCell(NamedTuple):
 
 @inner
 def unwrap_angle(value: float, near: float) -> float:
-    """Return an angle in radians shifted by whole turns to be nearest to another, ``near``."""
+    """Return the angle ``value`` + 2 pi k, with whole k, that is nearest to the angle ``near``, in
+    radians."""
     return value + TURN * floor((near - value) / TURN + 0.5)
 
 
@@ -202,10 +203,11 @@ def add_pieces(
 
 @inner
 def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
-    """Shift the positions at both ends of a piece on a whole circle
-    in place, to the turn of the positions in between.
+    """Shift the positions at both ends of a piece on a whole circle in place by whole turns, to join those in
+    between.
 
-    See ``base.tables`` for the layout of ``row`` and ``curve``, ``base.feature`` for that of ``a`` and ``b``.
+    Where a position is at the circle's seam, its parameter may be a turn off. See ``base.tables`` for the
+    layout of ``row`` and ``curve``, ``base.feature`` for that of ``a`` and ``b``.
     """
     width = row[HIGH] - row[LOW]
     for k in range(2):
@@ -273,8 +275,8 @@ def write_pieces(
     members : (M,) indices of the curves to consider, ascending.
     features : (F, 10) rows.
     pitch_x : column pitch in mm.
-    least_margin : the smallest closure margin of interest. Of four forces that sum to 1, none less than m,
-        each is at least m / (1 - 3 m) of any other.
+    least_margin : the smallest closure margin that a fixture may have. Of four forces that sum to 1, none
+        less than m, each is at least m / (1 - 3 m) of any other.
     mode : ``HEIGHT`` or ``POSITION``, the value of the curves.
     farthest : pieces may be left out whose rightmost peg stands farther right than this, in mm.
     kept : (M, 15) of the members, see ``piece_bounds.clear_edges``.

@@ -1,12 +1,16 @@
-"""Where two chord curves cross: roots of f = (second curve) - (first curve) - offset, modulo a period.
+"""Orientations at which two chord curves cross: where f = (second curve) - (first curve) is offset + k
+period, k whole.
 
-Over the common range of two pieces the slope of f is enclosed by the pieces' slopes and their errors. Where
-the enclosure has one sign, f is monotone and its values at both ends determine how many targets it can take,
-each at most once. Where it has not, the range is dropped if no target lies between the bounds of f, and split
-otherwise. Nothing is sampled. A target that the errors leave in doubt counts as taken: what comes of it is
-decided by those who examine the contacts there.
+Glossary: a *target* is such a number offset + k period. A *span* is a range of orientations psi in radians
+that is still to be examined.
 
-Every root is given with a radius: the exact root, if there is one, is no farther from it. A range
+Over the common range of two pieces the slope of f is enclosed by the pieces' slopes and their errors. Two
+cases: (a) the enclosure has one sign: f is monotone, and its values at both ends determine how many targets
+it can take, each at most once; (b) otherwise the range is dropped if no target lies between the bounds of f,
+and split if one does. Nothing is sampled. A target that the errors leave in doubt counts as taken: the
+contacts there are examined later.
+
+Every root is given with a radius: the exact root, if there is one, is no farther from the root given. A range
 too narrow to split in which f may take a target, monotone or not, is given as one root with half the range as
 its radius. So is every range where two curves run on top of each other.
 """
@@ -69,8 +73,12 @@ ROUNDINGS = 4.0 * 1.2e-16
 def evaluate_at_angle(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float, float, float]:
-    """Return value and slope of a curve of the table at an orientation, whose cosine and sine two curves
-    share, and bounds of their errors (that of the slope may be infinite)."""
+    """Return (value, slope, bound of the value's error, bound of the slope's error) of a curve at psi.
+
+    ``curve`` is the curve's index in ``curves``; psi is in radians, ``cosine`` and ``sine`` are given to be
+    computed once for two curves. ``mode`` and units are those of ``evaluate_curve``. The bound of the slope's
+    error may be inf.
+    """
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     row = curves.reals[curve]
     state = compute_chord_state(a, b, row, psi, cosine, sine)
@@ -84,8 +92,12 @@ def evaluate_at_angle(
 def guess_root(
     low: float, high: float, f_low: float, f_high: float, slope_low: float, slope_high: float
 ) -> float:
-    """Return where a monotone function from f_low to f_high is 0: the cubic through the ends of its inverse, or the
-    straight line where its slopes vary too much for that."""
+    """Return an estimate of the zero in [low, high] of a monotone function, from its values and slopes at
+    both ends.
+
+    It is the value at 0 of the cubic that interpolates the inverse function, or the zero of the straight line
+    between the ends where the slopes differ too much from that line's.
+    """
     width, rise = high - low, f_high - f_low
     along = -f_low / rise
     one, two = rise / (width * slope_low), rise / (width * slope_high)
@@ -109,13 +121,23 @@ def solve(
     target: float,
     start: float,
 ) -> tuple[float, float]:
-    """The orientation at which a monotone f takes a target: Newton steps from ``start``, kept inside the
-    bracket.
+    """Return the orientation at which a monotone f takes a target, by Newton's method kept inside a bracket.
+
+    Here f = (curve ``two``) - (curve ``one``), without an offset.
+
+    Parameters
+    ----------
+    low, high : bracket of psi in radians.
+    f_low, f_high : values of f at both.
+    one, two : indices of the curves in ``curves``.
+    mode : value of the curves, see ``evaluate_curve``.
+    target : value that f is to take.
+    start : psi to begin with.
 
     Returns
     -------
-    (psi, bound of how far f is from the target there, in mm or radians); the nearer end where the target is
-    not bracketed
+    (psi, bound of how far f is from the target there, in mm or radians). Where the target is not between
+        f_low and f_high, psi is the end of the bracket at which f is nearer to it.
     """
     rising = f_high > f_low
     before = high - low
@@ -154,7 +176,11 @@ def solve(
 
 @inner
 def find_targets(low: float, high: float, offset: float, period: float) -> tuple[int, int]:
-    """Return the first and last k with offset + k period in a closed range; a period of 0 stands for k = 0 alone."""
+    """Return the first and the last whole k with offset + k period in [low, high]; first > last where there
+    is none.
+
+    With a period of 0, only k = 0 is considered.
+    """
     if period == 0.0:
         return (0, 0) if low <= offset <= high else (1, 0)
     return (int(ceil((low - offset) / period)), int(floor((high - offset) / period)))
@@ -164,7 +190,11 @@ def find_targets(low: float, high: float, offset: float, period: float) -> tuple
 def bound_by_disc(
     low: float, high: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float]:
-    """Return bounds of a curve's values over a range from a disc that holds its chords, whatever its slopes."""
+    """Return (low, high) bounds of a curve's values over the range [low, high] of psi, whatever its slopes.
+
+    They follow from a disc that holds the tails of all chords of the range; ``curve`` is an index into
+    ``curves``.
+    """
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     middle, reach = low + (high - low) / 2.0, (high - low) / 2.0 + SAME
     value, radius = enclose_value(a, b, curves.reals[curve], middle, reach, mode)
@@ -173,15 +203,17 @@ def bound_by_disc(
 
 @inner
 def interpolate_value(piece: Array, psi: float) -> float:
-    """Return a piece's value, interpolated linearly."""
+    """Return a piece's value at psi, interpolated linearly between the values at its ends."""
     along = (psi - piece[LOW]) / (piece[HIGH] - piece[LOW])
     return piece[VALUE_LOW] + along * (piece[VALUE_HIGH] - piece[VALUE_LOW])
 
 
 @inner
 def bound_sag(piece: Array) -> float:
-    """Return how far a steady piece may be from its linear interpolation, by its second derivative and by the errors
-    at its ends."""
+    """Return how far a steady piece may be from its linear interpolation, in the unit of its value.
+
+    It follows from the second derivative and from the errors of the values at both ends.
+    """
     width = piece[HIGH] - piece[LOW]
     return piece[SECOND_DERIVATIVE_HIGH] * width * width / 8.0 + max(
         piece[VALUE_ERROR_LOW], piece[VALUE_ERROR_HIGH]
@@ -190,7 +222,11 @@ def bound_sag(piece: Array) -> float:
 
 @inner
 def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
-    """Whether f may take a target, as seen from the ends of two steady pieces alone."""
+    """Return whether two steady pieces may cross: whether f may take a target offset + k period in their
+    common range.
+
+    Only the values at the ends of the range and the pieces' second derivatives are used.
+    """
     low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
     doubt = bound_sag(first) + bound_sag(second) + HAIR
     f_low = interpolate_value(second, low) - interpolate_value(first, low)
@@ -200,7 +236,7 @@ def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
 
 
 class CurvePoint(NamedTuple):
-    """A curve at one orientation: its value and slope, and bounds of their errors."""
+    """Value and slope of a curve at one orientation, and bounds of their errors."""
 
     value: float
     slope: float
@@ -209,7 +245,7 @@ class CurvePoint(NamedTuple):
 
 
 class Span(NamedTuple):
-    """A range of orientations, and both curves at its ends."""
+    """Range of orientations in radians, and both curves (one, two) at both ends (low, high)."""
 
     low: float
     high: float
@@ -220,7 +256,7 @@ class Span(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """What is asked of two pieces, see :func:`write_crossings`."""
+    """Arguments of :func:`write_crossings`, and the indices ``one`` and ``two`` of both pieces' curves."""
 
     first: Array
     second: Array
@@ -234,7 +270,7 @@ class Crossing(NamedTuple):
 
 
 class Slopes(NamedTuple):
-    """Bounds of the slopes of both curves over a span."""
+    """Lower and upper bounds of the slopes of both curves over a span."""
 
     one_low: float
     one_high: float
@@ -244,20 +280,20 @@ class Slopes(NamedTuple):
 
 @inner
 def write_point(row: Array, column: int, point: CurvePoint) -> None:
-    """Write a point to four columns of a row."""
+    """Write a point to the four columns of a row from ``column`` on."""
     row[column], row[column + 1] = point.value, point.slope
     row[column + 2], row[column + 3] = point.error, point.slope_error
 
 
 @inner
 def read_point(row: Array, column: int) -> CurvePoint:
-    """Return the point in four columns of a row."""
+    """Return the point that :func:`write_point` has written from ``column`` on."""
     return CurvePoint(row[column], row[column + 1], row[column + 2], row[column + 3])
 
 
 @inner
 def write_span(row: Array, span: Span) -> None:
-    """Write a span to a (18,) row of the stack."""
+    """Write a span to a row (18,) of the stack."""
     row[0], row[1] = span.low, span.high
     write_point(row, 2, span.one_low)
     write_point(row, 6, span.two_low)
@@ -267,7 +303,7 @@ def write_span(row: Array, span: Span) -> None:
 
 @inner
 def read_span(row: Array) -> Span:
-    """Return the span in a (18,) row of the stack."""
+    """Return the span that :func:`write_span` has written to a row (18,) of the stack."""
     return Span(
         row[0], row[1], read_point(row, 2), read_point(row, 6), read_point(row, 10), read_point(row, 14)
     )
@@ -277,23 +313,27 @@ def read_span(row: Array) -> Span:
 def evaluate_point(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> CurvePoint:
-    """Return a curve at an orientation of known cosine and sine."""
+    """Return the curve with the index ``curve`` at psi, see :func:`evaluate_at_angle`."""
     value, slope, error, slope_error = evaluate_at_angle(psi, cosine, sine, curve, features, curves, mode)
     return CurvePoint(value, slope, error, slope_error)
 
 
 @inner
 def is_inside(psi: float, end: float, slope: float) -> bool:
-    """Return whether an orientation is not an end of a piece.
+    """Return whether psi differs from the end ``end`` of a piece.
 
-    The end at a tangency, known to no better, counts within rounding.
+    An end with an infinite ``slope`` is a tangency, known to rounding only: psi within ``SAME`` of it counts
+    as the end.
     """
     return psi != end and not (isinf(slope) and abs(psi - end) <= SAME)
 
 
 @inner
 def make_point_of_piece(psi: float, piece: Array, at_low: bool, asked: Crossing) -> CurvePoint:
-    """Return a piece's curve at an orientation, which may be the low or the high end of the piece."""
+    """Return a piece's curve at psi: the values stored in the piece where psi is its end, else computed ones.
+
+    ``at_low`` tells which end is meant: the low or the high one.
+    """
     end = piece[LOW] if at_low else piece[HIGH]
     point = (
         CurvePoint(piece[VALUE_LOW], piece[SLOPE_LOW], piece[VALUE_ERROR_LOW], piece[SLOPE_ERROR_LOW])
@@ -311,7 +351,8 @@ def make_point_of_piece(psi: float, piece: Array, at_low: bool, asked: Crossing)
 
 @inner
 def bound_slopes(span: Span, first: Array, second: Array) -> Slopes:
-    """Return bounds of the slopes of two pieces over a span, errors included."""
+    """Return bounds of the slopes of two curves over a span, widened by their errors; ``first``, ``second``
+    are pieces."""
     width = span.high - span.low
     one_low, one_high = enclose_slope(
         span.one_low.slope,
@@ -336,8 +377,11 @@ def bound_slopes(span: Span, first: Array, second: Array) -> Slopes:
 def write_monotone_roots(
     span: Span, slopes: Slopes, error: float, asked: Crossing, roots: Array, found: int
 ) -> int:
-    """Write the roots over a span in which f is monotone, after the first so many; return their new number,
-    -1 when they do not fit."""
+    """Write a root for each target that f may take over a span in which f is monotone.
+
+    ``found`` roots are written to ``roots`` already. Return the new number of roots, or -1 when they do not
+    fit. ``error`` is a bound of the error of f at the ends of the span.
+    """
     f_low = span.two_low.value - span.one_low.value
     f_high = span.two_high.value - span.one_high.value
     lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
@@ -380,7 +424,11 @@ def write_monotone_roots(
 def bound_span(
     span: Span, slopes: Slopes, error: float, splits: int, asked: Crossing
 ) -> tuple[float, float, float]:
-    """Return bounds of f over a span, and the width in radians below which it is split no further."""
+    """Return (low bound of f, high bound of f, width in radians below which the span is not split any more).
+
+    ``error`` is a bound of the error of f at the ends of the span, ``splits`` the number of splits made so
+    far.
+    """
     low, high, width = span.low, span.high, span.high - span.low
     bottom1, top1 = bound_values(
         span.one_low.value, span.one_high.value, slopes.one_low, slopes.one_high, width
@@ -415,8 +463,10 @@ def bound_span(
 
 @inner
 def is_vague(span: Span, slopes: Slopes, error: float) -> bool:
-    """Return whether errors are the larger part of what is known over a span, so that splitting gains
-    nothing."""
+    """Return whether splitting a span would gain nothing, as its bounds come mostly from errors.
+
+    ``error`` is a bound of the error of f at the ends of the span.
+    """
     lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
     one = max(span.one_low.slope_error, span.one_high.slope_error)
     two = max(span.two_low.slope_error, span.two_high.slope_error)
@@ -426,8 +476,12 @@ def is_vague(span: Span, slopes: Slopes, error: float) -> bool:
 
 @inner
 def write_wide_roots(span: Span, first: int, last: int, roots: Array, found: int) -> int:
-    """Write a root for each of some targets, with the whole span as its range; return as
-    :func:`write_monotone_roots` does."""
+    """Write one root for each target from number ``first`` to ``last``, in the middle of a span, with half of
+    it as radius.
+
+    ``found`` roots are written to ``roots`` already. Return the new number of roots, or -1 when they do not
+    fit.
+    """
     if last - first >= roots.shape[0] - found:
         return -1
     width = span.high - span.low
@@ -440,7 +494,8 @@ def write_wide_roots(span: Span, first: int, last: int, roots: Array, found: int
 
 @inner
 def find_split_point(span: Span) -> float:
-    """Return where a span is split: nearer to an end at which a slope is infinite."""
+    """Return psi at which to split a span: its middle, or a quarter of its width from an end with an infinite
+    slope."""
     low, high = span.low, span.high
     width = high - low
     if isinf(span.one_low.slope) or isinf(span.two_low.slope):
@@ -463,20 +518,24 @@ def write_crossings(
     stack: Array,
     roots: Array,
 ) -> int:
-    """Write all orientations in the common range of two pieces at which f may be a target.
+    """Write the orientations in the common range of two pieces at which their curves may cross to ``roots``.
+
+    The curves cross where (second curve) - (first curve) is a target offset + k period.
 
     Parameters
     ----------
-    first, second : (24,) pieces.
+    first, second : (24,) pieces, see ``base.tables``.
     mode : which value of the curves is compared, see ``evaluate_curve``.
-    offset, period : targets are offset + k period for whole k; a period of 0 allows k = 0 only.
-    flat : crossings at which the slope of f is no steeper than this are of no interest, and may be left out.
-    stack, roots : (STACK_DEPTH, STACK_LENGTH) and (MOST_ROOTS, 3) work space.
+    offset, period : targets are offset + k period for all whole k; only k = 0 where the period is 0.
+    flat : crossings at which the difference of the curves has a slope of this size or less may be left out.
+    stack : (STACK_DEPTH, STACK_LENGTH) work space.
+    roots : (MOST_ROOTS, 3) receives ROOT_PSI, ROOT_RADIUS (both in radians) and MULTIPLE (k) of each
+        crossing.
 
     Returns
     -------
     int
-        How many roots are written to ``roots``, or -1 when they do not fit.
+    Number of roots written to ``roots``, or -1 when they do not fit.
     """
     low, high = max(first[LOW], second[LOW]), min(first[HIGH], second[HIGH])
     if not low < high:

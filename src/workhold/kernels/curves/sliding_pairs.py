@@ -2,8 +2,8 @@
 
 Two pegs on parallel lines, or on arcs of equal radius whose centres lie exactly one chord apart, fix the
 orientation. The workpiece can still slide along the lines or around the arcs, and the other pegs stop it.
-Such a chord is not a curve over the orientation: it exists at one alone, and is met with the other chords by
-evaluating those there.
+Such a chord exists at one orientation alone, so it is no curve over the orientation. Its fixtures are found
+by evaluating the other chords at that orientation.
 
 Two sliding pairs at one orientation leave the workpiece a freedom that the contacts do not resist, so they
 never make a fixture together. Nor does a sliding pair whose contacts share one line of action.
@@ -85,10 +85,11 @@ MOST_SLIDES = 4
 
 @inner
 def write_line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Write the sliding pairs of a chord of length d between two
-    parallel lines to ``out``; return their number, 0 to 2.
+    """Write the sliding pairs of a chord of length d mm between two parallel lines to ``out``; return their
+    number.
 
-    See :func:`write_sliding_pairs` for the columns. See ``base.feature`` for the layout of ``a`` and ``b``.
+    There are 0 to 2. ``a`` and ``b`` are the rows of the lines (see ``base.feature``); see
+    :func:`write_sliding_pairs` for ``out``.
     """
     nx, ny = a[AXIS_Y], -a[AXIS_X]
     cosine = (nx * (b[X] - a[X]) + ny * (b[Y] - a[Y])) / d
@@ -112,11 +113,10 @@ def write_line_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
 
 @inner
 def write_arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Write the sliding pairs of a chord between equal arcs whose
-    centres are one chord apart; return their number.
+    """Write the sliding pairs of a chord of length d mm between two arcs to ``out``; return their number.
 
-    See :func:`write_sliding_pairs` for the columns of ``out``. Other arcs have none. See ``base.feature`` for
-    the layout of ``a`` and ``b``.
+    There are none unless the arcs have equal radii and centres d apart. ``a`` and ``b`` are the rows of the
+    arcs (see ``base.feature``); see :func:`write_sliding_pairs` for ``out``.
     """
     if not are_one_chord_apart(a, b, d):
         return 0
@@ -140,11 +140,11 @@ def write_arc_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
 
 @inner
 def write_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
-    """Write the sliding pairs of a chord of length d mm from feature
-    a to feature b to ``out``; return their number.
+    """Write the sliding pairs of a chord of length d mm to ``out``; return their number.
 
-    ``out`` is (MOST_SLIDES, 3). Columns SLIDE_FROM, SLIDE_TO, DIRECTION: lowest and highest parameter of the
-    tail on a, alpha in radians. See ``base.feature`` for the layout of ``a`` and ``b``.
+    The chord's tail is on feature ``a``, its head on feature ``b`` (rows, see ``base.feature``). ``out`` is
+    (MOST_SLIDES, 3) with columns SLIDE_FROM and SLIDE_TO (lowest and highest parameter of the tail on ``a``)
+    and DIRECTION (alpha of the chord in radians).
     """
     count = 0
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -157,11 +157,11 @@ def write_sliding_pairs(a: Array, b: Array, d: float, out: Array) -> int:
 
 @inner
 def wrap_into_range(curve: int, psi: float, reach: float, reals: Array) -> tuple[bool, float]:
-    """Return whether a curve may exist at an orientation, and psi
-    shifted by whole turns and clamped into its range.
+    """Return (whether a curve may exist at psi, psi shifted by whole turns and clamped into the curve's
+    range).
 
-    ``curve`` is an index into ``reals``; psi is known to ``reach`` radians. The slivers around a coincidence
-    that ranges leave out count as inside. See ``base.tables`` for the layout of ``reals``.
+    ``curve`` is an index into ``reals`` (see ``base.tables``). Psi, in radians, is known to ``reach``
+    radians. The narrow gaps that ranges leave around a coincidence count as part of the range.
     """
     low, high = reals[curve, FROM] - reals[curve, SHIFT], reals[curve, TO] - reals[curve, SHIFT]
     inside = psi + TURN * ceil((low - SLIVER - reach - psi) / TURN)
@@ -179,9 +179,10 @@ def bound_orientation_error(a: Array, b: Array, sliding_pair: Array) -> float:
 
     Let two arcs have centres a misfit m from one chord apart, and radii that differ by r. The chord whose
     contacts lie in the direction phi from the centres' line is then (r + m cos phi) / (d sin phi) off. That
-    is no more than stated where its lines of action are 15 degrees from the chord or more. Nearer to the
-    chord this holds with the share of the closure that such contacts leave the others. See ``base.feature``
-    for the layout of ``a`` and ``b``, ``base.tables`` for that of ``sliding_pair``.
+    is no more than the bound returned where the lines of action are 15 degrees from the chord or more. Nearer
+    to the chord the bound still holds when it is weighted with the share of the forces that such contacts
+    leave to the others. See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of
+    ``sliding_pair``.
     """
     d = sliding_pair[STEP_LENGTH]
     error = bound_backward_error(a, b, d)
@@ -244,10 +245,11 @@ def place_sliding_pair(
 
 @inner
 def is_tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: float) -> bool:
-    """Return whether a tail at (x, y), known to ``radius`` in mm, may
-    lie in a sliding pair's range on its feature ``row``.
+    """Return whether the tail of a sliding pair at (x, y), in mm, may lie in the pair's range on its feature
+    ``row``.
 
-    See ``base.feature`` for the layout of ``row``, ``base.tables`` for that of ``sliding_pair``.
+    The place is known to ``radius`` mm. See ``base.feature`` for the layout of ``row``, ``base.tables`` for
+    that of ``sliding_pair``.
     """
     spare = radius + 1e-10
     if row[IS_ARC] != 0.0:
@@ -266,14 +268,16 @@ def add_lines(
     sliding_pairs: SlidingPairs,
     work: BlockWork,
 ) -> int:
-    """Append the fixtures of a sliding pair on one carrier and a curve's chord on the other to ``out``.
+    """Append the fixtures of a sliding pair on one carrier and a curve's chord on the other carrier to
+    ``out``.
 
-    There may be one for each row of holes in which the two chords meet.
+    There is one for each row of holes of the moving carrier in which the two chords can meet.
 
     Parameters
     ----------
+    out, count : (R, 19) records, of which the first ``count`` are written.
     curve : index of the curve.
-    inside : the pair's orientation, in the curve's range.
+    inside : the pair's orientation, shifted into the curve's range.
 
     Returns
     -------
@@ -328,10 +332,10 @@ def add_third_peg(
     sliding_pairs: SlidingPairs,
     work: BlockWork,
 ) -> int:
-    """Append the fixtures of three standing pegs, a sliding pair and
-    a curve's head, and one moving peg to ``out``.
+    """Append the fixtures of three standing pegs and one moving peg to ``out``.
 
-    The curve must have the pair's tail feature. Parameters and result are those of :func:`add_lines`.
+    The standing pegs are those of a sliding pair and the head of a curve's chord, whose tail is the pair's
+    tail. Parameters and result are those of :func:`add_lines`.
     """
     whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
     features, curves, pegs, wide = work.features, work.curves, work.pegs, 2.0 * pair.reach + SLIVER
@@ -348,11 +352,11 @@ def add_third_peg(
 
 @inner
 def find_first_of_tail(members: IntArray, integers: IntArray, tail: int) -> int:
-    """Return the position of the first of ``members`` whose curve has
-    a tail feature numbered ``tail`` or higher.
+    """Return the first index m such that the curve ``members[m]`` has a tail feature numbered ``tail`` or
+    higher.
 
-    ``members`` are indices of curves in ascending order of their tails; return their number where none is
-    such. See ``base.tables`` for the layout of ``integers``.
+    ``members`` are indices of curves in ascending order of their tails. Return ``len(members)`` where there
+    is no such curve. See ``base.tables`` for the layout of ``integers``.
     """
     low, high = int(np.int64(0)), members.shape[0]
     while low < high:
@@ -368,11 +372,12 @@ def find_first_of_tail(members: IntArray, integers: IntArray, tail: int) -> int:
 def write_member_spots(
     members: IntArray, psi: float, half: float, features: Features, curves: Curves, out: IntArray
 ) -> None:
-    """Write, for each member curve, the spots that its tail and its
-    head may touch within ``half`` radians of psi.
+    """Write, for each member curve, the spots (stretches of features) that its tail and its head may touch
+    near psi.
 
-    ``out`` (M, 4) receives the first and past-the-last spot of the tail, then of the head; an empty range of
-    the tail (0, 0) where the curve does not exist there.
+    ``out`` (M, 4) receives the first and past-the-last number of the tail's spots, then of the head's, for
+    orientations within ``half`` radians of psi. The tail's range is (0, 0), which is empty, where the curve
+    does not exist there.
     """
     near, loose = features.near, features.loose
     for m in range(members.shape[0]):
@@ -394,9 +399,11 @@ def write_member_spots(
 def write_slide_spots(
     pair: PlacedPair, sliding_pairs: SlidingPairs, features: Features, out: IntArray
 ) -> None:
-    """Write the spots that both pegs of a sliding pair touch in each of N equal parts of its range.
+    """Write the spots (stretches of features) that both pegs of a sliding pair may touch, for N equal parts
+    of its range.
 
-    ``out`` (N, 4) receives the first and past-the-last spot of the tail, then of the head.
+    ``out`` (N, 4) receives the first and past-the-last number of the tail's spots, then of the head's, for
+    each part.
     """
     whole, real, near = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number], features.near
     a, b = features.loose[whole[TAIL]], features.loose[whole[HEAD]]
@@ -410,10 +417,11 @@ def write_slide_spots(
 
 @inner
 def may_be_third(slides: IntArray, member: IntArray, near: NearSpots) -> bool:
-    """Return whether a curve's head may be a third locator of interest beside a sliding pair.
+    """Return whether a curve's head may be the third locator beside a sliding pair, by the triples of spots
+    allowed.
 
     ``slides`` (N, 4) are the pair's spots, see :func:`write_slide_spots`; ``member`` (4,) is the curve's row
-    of :func:`write_member_spots`.
+    of :func:`write_member_spots`; ``near`` tells which spots three locators may touch together.
     """
     for k in range(slides.shape[0]):
         for i in range(max(slides[k, 0], member[0]), min(slides[k, 1], member[1])):
@@ -445,8 +453,8 @@ def add_of_pair(
     standing : how many pegs stand still: 2, or 3, where the third is the head of a curve with the pair's tail
         feature.
     members : (M,) indices of curves in the order of their tails.
-    spots, slides : see :func:`write_member_spots` and :func:`write_slide_spots`; (0, 4) ``spots`` where none
-        are ruled out.
+    spots, slides : results of :func:`write_member_spots` and :func:`write_slide_spots`; ``spots`` is (0, 4)
+        where no curve is to be ruled out by spots.
     """
     stats, curves = work.stats, work.curves
     psi, whole = pair.angle[0], sliding_pairs.integers[pair.number]
@@ -495,8 +503,9 @@ def write_sliding_fixtures(
     """Write all fixtures that rest on one of the ``chosen`` sliding
     pairs and on curves of ``members`` to ``space.out``.
 
-    ``chosen`` are row numbers of ``sliding_pairs``. ``standing`` is the number of standing pegs, 2 or 3; of
-    three, two form the sliding pair from the shared tail. Other parameters and the result are those of
+    ``chosen`` are row numbers of ``sliding_pairs``. ``standing`` is the number of standing pegs. Two cases:
+    (a) 2: the pair is on one carrier, a curve's chord on the other; (b) 3: the pair and the head of a curve's
+    chord stand, where pair and chord share their tail. Other parameters and the result are those of
     ``write_two_and_two``.
     """
     work = make_block_work(features, curves, lattice, limits, counting, stats, space)

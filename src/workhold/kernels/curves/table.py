@@ -89,13 +89,13 @@ def may_reach(row: Array, x: float, y: float, radius: float) -> bool:
 
 @inner
 def may_exist(a: Array, b: Array, curve: Array) -> bool:
-    """Return whether a chord may lie on both features somewhere in
-    its range; True where the range is not narrow.
+    """Return whether a chord may lie on both features somewhere in a curve's range; always True for a wide
+    range.
 
-    ``curve`` (16,) has the range in alpha. Ranges too narrow to be tested in the middle, but wider than a
-    sliver, are given wherever the lines or circles of the features meet. Beside a tangency to a circle of
-    many arcs such a range is given for each arc, however far from it. See ``base.feature`` for the layout of
-    ``a`` and ``b``, ``base.tables`` for that of ``curve``.
+    ``curve`` (16,) has the range in alpha. A range too narrow to be tested in its middle was kept wherever
+    the lines or circles of the features meet. Beside a tangency to a circle of many arcs such a range was
+    kept for each arc, however far from it. This test drops those ranges. See ``base.feature`` for the layout
+    of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
     """
     middle = (curve[FROM] + curve[TO]) / 2.0
     half = (curve[TO] - curve[FROM]) / 2.0 + max(curve[TANGENT_FROM], curve[TANGENT_TO])
@@ -109,8 +109,8 @@ def may_exist(a: Array, b: Array, curve: Array) -> bool:
 
 @inner
 def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, curve: Array) -> bool:
-    """Set NEAR_FROM and NEAR_TO of a curve (16,): the part of its
-    range in which both contacts may be of interest.
+    """Set NEAR_FROM and NEAR_TO of a curve (16,): the part of its range in which ``near`` allows both
+    contacts.
 
     Return whether there is any such part. ``ends`` are the numbers of the features ``a`` and ``b``. Where
     ``near`` rules nothing out, the part is the whole range. See ``base.feature`` for the layout of ``a`` and
@@ -139,7 +139,7 @@ def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots,
 
 @inner
 def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair: Array, d: float) -> bool:
-    """Cut the range of a sliding pair in place to the part where both contacts may be of interest.
+    """Cut the range of a sliding pair in place to the part in which ``near`` allows both contacts.
 
     Return whether there is any such part. ``pair`` begins with SLIDE_FROM, SLIDE_TO, DIRECTION; ``ends`` are
     the numbers of the features ``a`` and ``b``, d is the chord's length in mm. See ``base.feature`` for the
@@ -166,10 +166,10 @@ def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair
 
 @inner
 def comes_within(low: float, high: float, angle: float, within: Array) -> bool:
-    """Return whether a chord has an orientation psi = alpha - angle
-    within one of (K, 2) ranges, for alpha in [low, high].
+    """Return whether an orientation psi = alpha - ``angle``, for some alpha in [low, high], lies in one of K
+    ranges.
 
-    All is in radians, modulo turns. Return True where K is 0.
+    ``within`` (K, 2) are the ranges. All angles are in radians, modulo turns. Return True where K is 0.
     """
     for k in range(within.shape[0]):
         # Where the range ends, a turn or more before the chord begins there or not.
@@ -182,11 +182,11 @@ def comes_within(low: float, high: float, angle: float, within: Array) -> bool:
 
 @inner
 def has_step_within(curve: Array, angles: Array, first: int, end: int, within: Array) -> bool:
-    """Return whether a chord with any of the steps in [first, end)
-    has an orientation within (K, 2) ranges of psi.
+    """Return whether a chord with one of the lattice steps ``first`` to ``end`` - 1 has an orientation in one
+    of K ranges.
 
-    ``curve`` has the range of alpha, ``angles`` the directions of the steps; see :func:`comes_within`. See
-    ``base.tables`` for the layout of ``curve``.
+    ``within`` (K, 2) are the ranges of psi, ``curve`` has the range of alpha, ``angles`` the directions of
+    the steps; see :func:`comes_within`. See ``base.tables`` for the layout of ``curve``.
     """
     found = False
     for step in range(first, end):
@@ -250,7 +250,8 @@ def write_tail_curves(
     within: Matrix,
     space: CurveSpace,
 ) -> tuple[int, int, int]:
-    """Write all chord curves and sliding pairs of interest with the tail on one feature to ``space``.
+    """Write the chord curves and sliding pairs with the tail on one feature to ``space``, except those ruled
+    out.
 
     The head is on the same feature or one of a higher number. See ``base.feature`` for the layout of
     ``features``.
@@ -262,10 +263,10 @@ def write_tail_curves(
     centers : (F,) number of each arc's centre, -1 for lines; concentric arcs share it.
     lengths : (D,) lengths of the lattice steps in mm.
     starts : (D + 1,) index of the first step of each length, then S.
-    steps : (S, 2) column and row differences. Both directions of every step are listed.
+    steps : (S, 2) column and row differences between two holes. Both directions of every step are listed.
     angles : (S,) their directions in radians.
-    near : which two stretches of features locators of interest may touch.
-    within : (K, 2) ranges of psi in radians in which curves are of interest; (0, 2) for everywhere.
+    near : which two stretches of features two locators may touch together; others are ruled out.
+    within : (K, 2) ranges of psi in radians; curves outside all of them are ruled out. (0, 2) for no limit.
 
     Returns
     -------

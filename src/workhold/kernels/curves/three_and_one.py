@@ -1,7 +1,8 @@
 """Three pegs on the carrier that stands still, one on the carrier that moves (the paper's Type II).
 
 Three standing pegs are two chords that share their tail: they fit where the tails' parameters on the shared
-feature agree at the same orientation.
+feature agree at the same orientation. A *limb* is a piece of one of these two chord curves, with the numbers
+that matter for its pairing (columns LIMB_... below).
 """
 
 from __future__ import annotations
@@ -96,12 +97,13 @@ def find_farthest_right(features: Features, low: float, high: float) -> float:
 def write_limbs(
     pieces: Array, features: Features, curves: Curves, farthest: float, length: float, out: Array
 ) -> int:
-    """Write the limbs (N, 20) of those pieces that standing pegs can
-    have to ``out``, and return their number.
+    """Write the limbs (N, 20) of those pieces whose chords may belong to three standing pegs; return their
+    number.
 
-    A limb is one of the two chords, with a common tail, that three standing pegs form. A piece has one if a
-    moving peg still fits to the right of its pegs (``farthest`` in mm) and its contacts may be of interest.
-    ``length`` is L in mm, by which moments are divided. See ``base.tables`` for the layout of ``pieces``.
+    A limb is one of the two chords, with a common tail, that three standing pegs form. A piece is left out
+    where no moving peg fits to the right of its pegs (``farthest`` is the largest x in mm of moving pegs), or
+    where its contacts are ruled out by their spots. ``out`` receives the limbs. ``length`` is L in mm, by
+    which moments are divided. See ``base.tables`` for the layout of ``pieces``.
     """
     count, integers, touched = int(np.int64(0)), curves.integers, features.standing
     asks_spots = features.near.joined.shape[0] > 0
@@ -122,10 +124,11 @@ def write_limbs(
 
 @inner
 def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, length: float) -> bool:
-    """Write the spots that tail and head of a piece may touch to its limb (20,).
+    """Write the spots (stretches of features) that tail and head of a piece may touch to the piece's limb
+    (20,).
 
-    Return whether any two of them are those of locators of interest. See ``curves.three_and_one`` for the
-    layout of ``limb``, ``base.tables`` for that of ``piece``.
+    Return whether some spot of the tail and some spot of the head may be touched by two locators together.
+    See the comment at LIMB_LOW for the columns of ``limb``, ``base.tables`` for the layout of ``piece``.
     """
     number, near = int(piece[CURVE]), features.near
     tail, head = curves.integers[number, TAIL], curves.integers[number, HEAD]
@@ -141,9 +144,10 @@ def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, l
 
 @inner
 def are_near(limb: Array, other: Array, near: NearSpots) -> bool:
-    """Return whether the pegs of two limbs with a common tail may be locators of interest, by their spots.
+    """Return whether the three pegs of two limbs with a common tail are not ruled out by the spots that they
+    may touch.
 
-    See ``curves.three_and_one`` for the layout of ``limb`` and ``other``.
+    See the comment at LIMB_LOW for the columns of ``limb`` and ``other``.
     """
     first = int(max(limb[LIMB_TAIL_FIRST], other[LIMB_TAIL_FIRST]))
     end = int(min(limb[LIMB_TAIL_END], other[LIMB_TAIL_END]))
@@ -157,10 +161,11 @@ def are_near(limb: Array, other: Array, near: NearSpots) -> bool:
 
 @inner
 def are_limbs_beyond(limb: Array, other: Array, precision: Precision, room: Array) -> bool:
-    """Return whether the pegs of two limbs with a common tail
-    certainly have a larger error than is of interest.
+    """Return whether every seat of the three pegs of two limbs with a common tail has too large a location
+    error.
 
-    ``room`` is (4, 3) work space. See ``curves.three_and_one`` for the layout of ``limb`` and ``other``.
+    False where this is not certain. ``room`` is (4, 3) work space. See the comment at LIMB_LOW for the
+    columns of ``limb`` and ``other``.
     """
     tail, head, third = limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT], limb[LIMB_HEAD_SPOT:], other[LIMB_HEAD_SPOT:]
     low, high = max(limb[LIMB_LOW], other[LIMB_LOW]), min(limb[LIMB_HIGH], other[LIMB_HIGH])
@@ -170,10 +175,10 @@ def are_limbs_beyond(limb: Array, other: Array, precision: Precision, room: Arra
 
 @inner
 def sort_limbs(limbs: Array, keys: Array, order: IntArray, out: Array) -> None:
-    """Write limbs (N, 20) to ``out``, the limbs of each tail sorted by their LIMB_VALUE_LEAST.
+    """Write limbs (N, 20) to ``out``, the limbs of each tail in ascending order of LIMB_VALUE_LEAST.
 
-    ``limbs`` must be group_by_face by tail already; the groups keep their order. ``keys`` and ``order`` are (N,)
-    work space. See ``curves.three_and_one`` for the layout of ``limbs``.
+    In ``limbs``, those of one tail must follow one another; the groups keep their order. ``keys`` and
+    ``order`` are (N,) work space. See the comment at LIMB_LOW for the columns of ``limbs``.
     """
     first = int(np.int64(0))
     for k in range(1, limbs.shape[0] + 1):
@@ -184,10 +189,11 @@ def sort_limbs(limbs: Array, keys: Array, order: IntArray, out: Array) -> None:
 
 @inner
 def add_triples(out: Array, count: int, number: int, one: int, two: int, work: BlockWork) -> int:
-    """Try every moving peg at each of the first ``number`` crossings
-    in ``work.roots``; append the fixtures to ``out``.
+    """Try every moving peg with the three standing pegs at each of the first ``number`` crossings in
+    ``work.roots``.
 
-    The crossings are of curves ``one`` and ``two``, which share their tail. Return the new number of records,
+    Append the fixtures to ``out``, of which ``count`` records are written already. The crossings are those of
+    the curves with the indices ``one`` and ``two``, which share their tail. Return the new number of records,
     or NO_ROOM_FOR_RECORDS (-1).
     """
     for root in range(number):
@@ -202,12 +208,13 @@ def add_triples(out: Array, count: int, number: int, one: int, two: int, work: B
 
 @inner
 def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: Lattice) -> bool:
-    """Return whether the heads of two chords with a common tail push along one line.
+    """Return whether the heads of two chords with a common tail push along one line of action.
 
-    ``one`` and ``two`` are the whole numbers (7,) of the curves. Chords whose tail and head push along one
-    line are not in the table of curves. Left in, such heads make thousands of crossings that no rounding
-    keeps apart, since all their curves nearly agree where the pegs stand square to the features. See
-    ``base.tables`` for the layout of ``one`` and ``two``, ``base.feature`` for that of ``features``.
+    ``one`` and ``two`` are the whole numbers (7,) of the curves. Such pairs of chords must be left out: all
+    their curves nearly agree where the pegs stand square to the features, which makes thousands of crossings
+    that no rounding keeps apart. (Single chords whose tail and head push along one line are not in the table
+    of curves.) See ``base.tables`` for the layout of ``one`` and ``two``, ``base.feature`` for that of
+    ``features``.
     """
     x = (two[COLUMN_STEP] - one[COLUMN_STEP]) * lattice.pitch_x
     y = (two[ROW_STEP] - one[ROW_STEP]) * lattice.pitch_y
@@ -216,10 +223,10 @@ def heads_share_a_line(one: IntArray, two: IntArray, features: Array, lattice: L
 
 @inner
 def add_limb_pairs(out: Array, count: int, limbs: Array, pieces: Array, work: BlockWork) -> int:
-    """Append the fixtures, and pairs given up, of all pairs of (N, 20) limbs with a common tail to ``out``.
+    """Append the fixtures of all pairs of limbs (N, 20) with a common tail, and pairs given up, to ``out``.
 
-    Limbs are sorted as by :func:`sort_limbs`. Return the new number of records, or NO_ROOM_FOR_RECORDS (-1).
-    See ``curves.three_and_one`` for the layout of ``limbs``, ``base.tables`` for that of ``pieces``.
+    ``count`` records are written already. Limbs are in the order of :func:`sort_limbs`. Return the new number
+    of records, or NO_ROOM_FOR_RECORDS (-1). See ``base.tables`` for the layout of ``pieces``.
     """
     stats, lattice, limits = work.stats, work.lattice, work.limits
     loose, curves, integers = work.features.loose, work.curves, work.curves.integers

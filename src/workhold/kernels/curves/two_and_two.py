@@ -1,11 +1,15 @@
 """Two pegs on each carrier: crossings of the heights of two chords, modulo the row pitch (the paper's Type
 I).
 
+Glossary: a *role* is a piece of a chord curve with the numbers that matter when its two pegs are on a given
+carrier (columns ROLE_... below). A *spot* is a short stretch of a feature on which a contact lies (see
+``contact.location_bounds``).
+
 Where a half turn swaps two equal carriers, half a turn of orientations is enough. Each fixture shows up once,
-with the one chord or the other on the carrier that stands still.
+with one of its two chords on the carrier that stands still.
 
 Before crossings are sought, three bounds of the pieces are compared, each by a few additions. The moving
-chord must be able to stand the smallest gap to the right of the standing one. Both must be able to push
+chord must be able to stand the smallest gap to the right of the standing chord. Both must be able to push
 against each other along x. The difference of their heights must be able to be a whole number of pitches.
 """
 
@@ -72,7 +76,8 @@ from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, may_m
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 ROLE_X, ROLE_FORCE_LOW, ROLE_FORCE_HIGH, ROLE_VALUE_LEAST = range(4)
 ROLE_VALUE_MOST, ROLE_LOW, ROLE_HIGH, ROLE_PIECE = range(4, 8)
-# By how many radians the normals at both contacts may be off, and both as spots (``contact.location_bounds``).
+# How far the normals at both contacts may be off in radians, and both contacts as spots
+# (``contact.location_bounds``).
 ROLE_TAIL_SWING, ROLE_HEAD_SWING = 8, 9
 ROLE_TAIL_SPOT, ROLE_HEAD_SPOT = 10, 10 + CONTACT_LENGTH
 
@@ -87,8 +92,20 @@ def write_roles(
     counting: bool,
     out: Array,
 ) -> int:
-    """Writes the (N, 20) roles of the pieces that may be on one carrier, but for what ``write_role_spots`` does, and
-    returns their number."""
+    """Write the roles of those pieces whose pegs may be on one carrier to ``out`` (N, 20); return their
+    number.
+
+    The columns that :func:`write_role_spots` writes are left out.
+
+    Parameters
+    ----------
+    pieces : (P, 24) pieces of a cell, see ``base.tables``.
+    integers : (C, 7) whole numbers of the curves.
+    touched : first and past-the-last number of the features that pegs of the carrier touch.
+    x_column : column of the pieces with the bound of the pegs' place along x: X_STANDING or X_MOVING.
+    force_column : first of two columns with the range of force directions: RIGHTWARD_LOW or LEFTWARD_LOW.
+    counting : whether to keep pieces whose pegs cannot push together as well.
+    """
     count = int(np.int64(0))
     for k in range(pieces.shape[0]):
         row = pieces[k]
@@ -107,7 +124,8 @@ def write_roles(
 
 @inner
 def write_role_spots(roles: Array, pieces: Array, work: BlockWork) -> None:
-    """Writes to (N, 20) roles the spots that both pegs may touch, and how far their normals may be off."""
+    """Write the spots of both contacts, and how far their normals may be off in radians, to (N, 20) roles in
+    place."""
     loose, curves, length = work.features.loose, work.curves, work.limits.wrench_length
     for k in range(roles.shape[0]):
         role = roles[k]
@@ -121,7 +139,11 @@ def write_role_spots(roles: Array, pieces: Array, work: BlockWork) -> None:
 
 @inner
 def is_still_beyond(still: Array, moving: Array, work: BlockWork) -> bool:
-    """Whether the pegs of two roles, of which one stands still, surely have a larger error than is of interest."""
+    """Return whether every fixture of two roles has too large a location error, ``still`` being the standing
+    one.
+
+    ``still`` and ``moving`` are rows (20,). False where this is not certain.
+    """
     low, high = max(still[ROLE_LOW], moving[ROLE_LOW]), min(still[ROLE_HIGH], moving[ROLE_HIGH])
     psi, half = (low + high) / 2.0, (high - low) / 2.0
     ahead, aside = cos(psi), sin(psi)
@@ -144,16 +166,22 @@ def is_still_beyond(still: Array, moving: Array, work: BlockWork) -> bool:
 
 @inner
 def are_beyond(standing: Array, moving: Array, work: BlockWork) -> bool:
-    """Whether the pegs of two roles surely have a larger error than is of interest, whichever stands still."""
+    """Return whether every fixture of two roles has too large a location error, whichever of them stands
+    still.
+
+    False where this is not certain.
+    """
     return is_still_beyond(standing, moving, work) and is_still_beyond(moving, standing, work)
 
 
 @inner
 def find_flat_slope(first: Array, second: Array) -> float:
-    """Return the slope of the difference of heights below which two pieces clamp too weakly everywhere.
+    """Return the slope, in mm per radian, of the difference of heights below which two pieces clamp too
+    weakly everywhere.
 
-    The forces of each carrier's pegs act together along the line through the instant centres, so of a force
-    of size 1 the part x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the slope.
+    The joint forces of the pegs of both carriers act along the line through the chords' instant centres P_A
+    and P_B. Of such a force of size 1, x . (P_B - P_A) / |P_B - P_A| clamps, and x . (P_B - P_A) is minus the
+    slope.
     """
     across = max(first[ACROSS_LEAST] - second[ACROSS_MOST], second[ACROSS_LEAST] - first[ACROSS_MOST])
     return 0.9 * LEAST_CLAMPING * max(across, 0.0)
@@ -161,10 +189,11 @@ def find_flat_slope(first: Array, second: Array) -> float:
 
 @inner
 def may_cross(standing: Array, moving: Array, lattice: Lattice, counting: bool) -> bool:
-    """Whether two roles far enough apart may make a fixture: their force directions and their heights allow
-    it.
+    """Return whether the chords of two roles may make a fixture, by their force directions, ranges of psi and
+    heights.
 
-    For ``counting`` it is asked only whether the four contacts may be simultaneous.
+    The gap between the carriers is not examined. When ``counting``, the force directions are not examined
+    either.
     """
     if not counting and (
         moving[ROLE_FORCE_LOW] > standing[ROLE_FORCE_HIGH]
@@ -180,16 +209,24 @@ def may_cross(standing: Array, moving: Array, lattice: Lattice, counting: bool) 
 
 @inner
 def counts_once(features: Features, lattice: Lattice) -> bool:
-    """Whether it makes no other contact when two chords change carriers: both touch the same features, and
-    both signs of the row offset mean the same rows."""
+    """Return whether exchanging the carriers of two chords makes no other simultaneous contact.
+
+    That is so where pegs of both carriers touch the same features, and twice the row offset is a whole number
+    of pitches.
+    """
     offsets = 2.0 * lattice.row_offset / lattice.pitch_y
     return features.standing[0] == features.moving[0] and abs(floor(offsets + 0.5) - offsets) <= 1e-12
 
 
 @inner
 def add_crossings(out: Array, count: int, number: int, one: int, two: int, work: BlockWork) -> int:
-    """Examines the four contacts at each of a ``number`` of crossings of two curves, and appends those that
-    are listed to ``out``, which has room for all."""
+    """Examine the four contacts at each crossing of two curves, and append those that are to be listed to
+    ``out``.
+
+    The crossings are the first ``number`` rows of ``work.roots``; ``one`` (standing) and ``two`` (moving) are
+    the indices of the curves. ``count`` records are written already. ``out`` must have room for ``number``
+    more. Return the new number of records.
+    """
     pegs, roots, rows, curves = work.pegs, work.roots, work.features.rows, work.curves
     for root in range(number):
         psi, reach = roots[root, ROOT_PSI], roots[root, ROOT_RADIUS]
@@ -203,12 +240,14 @@ def add_crossings(out: Array, count: int, number: int, one: int, two: int, work:
 
 @inner
 def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Array, work: BlockWork) -> int:
-    """Append what comes of the pairs of two lists of roles, and return the new number of records, -1 when
-    there is no room.
+    """Append the records of all pairs of a standing and a moving role to ``out``, and pairs given up.
+
+    ``count`` records are written already. Return the new number, or NO_ROOM_FOR_RECORDS (-1).
 
     Parameters
     ----------
-    standing, moving : (N, 20) and (M, 20) roles, the moving ones from right to left.
+    standing, moving : (N, 20) and (M, 20) roles; the moving ones in descending order of ROLE_X.
+    pieces : (P, 24) that the roles refer to.
     """
     stats, counting = work.stats, work.counting
     features, curves, lattice, limits = work.features, work.curves, work.lattice, work.limits
@@ -267,20 +306,22 @@ def write_two_and_two(
     stats: IntVector,
     space: BlockSpace,
 ) -> int:
-    """Write all fixtures of two and two pegs with psi in some neighbouring cells to ``space.out``, but those
-    that rest on a sliding pair.
+    """Write the fixtures of two and two pegs with psi in some neighbouring cells to ``space.out``.
+
+    Those that rest on a sliding pair are left out.
 
     Parameters
     ----------
-    edges : (K + 1,) edges of K cells, psi in radians.
-    members : (M,) indices of the curves that exist in some of them, ascending.
-    counting : count all simultaneous contacts (in ``stats``) instead of looking for fixtures only; those that
-        are listed, if any, are listed with either chord on the carrier that stands still.
-    stats : (5,) counts to add to; once its entry ``STOPPED`` is not 0, what was found so far is returned.
+    edges : (K + 1,) edges of the K cells, psi in radians, ascending.
+    members : (M,) indices, ascending, of the curves that exist in some of the cells.
+    counting : whether to count all simultaneous contacts (in ``stats``) instead of looking for fixtures only.
+        Those that are listed, if any, are listed with either chord on the carrier that stands still.
+    stats : (5,) counts to add to, see :class:`BlockWork`; once its entry ``STOPPED`` is not 0, what was found
+        so far is returned.
 
     Returns
     -------
-    how many records there are, or what there is no room for, see ``make_block_work``
+    Number of records, or NO_ROOM_FOR_RECORDS or NO_ROOM_FOR_PIECES (both negative).
     """
     count = int(np.int64(0))
     work = make_block_work(features, curves, lattice, limits, counting, stats, space)

@@ -1,5 +1,4 @@
-"""Proven contacts as fixtures: where they are, with what forces, and in the one form each fixture is listed
-in."""
+"""Proven contacts as fixtures: their places and forces, and the one form in which each fixture is listed."""
 
 from __future__ import annotations
 
@@ -79,8 +78,8 @@ def to_canonical_form(
     ``theta``, ``columns`` and ``rows`` in place.
 
     Orientations are brought to [0, 2 pi), or to [0, pi) where a half turn that swaps the carriers leaves the
-    arrangement as it is, each up to ``hair``. Columns are counted from the leftmost peg of each carrier, rows
-    from the lowest peg of all. Pegs of a carrier are sorted by column, then row.
+    arrangement as it is, each to within ``hair``. Columns are counted from the leftmost peg of each carrier,
+    rows from the lowest peg of all. Pegs of a carrier are sorted by column, then row.
 
     Parameters
     ----------
@@ -88,9 +87,9 @@ def to_canonical_form(
     theta : (N,) orientation of the workpiece in radians.
     columns, rows : (N, 4) lattice places of the pegs.
     orders : (N, 4) receives the former index of the peg that is now at each place.
-    swapped : how many pegs are on each carrier of the arrangement that such a half turn leaves as it is; 0
-        for none.
-    hair : orientations nearer than this, in radians, count as one.
+    swapped : number of pegs on each carrier of the arrangement that a half turn, which swaps the carriers,
+        leaves as it is; 0 where there is no such arrangement.
+    hair : orientations that differ by less than this, in radians, count as equal.
     """
     for n in range(len(standing)):
         angle = (theta[n] + hair) % (2.0 * pi) - hair

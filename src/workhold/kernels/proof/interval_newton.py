@@ -137,7 +137,7 @@ def write_combined_slopes(
     Parameters
     ----------
     frame : (2, 4, 4) U and V, the left and right singular vectors of the Jacobian in columns.
-    size : in mm, of the numbers in the contact equations F.
+    size : size in mm of the numbers in the contact equations F, see ``newton_kantorovich.measure_sizes``.
     length : L in mm, by which moments are divided.
     w, b : of the contacts at the part's middle, see ``contact.record`` and ``proof.variation``.
     """
@@ -233,12 +233,12 @@ def write_whole_box(record: Array, frame: Array, length: float, place: Array) ->
 
 @inner
 def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Array, root: Array) -> None:
-    """Write a part with exactly one solution to ``root`` (19,) as a
-    record: its middle, and bounds of the distance from there.
+    """Write a part with exactly one solution to ``root`` (19,), as a record at the middle of what remains of
+    the part.
 
-    ``bounds`` is what remains of the part, bound_relative_errors to the unknowns in ``w``, in the directions of
-    ``frame[1]``. REACH (radians) and LARGEST_RADIUS (mm) bound how far the solution may be from the middle.
-    See ``contact.record`` for the layout of ``record``, ``w`` and ``root``.
+    ``bounds`` (2, 4) are the lower and upper ends of what remains, relative to the unknowns in ``w``, in the
+    directions of ``frame[1]``. REACH (radians) and LARGEST_RADIUS (mm) bound how far the solution may be from
+    the middle. See ``contact.record`` for the layout of ``record``, ``w`` and ``root``.
     """
     for k in range(PSI):
         root[k] = record[k]
@@ -255,8 +255,8 @@ def write_root(record: Array, frame: Array, length: float, w: Array, bounds: Arr
 
 @inner
 def push_parts(stack: Array, waiting: int, place: Array, bounds: Array, least: float, whole: bool) -> int:
-    """Push what remains of a part on the stack, undivided or as two
-    halves of its longest side; return the new height.
+    """Push what remains of a part on the stack, undivided or cut in two across its longest side; return the
+    new height.
 
     It stays undivided when ``whole``, or when it became much smaller along an axis where its half width was
     more than ``least`` mm. ``waiting`` is the height before, which must be at most DEPTH - 2.
@@ -359,8 +359,8 @@ def write_solutions(
     verdicts: ByteVector,
     roots: Matrix,
 ) -> int:
-    """Write the verdict on each box to ``verdicts`` and the boxes of
-    all solutions to ``roots``; return their number.
+    """Write a verdict on each box to ``verdicts`` and a box around each solution to ``roots``; return the
+    number of roots.
 
     ``verdicts`` (N,) are OPEN for a box that is given up, else DISCARDED: its roots take its place. ``roots``
     must have ROOTS rows for each record. Other parameters are those of :func:`contract_boxes`. See

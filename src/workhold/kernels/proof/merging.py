@@ -1,6 +1,7 @@
-"""Boxes of the same candidate that overlap, put together.
+"""Merging of overlapping boxes of one candidate.
 
-One contact is found by several pairs of chords, and in neighbouring cells.
+One contact is found by several pairs of chords, and in neighbouring cells, so the same candidate occurs in
+several boxes.
 """
 
 from __future__ import annotations

@@ -92,8 +92,9 @@ def polish_unknowns(record: Array, features: Array, length: float, w: Array, poi
     """Improve the unknowns in ``w`` in place by Newton's method to
     the last digits, and compute the contacts there.
 
-    The contacts are written to ``w`` and ``points`` as by ``contact.record.touch``. A step that is singular
-    or longer than ``FARTHEST`` mm is not taken. See ``base.feature`` for the layout of ``features``.
+    The contacts are written to ``w`` and ``points`` as by ``contact.record.write_contact_equations``. A step
+    that is singular or longer than ``FARTHEST`` mm is not taken. See ``base.feature`` for the layout of
+    ``features``.
     """
     for _ in range(ROUNDS):
         write_contact_equations(record, features, length, w, points)
@@ -110,15 +111,11 @@ def polish_unknowns(record: Array, features: Array, length: float, w: Array, poi
 
 @inner
 def measure_sizes(record: Array, features: Array, points: Array) -> tuple[float, float]:
-    """Return the lengths to which rounding errors and second
-    derivatives of the contact equations are relative.
+    """Return (size in mm of the numbers in the contact equations, radius in mm of the smallest arc touched).
 
-    See ``contact.record`` for the layout of ``record``, ``base.feature`` for that of ``features``.
-
-    Returns
-    -------
-    (size in mm of the numbers in the contact equations; radius in mm of the smallest arc touched, inf where
-        only lines are)
+    Rounding errors of the contact equations are relative to the first, their second derivatives to the
+    second, which is inf where only lines are touched. ``points`` are the pegs' centres. See
+    ``contact.record`` for the layout of ``record``, ``base.feature`` for that of ``features``.
     """
     place = carrier = 0.0
     smallest = inf
@@ -143,7 +140,8 @@ def certify_contacts(
 
     Parameters
     ----------
-    w : as ``contact.record.touch`` fills it in; its inverse and Newton step are overwritten.
+    w : as ``contact.record.write_contact_equations`` fills it in; its inverse and Newton step are
+        overwritten.
     size, smallest : see :func:`measure_sizes`.
     length : L in mm, by which moments are divided.
     backward_error : error in mm of the equations' values besides rounding.
@@ -183,11 +181,12 @@ def certify_contacts(
 
 @inner
 def measure_nearest_end(record: Array, features: Array, points: Array) -> float:
-    """Return the least distance in mm along its feature from a
-    contact to an end of that feature, slack included.
+    """Return the least distance in mm, over the four contacts, from a contact to an end of its feature, plus
+    that end's slack.
 
-    Negative where a contact lies beyond an end. See ``chord.evaluation.measure_end_slack``. See ``contact.record``
-    for the layout of ``record``, ``base.feature`` for that of ``features``.
+    Distances are along the features; a contact beyond an end counts as negative. See
+    ``chord.evaluation.measure_end_slack``, ``contact.record`` for the layout of ``record``, ``base.feature``
+    for that of ``features``.
     """
     least = inf
     for k in range(4):
@@ -197,8 +196,8 @@ def measure_nearest_end(record: Array, features: Array, points: Array) -> float:
 
 @inner
 def compute_clamping(w: Array, pairs: Array) -> tuple[float, float]:
-    """Return the gap between the carriers and the standing pegs'
-    push, for four contacts and their null vector.
+    """Return (1) the gap between the carriers and (2) the force with which the standing pegs push, for
+    contacts in place.
 
     ``pairs`` (2, 4, 2) holds centres and outward normals; the null vector in ``w`` stands for the forces. See
     ``contact.record`` for the layout of ``w``.
@@ -233,10 +232,11 @@ def judge_sign(middle: float, doubt: float) -> int:
 
 @inner
 def write_wrenches(record: Array, features: Array, length: float, w: Array, pairs: Array) -> float:
-    """Write the normals of the contacts to ``pairs[1]`` and their null vector, not scaled, to ``w``.
+    """Write the outward unit normals of four contacts to ``pairs[1]``, and a null vector of their wrenches to
+    ``w``.
 
-    Return the sum of the absolute values of the null vector. ``pairs[0]`` holds the peg centres. See
-    ``contact.record`` for the layout of ``record`` and ``w``, ``base.feature`` for that of ``features``.
+    The null vector is not scaled; return the sum of its absolute values. ``pairs[0]`` holds the peg centres.
+    See ``contact.record`` for the layout of ``record`` and ``w``, ``base.feature`` for that of ``features``.
     """
     for k in range(4):
         row = features[int(record[FEATURES + k])]
@@ -254,13 +254,14 @@ def judge_contacts(
     w: Array,
     pairs: Array,
 ) -> int:
-    """Return PROVEN, DISCARDED or OPEN for contacts in place, by
-    enclosures of five numbers that must all be positive.
+    """Return PROVEN, DISCARDED or OPEN for four contacts in place, by enclosures of numbers that must all be
+    positive.
 
-    The numbers belong to ends, gap, span, closure and clamping. For one of two clamps (``limits.pairing``),
-    they are three: ends, the determinant of the standing pegs' wrenches, and the clamp's push. ``w`` and
-    ``pairs[0]`` hold the contacts, see ``contact.record.touch``; ``pairs[1]`` receives the outward normals.
-    See ``base.feature`` for the layout of ``features``.
+    Two cases: (a) in general there are five numbers, of ends, gap, span, closure and clamping; (b) where the
+    moving peg is one of two clamps (``limits.pairing``), there are three: of ends, the determinant of the
+    standing pegs' wrenches, and the clamp's push. ``w`` and ``pairs[0]`` hold the contacts, see
+    ``contact.record.write_contact_equations``; ``pairs[1]`` receives the outward normals. See
+    ``base.feature`` for the layout of ``features``.
 
     Parameters
     ----------
@@ -319,11 +320,12 @@ def make_discs(outline: Array, margin: float) -> Array:
 
 @inner
 def is_clear(points: Array, moves: Array, outline: Array, discs: Array, setting: Setting) -> bool:
-    """Return whether four pegs at ``points`` (4, 2) are clear of all
-    of (S, 10) segments, to within ``TOUCHING``.
+    """Return whether four pegs with centres ``points`` (4, 2) are clear of all of (S, 10) segments, to within
+    ``TOUCHING``.
 
-    ``moves`` (4,) is 0 for a peg with the standing radius, else the moving radius counts; ``discs`` (S, 3)
-    are those of :func:`make_discs`. See ``base.feature`` for the layout of ``outline``.
+    ``moves`` (4,) is 0 for a peg that has the standing pegs' radius, 1 for one that has the moving pegs'
+    radius. ``discs`` (S, 3) are those of :func:`make_discs`. See ``base.feature`` for the layout of
+    ``outline``.
     """
     for k in range(4):
         x, y = points[k, 0], points[k, 1]

@@ -1,5 +1,4 @@
-"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in it (see
-``interval_newton``).
+"""How much contacts vary over a part of a box, and whether some rule is broken everywhere in the part.
 
 How much numbers vary is bounded by norms. A peg's centre moves by at most its ``variation``. Its unit normal
 turns by at most variation / (R - variation) on an arc and not at all on a line. Products vary by the sum of
@@ -41,12 +40,11 @@ NUMBERS = 10
 
 @inner
 def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
-    """Set the unknowns in ``w`` to the middle of a part of a box, with
-    the rounding error of the sum in mm at its row NEWTON.
+    """Set the unknowns in ``w`` to the middle of a part of a box.
 
-    The middle is ``z`` (4,), that of the box, plus ``frame[1]`` (4, 4) times ``place[0]`` (4,), in the units
-    of the unknowns. ``length`` is L in mm, by which moments are divided. See ``contact.record`` for the
-    layout of ``w``.
+    The middle is ``z`` (4,), that of the whole box, plus ``frame[1]`` (4, 4) times ``place[0]`` (4,), in the
+    units of the unknowns. The rounding error of this sum in mm goes to the row NEWTON of ``w``. ``length`` is
+    L in mm, by which moments are divided. See ``contact.record`` for the layout of ``w``.
     """
     for i in range(4):
         step = 0.0
@@ -75,9 +73,9 @@ def write_variation(
     """Write how much the contacts in place vary over a part to ``b`` (10, 4), all rows except MINOR_BAND.
 
     ``pairs[1]`` receives the arms from the first peg in mm, ``pairs[2]`` the outward unit normals;
-    ``pairs[0]`` holds the centres. ``size`` is in mm, of the numbers in the contact equations. See
-    ``contact.record`` for the layout of ``record`` and ``w``, ``base.feature`` for that of ``features``,
-    ``proof.variation`` for that of ``b``.
+    ``pairs[0]`` holds the centres. ``size`` is the size in mm of the numbers in the contact equations, see
+    ``newton_kantorovich.measure_sizes``. See ``contact.record`` for the layout of ``record`` and ``w``,
+    ``base.feature`` for that of ``features``, the comment at VARIATION for the rows of ``b``.
     """
     length, backward_error = setting.limits.wrench_length, setting.backward_error
     cosine, sine = cos(w[UNKNOWNS, 0]), sin(w[UNKNOWNS, 0])
@@ -122,7 +120,7 @@ def write_variation(
 def bound_cross_product(
     record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array
 ) -> tuple[float, float]:
-    """Return the absolute cross product of the normals of pegs i and j, and how much it varies over a part.
+    """Return (absolute cross product of the normals of pegs i and j, how much it varies over a part).
 
     ``pairs`` and ``b`` are those of :func:`write_variation`. See ``contact.record`` for the layout of
     ``record`` and ``w``, ``base.feature`` for that of ``features``, ``proof.variation`` for that of ``b``.
@@ -144,8 +142,8 @@ def bound_cross_product(
 def bound_arcs_cross_product(
     record: Array, features: Array, i: int, j: int, pairs: Array, w: Array, b: Array
 ) -> float:
-    """Return how much the cross product of the normals of pegs i and
-    j, both on arcs, varies over a part; inf for others.
+    """Return how much the cross product of the normals of pegs i and j varies over a part; inf unless both
+    are on arcs.
 
     Only the difference of the rays from their centres counts, which depends on the orientation alone where
     both pegs are on one carrier. Parallel normals stay parallel wherever the part slides. ``pairs`` and ``b``
@@ -223,9 +221,10 @@ def is_broken(record: Array, features: Array, setting: Setting, w: Array, pairs:
 
 @inner
 def may_clamp(sign: float, clamping: float, size: float, w: Array, b: Array) -> bool:
-    """Return whether forces with the sign ``sign`` (1 or -1) may close and clamp somewhere in a part.
+    """Return whether forces with the sign ``sign`` (1 or -1) may close and clamp somewhere in a part of a
+    box.
 
-    Both the push of the standing pegs and what the moving pegs take up must reach the least clamping force.
+    Both the push of the standing pegs and that of the moving pegs must reach the least clamping force.
     ``clamping`` is 1 or -1 as in ``Limits``, ``size`` a lower bound of the sum of the minors' absolute
     values. ``b`` is that of :func:`write_variation`, with MINOR_BAND written; the minors are at NULL in
     ``w``. See ``contact.record`` for the layout of ``w``, ``proof.variation`` for that of ``b``.

@@ -2,9 +2,10 @@
 
 With both pegs at fixed heights the separation grows with d alone, whose slopes and curvatures along the
 pieces are known in closed form. With t the tangents and u the unit vector from one place to the other, the
-slopes are d' = -u . t and u . t. Along a piece d'' is (1 - (u . t)^2) / d, with the piece's own bend, and
-across it is -(t . t - (u . t) (u . t)) / d. A Newton step, its curvatures taken as above 0 (P. E. Gill and W.
-Murray, Mathematical Programming 7, 1974), leads along narrow valleys in which linear programs go to and fro.
+slopes are d' = -u . t and u . t. Along a piece d'' is (1 - (u . t)^2) / d, plus a term for the piece's own
+curvature. With the tangents t_1 and t_2 of both pieces, the mixed second derivative is -(t_1 . t_2 - (u .
+t_1) (u . t_2)) / d. A Newton step, its curvatures taken as above 0 (P. E. Gill and W. Murray, Mathematical
+Programming 7, 1974), leads along narrow valleys in which linear programs go to and fro.
 """
 
 from __future__ import annotations
@@ -183,8 +184,8 @@ def is_peg_on_piece(
 ) -> bool:
     """Return whether a peg at the parameter ``at`` of a piece's line or circle, at (x, y), touches the piece.
 
-    Beyond the piece's ends, up to its span, the peg must also be free, as past a pocket it is inside the
-    part.
+    Two cases: (a) between the piece's ends it does; (b) beyond the ends, up to the piece's span, the peg must
+    also be free, as past a pocket it is inside the part.
     """
     half = obstacles.rows[piece, HALF_EXTENT]
     if obstacles.rows[piece, IS_ARC] != 0.0 and half >= pi:
@@ -203,8 +204,7 @@ def write_antipodal_step(
 
     Return how far in mm both contacts moved together; negated where obstacles made the step shorter than the
     Newton step; 0 where there is no step (then ``work.trial`` is undefined). A configuration is theta in
-    radians, x, y and the jaw separation S in mm. A configuration is theta in radians, x, y and the jaw
-    separation S in mm.
+    radians, x, y and the jaw separation S in mm.
 
     Parameters
     ----------

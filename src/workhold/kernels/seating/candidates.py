@@ -86,10 +86,10 @@ def write_pair(row: Array, at: int, pair: Array, given: HeldPart, pocket_pieces:
 
 @inner
 def write_pose(row: Array, theta: float, x: float, y: float, contacts: int) -> None:
-    """Reset a candidate (24,) to a pose of the part in radians and
-    mm, with ``contacts`` contacts not yet written (-1).
+    """Reset a candidate (24,) to a pose of the part, with ``contacts`` contacts whose pegs and pieces are
+    still -1.
 
-    See ``seating.columns`` for the layout of ``row``.
+    The pose is theta in radians, x and y in mm. See ``seating.columns`` for the layout of ``row``.
     """
     for k in range(CANDIDATE_LENGTH):
         row[k] = 0.0
@@ -132,11 +132,12 @@ def complete_three(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out
     """Write the candidates of three contacts at roots of MISS (R, 6)
     to ``out`` (at least R rows); return their number.
 
-    Roots off the pieces are left out. With beta the distance of the third contact from the foot of P, along
-    the face, S' = beta / (n . x). So at the foot S'' = beta' / (n . x). Here beta is the height missed over
-    -(n . x), times 1 + kappa (P - foot) . n on an arc of curvature kappa. For a third peg that stands still
-    the sign is the other. See ``seating.three_contacts`` for the layout of ``roots``. Symbols are those of
-    ``seating.two_contact_curves``. S is the jaw separation in mm.
+    MISS is 0 where the normal of a third peg goes through the instant centre of a pair. Roots at which a
+    contact is off its piece are left out. With beta the distance of the third contact from the foot of P,
+    along the face, S' = beta / (n . x). So at the foot S'' = beta' / (n . x). Here beta is the height missed
+    over -(n . x), times 1 + kappa (P - foot) . n on an arc of curvature kappa. For a third peg that stands
+    still the sign is the other. See ``seating.three_contacts`` for the layout of ``roots``. Symbols are those
+    of ``seating.two_contact_curves``. S is the jaw separation in mm.
     """
     count = 0
     for r in range(roots.shape[0]):
@@ -172,11 +173,11 @@ def complete_three(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out
 
 @inner
 def place_third(row: Array, along: float, peg: int, given: HeldPart) -> None:
-    """Set the separation of a candidate so that ``peg`` meets the
-    part at ``along`` mm in x from the part's place.
+    """Set the separation of a candidate so that ``peg``, of the other jaw than its pair, meets the part.
 
-    The place of a part held by the moving jaw, written for separation 0, moves with that jaw. See
-    ``seating.columns`` for the layout of ``row``.
+    The peg touches the part where it is ``along`` mm in x from the part's place. The place of a part held by
+    the moving jaw, written for separation 0, moves with that jaw. See ``seating.columns`` for the layout of
+    ``row``.
     """
     if given.right[peg] == 1:
         row[SEPARATION] = row[PLACE_X] + along - given.pegs[peg, 0]
@@ -187,11 +188,12 @@ def place_third(row: Array, along: float, peg: int, given: HeldPart) -> None:
 
 @compiled
 def complete_two(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix) -> int:
-    """Write the candidates of four contacts, two of each jaw, at
-    roots of APART (R, 6) to ``out``; return their number.
+    """Write the candidates of four contacts, two of each jaw, at roots of APART (R, 6) to ``out``; return
+    their number.
 
-    Roots off the pieces are left out. See ``seating.three_contacts`` for the layout of ``roots``. Symbols are
-    those of ``seating.two_contact_curves``.
+    APART is 0 where the pairs of both jaws hold the part at one height. Roots at which a contact is off its
+    piece are left out. See ``seating.three_contacts`` for the layout of ``roots``. Symbols are those of
+    ``seating.two_contact_curves``.
     """
     count = 0
     for r in range(roots.shape[0]):
@@ -218,8 +220,8 @@ def complete_two(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: 
 
 @inner
 def add_fourths(fixed: Array, jaw: int, given: HeldPart, out: Array, count: int) -> int:
-    """Append candidates with four contacts: those of ``fixed``, and
-    one of a peg of the other jaw with a piece.
+    """Append candidates with four contacts: the three of ``fixed``, and that of a peg of the other jaw with a
+    piece.
 
     Every peg of the other jaw, at its height, is tried with every piece that it can touch. See
     ``seating.columns`` for the layout of ``fixed``.
@@ -272,11 +274,12 @@ def add_fourths(fixed: Array, jaw: int, given: HeldPart, out: Array, count: int)
 
 @compiled
 def complete_third(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix) -> int:
-    """Write the candidates of three contacts of one jaw at roots of
-    GAP (R, 6) to ``out``; return their number.
+    """Write the candidates of three contacts of one jaw at roots of GAP (R, 6) to ``out``; return their
+    number.
 
-    Their place is that at separation 0. Roots off the pieces are left out. See ``seating.three_contacts`` for
-    the layout of ``roots``. Symbols are those of ``seating.two_contact_curves``.
+    GAP is 0 where a third peg of the same jaw touches a piece. The part's place is that at separation 0.
+    Roots at which a contact is off its piece are left out. See ``seating.three_contacts`` for the layout of
+    ``roots``. Symbols are those of ``seating.two_contact_curves``.
     """
     count = 0
     for r in range(roots.shape[0]):
@@ -375,13 +378,13 @@ def write_forces_and_clearance(
 def judge_balance(candidates: Matrix, slack: float, slack_in_doubt: float, verdicts: ByteVector) -> None:
     """Write a verdict for each candidate (N, 24): NO_BALANCE, IN_BALANCE or DOUBTFUL.
 
-    In balance, all contacts press, forces balance, and no other peg is in the part. Candidates with DOUBT set
-    can only be DOUBTFUL or NO_BALANCE. See ``seating.columns`` for the layout of ``candidates``.
+    In balance, all contacts press, forces balance, and no other peg is in the part. Candidates whose column
+    DOUBT is 1 can only be DOUBTFUL or NO_BALANCE. See ``seating.columns`` for the layout of ``candidates``.
 
     Parameters
     ----------
-    slack, slack_in_doubt : depth in mm to which pegs that do not touch may be in the part, without and with
-        DOUBT.
+    slack, slack_in_doubt : depth in mm to which pegs that do not touch may be in the part; the second for
+        candidates whose column DOUBT is 1.
     verdicts : (N,) receives the verdicts.
     """
     for number in range(candidates.shape[0]):

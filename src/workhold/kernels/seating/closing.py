@@ -1,4 +1,4 @@
-"""Closing the jaws without friction, and how far a part can be moved with the separation below a bound.
+"""Closing of the jaws on a part without friction, and motion of a part with the jaw separation below a bound.
 
 At a configuration (theta, x, y, S) the clearances of pegs from pieces nearby are linearized. The step that
 lowers S most within a box is a linear program of four unknowns; what it enters to second order is undone by
@@ -81,8 +81,8 @@ def write_near_clearances(config: Array, obstacles: Obstacles, reach: float, wor
     ``work.near``, and return how many there are.
 
     Each row (7,) holds the gradient over (theta size, x, y, S) in mm per mm, the clearance in mm, peg and
-    piece. The stop and the largest S come first, with -1 in place of a peg; the wall comes last. More than 64
-    are left out.
+    piece. The stop and the largest S come first, with -1 in place of a peg; the wall comes last. Rows beyond
+    64 are left out.
 
     The pieces within a wider reach are listed for each peg, and listed anew when the peg has moved on (L.
     Verlet, Physical Review 159, 1967). S is the jaw separation in mm.
@@ -140,8 +140,9 @@ def move_out_of_obstacles(config: Array, obstacles: Obstacles, reach: float, wor
     """Move a configuration in place, by the shortest way, out of obstacles that it enters by little.
 
     Return the number of clearances within ``reach`` mm, now in ``work.near``, or -1 where that was not
-    possible. Where pegs are on both sides of something too wide, the linearized way out leads far beyond what
-    was examined. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    possible. Such a case are pegs on both sides of something too wide: the linearized way out then leads far
+    beyond the clearances that were examined. A configuration is theta in radians, x, y and the jaw separation
+    S in mm.
     """
     near, step = work.near, work.step
     count, deepest = 0, 0.0
@@ -167,8 +168,7 @@ def is_at_a_seat(config: Array, seats: Array, end: int, size: float) -> bool:
     ``seats[:end]``, which are in ascending order of S.
 
     Seats lower than the configuration by ``SAME_LEVEL`` or more are not examined. A configuration is theta in
-    radians, x, y and the jaw separation S in mm. A configuration is theta in radians, x, y and the jaw
-    separation S in mm.
+    radians, x, y and the jaw separation S in mm.
     """
     for k in range(end - 1, -1, -1):
         if seats[k, 3] <= config[3] - SAME_LEVEL:

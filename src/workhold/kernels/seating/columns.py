@@ -22,8 +22,8 @@ A candidate is a configuration that may be an equilibrium.
 - THETA, PLACE_X, PLACE_Y, SEPARATION : the configuration.
 - CONTACTS : how many; four pegs from PEG on, four pieces from PIECE on, and four forces from FORCE on, per
   unit of jaw force, have room for them.
-- SECOND : second derivative of the separation along what is left free, in any positive measure; 0 of four
-  contacts. The direction of that motion is from MOTION on (theta, x, y).
+- SECOND : second derivative of the separation along the motion that three contacts leave free, up to a
+  positive factor; 0 of four contacts. The direction of that motion is from MOTION on (theta, x, y).
 - DOUBT : 1 where bounds did not decide that it exists.
 - CLEAR : least clearance in mm of the pegs that do not touch.
 - RESIDUAL : how far the forces are from a balance.
@@ -97,8 +97,8 @@ class JawCells(NamedTuple):
     ----------
     cells : (C, 7), in ascending order of LOW; those that reach beyond a turn occur a second time, a turn
         lower.
-    before : number of pairs of the pattern before those of this jaw.
-    height : of its first peg in the pattern, in mm.
+    before : how many pairs of the pattern (the pegs of both jaws) come before those of this jaw.
+    height : of the jaw's first peg in the pattern, in mm.
     """
 
     cells: Matrix
@@ -118,7 +118,8 @@ class Obstacles(NamedTuple):
     pegs, right, parts : as in ``HeldPart``.
     size : of the part in mm; a turn in radians times this is compared with shifts.
     stop : the smallest jaw separation, in mm.
-    hull : (H, 6) what may touch a wall, see ``kernels.seating.obstacles``; no rows where there is no wall.
+    hull : (H, 6) pieces of the part's hull, which may touch a wall, see ``kernels.seating.obstacles``; no
+        rows where there is no wall.
     half_plane : (3,) unit vector from the wall to the part, along x or y, and the wall's coordinate along it
         in mm.
     most : the largest jaw separation, in mm.
@@ -182,7 +183,8 @@ class SelfMotions(NamedTuple):
 
 
 class Manifolds(NamedTuple):
-    """F loose sets: connected sets of equilibria with one separation.
+    """F equilibrium manifolds: connected sets of equilibria with one separation, along which the part is
+    loose.
 
     Parameters
     ----------

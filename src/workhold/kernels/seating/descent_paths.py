@@ -1,6 +1,7 @@
-"""Descent paths: where they begin, how far they are free of further pegs, and the places they end in.
+"""Descent paths of a part as jaws close: their starts, how far other pegs leave them free, and where they
+end.
 
-The pass at which one place leads to another follows from where both paths of each pass end.
+A pass between two places is found from the ends of its two descent paths.
 """
 
 from __future__ import annotations
@@ -47,10 +48,11 @@ PARTS = 3
 
 @compiled
 def begin_descents(rows: Matrix, size: float, starts: Matrix, lengths: Matrix) -> None:
-    """Write where descent paths begin, at both sides of passes (N, 24) along their free motions.
+    """Write the configurations in which the two descent paths from each pass (N, 24) begin, on both sides of
+    the pass along its free motion.
 
-    They begin nearer to the pass where the motion bends so much that they would lie elsewhere. See
-    ``seating.columns`` for the layout of ``rows``.
+    A path begins nearer to the pass where its free motion bends so much that the usual start would lie off
+    it. See ``seating.columns`` for the layout of ``rows``.
 
     Parameters
     ----------
@@ -75,10 +77,11 @@ def begin_descents(rows: Matrix, size: float, starts: Matrix, lengths: Matrix) -
 
 @inner
 def compute_shifted_place(node: Array, shift: Array, peg: int, obstacles: Obstacles) -> tuple[float, float]:
-    """Return the place (x, y) in mm of a peg's centre on the part at
-    a node, whose configuration ``shift`` is added to.
+    """Return the place (x, y) in mm of a peg's centre on the part, with ``shift`` added to the configuration
+    of a node.
 
-    The orientation is not shifted. See ``seating.columns`` for the layout of ``node``.
+    Only x, y and the separation are shifted, not the orientation. See ``seating.columns`` for the layout of
+    ``node``.
     """
     x = obstacles.pegs[peg, 0] + obstacles.right[peg] * (node[3] + shift[3]) - (node[1] + shift[1])
     y = obstacles.pegs[peg, 1] - (node[2] + shift[2])
@@ -111,11 +114,12 @@ def is_step_free(
 
 @inner
 def find_last_near(nodes: Array, at: int, end: int, x: float, y: float, peg: int, known: Array) -> int:
-    """Return the last node from ``at`` on up to which a peg certainly
-    stays in the disc in which it is known to be free.
+    """Return the last node, from ``at`` on, up to which a peg certainly stays in the disc ``known[peg]``
+    where it is free.
 
-    (x, y) is the peg's place on the part at node ``at``. No place at that distance from the part's centre
-    moves faster than the part turns and moves. See ``seating.columns`` for the layout of ``nodes``.
+    (x, y) is the peg's place on the part at node ``at``. Between nodes a place moves by no more than the part
+    turns, times the place's distance from the part's centre, plus the part's shift. See ``seating.columns``
+    for the layout of ``nodes``.
     """
     dx, dy = x - known[peg, 0], y - known[peg, 1]
     left = known[peg, 2] - sqrt(dx * dx + dy * dy)
@@ -138,10 +142,10 @@ def find_end_of_free(
     obstacles: Obstacles,
     known: Array,
 ) -> int:
-    """Return the first node in [first, end) at which, or on the step
-    to which, a peg is in the part; ``end`` for none.
+    """Return the first node in [first, end) that a peg hinders; ``end`` where there is none.
 
-    See ``seating.columns`` for the layout of ``nodes``.
+    The peg is in the part at that node or on the step to it. See ``seating.columns`` for the layout of
+    ``nodes``.
     """
     at, from_x, from_y = first, 0.0, 0.0
     while at < end:
@@ -169,7 +173,8 @@ def write_last_free_nodes(
     known: Matrix,
     lasts: IntVector,
 ) -> None:
-    """Write, for each of N paths, the last node up to which no peg outside a subset is in the part.
+    """Write, for each of N paths, the last node up to which no peg outside the path's subset of pegs is in
+    the part.
 
     See ``seating.columns`` for the layout of ``nodes``.
 
@@ -181,7 +186,7 @@ def write_last_free_nodes(
     others : (G, K) 1 for the pegs that are not in each subset.
     most : steps of a peg on the part up to this length, in mm, are examined only at their ends.
     known : (4, 4) work space.
-    lasts : (N,) receives the nodes, the path's first node less 1 where not even that is free.
+    lasts : (N,) receives the nodes; where even the path's first node is not free, the number before it.
     """
     for peg in range(obstacles.pegs.shape[0]):
         known[peg, 2], known[peg, 3] = -1.0, 0.0
@@ -210,14 +215,14 @@ def write_known_path_ends(
     lengths: Matrix,
     left: ByteVector,
 ) -> None:
-    """Write how far the descent paths from passes are known from
-    other paths, and which remain to be followed.
+    """Write how far the two descent paths from each pass are known from other paths, and which remain to be
+    followed.
 
     See ``seating.columns`` for the layout of ``nodes``.
 
     Parameters
     ----------
-    passes : (N,) their numbers.
+    passes : (N,) numbers of the passes.
     chosen, whose, nodes, begins, shifts, lasts : of the 2 N paths, see :func:`write_last_free_nodes`, which
         wrote the last of these.
     how : how each of all paths ended, see ``closing``.
@@ -258,11 +263,11 @@ def measure_distance(config: Array, other: Array, size: float) -> float:
 
 @inner
 def find_seat(config: Array, seats: Array, size: float) -> int:
-    """Return the index of the nearest seat (M, 4) within ``AT_SEAT``
-    mm and ``SAME_LEVEL`` of S, or -1 for none.
+    """Return the index of the nearest seat within ``AT_SEAT`` mm and ``SAME_LEVEL`` mm of separation, or -1
+    for none.
 
-    ``seats`` are in ascending order of S. A configuration is theta in radians, x, y and the jaw separation S
-    in mm.
+    ``seats`` (M, 4) are configurations in ascending order of S. A configuration is theta in radians, x, y and
+    the jaw separation S in mm.
     """
     nearest, number, low, high = AT_SEAT, -1, 0, seats.shape[0]
     while low < high:
@@ -285,8 +290,9 @@ def find_falling_manifold(
 ) -> int:
     """Return the position in ``falling`` of the manifold on which a path ended, or -1.
 
-    On flat faces no step leads down, though from such a manifold the part slides off and the path goes on,
-    lower. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    ``falling`` are the numbers of the manifolds off which the part slides. On their flat faces no step leads
+    down, so a path ends there, though the part goes on down. A configuration is theta in radians, x, y and
+    the jaw separation S in mm.
     """
     if how == AT_REST:
         for k in range(falling.shape[0]):
@@ -326,10 +332,10 @@ def find_place_of_rest(
 
 @inner
 def find_doubtful(config: Array, doubtful: Array, count: int, size: float) -> int:
-    """Return the index of the nearest of the first ``count`` doubtful
-    configurations, or ``count`` if none is near.
+    """Return the index of a doubtful configuration near ``config`` among the first ``count``, or ``count`` if
+    none is near.
 
-    A configuration is theta in radians, x, y and the jaw separation S in mm.
+    The nearest one is chosen. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     nearest, number = inf, count
     for k in range(count):
@@ -356,11 +362,12 @@ def write_places(
     fallen: IntVector,
     out: IntVector,
 ) -> int:
-    """Write the places in which descent paths end to ``out``; return
-    the new number of configurations not settled.
+    """Write the place in which each descent path ends to ``out``; return the new number of doubtful
+    configurations.
 
-    A place is a number, OUTSIDE or STOP. An end that is in no known place becomes a new one, not settled. A
-    configuration is theta in radians, x, y and the jaw separation S in mm.
+    A place is a number, OUTSIDE or STOP. An end that is in no known place becomes a new place, whose
+    configuration is added to ``doubtful``. A configuration is theta in radians, x, y and the jaw separation S
+    in mm.
 
     Parameters
     ----------
@@ -371,9 +378,10 @@ def write_places(
         ``first``.
     falling : (G,) numbers of the other manifolds.
     seats, numbers : (M, 4) configurations of seats, in ascending order of S, and their places.
-    first : the place of the first configuration that is not settled.
+    first : the place of the first doubtful configuration.
     size : of the part in mm; a turn times this is compared with shifts.
-    doubtful, count : configurations that are not settled, ``count`` before, with room for N + G more.
+    doubtful, count : (K, 4) configurations that are not known to be equilibria; ``count`` of them are given,
+        and there must be room for N + G more.
     fallen : (G,) work space.
     out : (N,) receives the places.
     """
@@ -428,8 +436,9 @@ def find_pass_to_outside(joins: IntMatrix, place: int, groups: IntVector) -> int
 
 @inner
 def find_root(place: int, groups: IntArray) -> int:
-    """Return the representative of all places that are joined with a
-    place; a negative place counts from the end.
+    """Return the representative of the group of places that a place was joined with.
+
+    A negative place counts from the end of ``groups``.
     """
     at = place if place >= 0 else groups.shape[0] + place
     while groups[at] != at:

@@ -1,4 +1,5 @@
-"""Four contacts: pairs of both jaws at one height, or a further peg of a pair's own jaw that touches.
+"""Four contacts: a pair of pegs of each jaw at one height, or a pair and a third peg of its own jaw that
+touches.
 
 Both are roots of functions, APART and GAP of ``two_contact_curves``. Their first derivative is known at a
 place, and their second is bounded over a cell by the speed of the instant centres. A range is dropped where
@@ -59,11 +60,12 @@ ROUNDING, SAME = 2e-12, 1e-7
 
 @inner
 def judge_two_cells(p: Array, q: Array, low: float, high: float, given: HeldPart) -> int:
-    """Return NOTHING, HALVES or MAYBE for roots of APART over a range of psi in two cells of both jaws.
+    """Return the verdict NOTHING, HALVES or MAYBE on a range of psi in which two pairs may hold the part at
+    one height.
 
-    NOTHING: there is no root; HALVES: halve the range; MAYBE: there is at most one root. Neither cell is
-    vague. See ``seating.columns`` for the layout of ``p`` and ``q``. Symbols are those of
-    ``seating.two_contact_curves``.
+    The pairs' cells ``p`` and ``q``, of different jaws, must not be vague. NOTHING: APART has no root in
+    [low, high]; HALVES: halve the range; MAYBE: there is at most one root. See ``seating.columns`` for the
+    layout of ``p`` and ``q``. Symbols are those of ``seating.two_contact_curves``.
     """
     one, two = given.pairs[int(p[PAIR])], given.pairs[int(q[PAIR])]
     psi, reach = (low + high) / 2.0, (high - low) / 2.0
@@ -87,10 +89,11 @@ def judge_two_cells(p: Array, q: Array, low: float, high: float, given: HeldPart
 def judge_third_peg(
     cell: Array, ox: float, oy: float, piece: Array, low: float, high: float, given: HeldPart
 ) -> int:
-    """Return NOTHING, HALVES or MAYBE for a peg that may touch a piece over a range of psi in a cell.
+    """Return the verdict NOTHING, HALVES or MAYBE on a range of psi in which another peg may touch a piece.
 
-    The peg is (ox, oy) mm from the first peg of the pair in the vise frame. See :func:`judge_two_cells` for
-    the verdicts. See ``seating.columns`` for the layout of ``cell``, ``base.feature`` for that of ``piece``.
+    The peg is (ox, oy) mm from the first peg of the cell's pair, in the vise frame. The range is [low, high].
+    See :func:`judge_two_cells` for the verdicts, ``seating.columns`` for the layout of ``cell``,
+    ``base.feature`` for that of ``piece``.
     """
     psi = (low + high) / 2.0
     s = compute_pair_state(given.pairs[int(cell[PAIR])], given, psi)
@@ -108,12 +111,11 @@ def compute_peg_place(s: PairState, cosine: float, sine: float, ox: float, oy: f
 
 @inner
 def judge_place(cell: Array, s: PairState, x: float, y: float, piece: Array, reach: float) -> int:
-    """Return NOTHING, HALVES or MAYBE for a peg that may touch a
-    piece over a range of psi of half width ``reach``.
+    """Return the verdict NOTHING, HALVES or MAYBE on a range of psi in which another peg may touch a piece.
 
-    ``s`` is the pair and (x, y) the peg's place on the part, both in the middle of the range. See
-    :func:`judge_two_cells` for the verdicts. See ``seating.columns`` for the layout of ``cell``,
-    ``base.feature`` for that of ``piece``.
+    In the middle of the range, whose half width is ``reach``, the pair is ``s`` and the peg's place on the
+    part is (x, y). See :func:`judge_two_cells` for the verdicts, ``seating.columns`` for the layout of
+    ``cell``, ``base.feature`` for that of ``piece``.
     """
     gx, gy = x - s[6], y - s[7]
     speed = (compute_length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
@@ -157,7 +159,7 @@ def write_roots_between(
 
     Parameters
     ----------
-    kind : APART or GAP.
+    kind : APART (two pairs at one height) or GAP (another peg touches), see ``two_contact_curves``.
     p, q : cells; the same cell twice for GAP.
     peg, number : peg and piece for GAP, else -1.
     stack : (DEPTH, 2) work space.
@@ -205,8 +207,10 @@ def write_roots_between(
 
 @inner
 def write_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
-    """Write cell ``number`` of a jaw to ``out`` (7,) with heights and
-    pair number as in the pattern of both jaws.
+    """Write the cell ``number`` of a jaw to ``out`` (7,), converted from the jaw's own frame to the pattern
+    of both jaws.
+
+    The heights and the number of the pair change.
     """
     for k in range(CELL_LENGTH):
         out[k] = jaw.cells[number, k]
@@ -269,7 +273,7 @@ def write_two_pairs(
 def write_third_of_jaw(
     cells: Matrix, middles: Matrix, given: HeldPart, discs: Matrix, stack: Matrix, out: Matrix
 ) -> int:
-    """Write the roots at which a third peg of a pair's own jaw touches a piece to ``out`` (N, 6).
+    """Write the roots of GAP, where a third peg of a pair's own jaw touches a piece, to ``out`` (N, 6).
 
     Return their number, or -1 when there is no room. See ``seating.columns`` for the layout of ``cells``.
 

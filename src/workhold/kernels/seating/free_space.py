@@ -1,9 +1,9 @@
 """Where a part is free between pegs: slices of the C-space, and directions in which it can be taken away.
 
 In a slice at one orientation and height a part's free places along x are intervals for each jaw. Places are
-counted from where the part lies in its seat, for the left jaw as it stands and for the right one as it stands
-there. With the jaws opened by s, x in an interval of the left and x - s in one of the right is free. A pair
-of intervals is open below s where the low end of the left less the high end of the right is less.
+counted from the part's place in its seat, with both jaws as they stand there. With the jaws opened by s, x in
+an interval of the left and x - s in one of the right is free. A pair of intervals is open below s where the
+low end of the left less the high end of the right is less.
 
 A part is taken away straight with the jaws as they stand. Seen from a peg's centre, the directions in which
 it meets a piece of the boundary from outside are a range. So are those that lead into a piece that it
@@ -47,10 +47,10 @@ OFF_TURN, OFF_SHIFT = 0.29, 0.37
 
 @inner
 def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
-    """Append a crossing (position in mm, sign): pegs enter (1) or
-    leave (-1) a part there that moves along +x.
+    """Append the position in mm at which a part moving along +x begins (sign 1) or ceases (-1) to contain a
+    peg.
 
-    Return the new number, which counts also those for which there is no room.
+    Return the new number of crossings, which counts also those for which ``crossings`` has no room.
     """
     if count < crossings.shape[0]:
         crossings[count, 0], crossings[count, 1] = at, sign
@@ -61,12 +61,13 @@ def add_crossing(crossings: Array, count: int, at: float, sign: float) -> int:
 def collect_crossings(
     config: Array, theta: float, y: float, jaw: int, obstacles: Obstacles, crossings: Array
 ) -> int:
-    """Write where a part that moves along x, at ``theta`` and ``y``,
-    crosses the pegs of a jaw to ``crossings``, unsorted.
+    """Write the positions at which a part that moves along x crosses the pegs of a jaw to ``crossings``,
+    unsorted.
 
-    The jaw stands as in ``config``. A row holds the part's shift in x from its place in ``config`` in mm, and
-    1 where a peg enters the part, -1 where it leaves. Return the number, also of those for which there is no
-    room. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    The part has the orientation ``theta`` and the height ``y``; the jaw stands as in ``config``. A row holds
+    the part's shift in x from its place in ``config`` in mm, and 1 where a peg enters the part or -1 where it
+    leaves. Return the number of crossings, also of those for which there is no room. A configuration is theta
+    in radians, x, y and the jaw separation S in mm.
     """
     cosine, sine = cos(theta), sin(theta)
     count = 0
@@ -152,8 +153,9 @@ def write_free_poses(
 ) -> int:
     """Write free poses around a seat with the jaws opened to ``out``.
 
-    Of each cell of a grid of orientations and heights, and each pair of free intervals in x, these are the
-    nearest pose and both ends. S is the jaw separation in mm.
+    For each cell of a grid of orientations and heights, and each range of x that is free of the pegs of both
+    jaws, three poses are written: the one nearest to the seat, and both ends of the range. S is the jaw
+    separation in mm.
 
     Parameters
     ----------
@@ -222,7 +224,8 @@ def add_range(low: float, sweep: float, ranges: Array, count: int) -> int:
 
 @inner
 def is_touched(row: Array, x: float, y: float) -> bool:
-    """Return whether a peg at (x, y) touches a piece, or is at most ``ENTERED`` mm inside it.
+    """Return whether a peg at (x, y) touches a piece: its centre is on the piece, or at most ``ENTERED`` mm
+    inside.
 
     See ``base.feature`` for the layout of ``row``.
     """
@@ -246,23 +249,22 @@ def add_line(row: Array, axis: float, x: float, y: float, ranges: Array, count: 
 
 @inner
 def compute_angle_from_outside(radius: float, away: float, angle: float) -> float:
-    """Return the direction in radians from a point outside a circle
-    to a point of the circle, relative to its centre's.
+    """Return the direction in radians from a point outside a circle to a point of the circle.
 
-    ``away`` is the outer point's distance from the centre; ``angle`` is that of the circle's point seen from
-    the centre, relative to the direction of the outer point.
+    The result is measured from the direction to the centre. ``angle`` is the direction of the circle's point
+    as seen from the centre, measured from that of the outer point; ``away`` is the outer point's distance
+    from the centre.
     """
     return atan2(-radius * sin(angle), away - radius * cos(angle))
 
 
 @inner
 def compute_angle_from_inside(radius: float, away: float, angle: float) -> float:
-    """Return the direction in radians from a point inside a circle to a
-    point of the circle, relative to the inner point's.
+    """Return the direction in radians from a point inside a circle to a point of the circle.
 
-    The inner point's direction is that seen from the centre, ``away`` its distance from the centre; ``angle``
-    is that of the circle's point seen from the centre, relative to it. The result stays within a quarter turn
-    of ``angle``, so it is continuous past half turns.
+    The result and ``angle``, the direction of the circle's point as seen from the centre, are measured from
+    the direction of the inner point as seen from the centre. ``away`` is the inner point's distance from the
+    centre. The result stays within a quarter turn of ``angle``, so it is continuous past half turns.
     """
     return angle + atan2(away * sin(angle), radius - away * cos(angle))
 
@@ -337,12 +339,12 @@ def add_piece(row: Array, axis: float, x: float, y: float, ranges: Array, count:
 def add_peg(
     x: float, y: float, rows: Array, axes: Array, first: int, end: int, ranges: Array, count: int
 ) -> int:
-    """Append the ranges of directions in which a peg at (x, y) meets
-    pieces ``first`` to ``end`` of its boundary.
+    """Append the ranges of directions in which a peg at (x, y) that moves straight meets pieces ``first`` to
+    ``end`` - 1.
 
-    For pieces that it touches these are the directions into them; for all others they are taken from a point
-    just off those that it touches. Return the new number of ranges. See ``base.feature`` for the layout of
-    ``rows``.
+    For pieces that the peg touches, these are the directions into them. For all other pieces, the peg is
+    first moved just off the pieces that it touches. Return the new number of ranges. See ``base.feature`` for
+    the layout of ``rows``.
     """
     beside_x, beside_y = x, y
     for k in range(first, end):
@@ -359,10 +361,11 @@ def add_peg(
 
 @inner
 def find_direction_left(ranges: Array, count: int) -> float:
-    """Return a direction in radians outside all of some open ranges, or NaN when they leave none.
+    """Return a direction in radians that lies in none of some open ranges, or NaN when they cover all
+    directions.
 
-    The search goes from the end of one range to the farthest end of a range that contains it, until none does
-    or a whole turn is covered.
+    The search begins at the end of one range and goes on to the farthest end of a range that contains it,
+    until no range does or a whole turn is covered.
     """
     if count == 0:
         return 0.0
@@ -384,7 +387,8 @@ def find_direction_left(ranges: Array, count: int) -> float:
 
 @inner
 def find_escape_direction(config: Array, obstacles: Obstacles, axes: Array, ranges: Array) -> float:
-    """Return the direction in which all pegs can leave a part, or NaN, see :func:`write_escape_directions`.
+    """Return the direction in which all pegs can leave a part straight, or NaN; see
+    :func:`write_escape_directions`.
 
     A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
@@ -409,9 +413,10 @@ def write_escape_directions(
     """Write, for each configuration (N, 4), a direction in which all
     pegs can leave the part straight to ``out``, or NaN.
 
-    It is the direction of the pegs' motion in the part's frame, in radians; no peg enters the part, which
-    comes no nearer to a wall. Only entries of ``out`` (N,) that are NaN before are computed. A configuration
-    is theta in radians, x, y and the jaw separation S in mm.
+    It is the direction in radians of the pegs' motion in the part's frame. On the way no peg enters the part,
+    and the part comes no nearer to a wall. NaN stands for no such direction. Only entries of ``out`` (N,)
+    that are NaN before are computed. A configuration is theta in radians, x, y and the jaw separation S in
+    mm.
 
     Parameters
     ----------

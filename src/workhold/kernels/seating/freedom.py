@@ -1,4 +1,5 @@
-"""Where pegs and a wall leave a part free along a self-motion."""
+"""Where pegs and a wall leave a part free along a self-motion: a motion at one jaw separation that keeps some
+contacts."""
 
 from __future__ import annotations
 
@@ -43,8 +44,8 @@ EDGE_ROUNDS, EDGE_PARTS = 5, 32
 
 @inner
 def measure_peg_clearance(x: float, y: float, peg: int, piece: int, around: Obstacles, seen: Array) -> float:
-    """Return the clearance in mm of a peg at (x, y) on the part, or a
-    lower bound of its size with the right sign.
+    """Return the clearance in mm of a peg at (x, y) on the part, or a number of the same sign that is nearer
+    to 0.
 
     Return -inf where the peg is off ``piece``, which it has to touch (-1 for none). ``seen`` (4,) caches a
     place (x, y), its clearance and the nearest piece there. A bound is returned only for a peg without a
@@ -65,11 +66,11 @@ def measure_peg_clearance(x: float, y: float, peg: int, piece: int, around: Obst
 def write_clearances(
     config: Array, touched: IntArray, known: int, around: Obstacles, seen: Array, out: Array
 ) -> bool:
-    """Write the clearances in mm of all pegs not in ``known``, and
-    last of a wall if there is one, to ``out``.
+    """Write the clearances in mm of the pegs that are not in ``known`` to ``out``, and last that of a wall if
+    there is one.
 
-    Return whether no peg and no wall enters the part and all pegs that have to touch pieces do. After the
-    first that does not, nothing more is written. S is the jaw separation in mm.
+    Return whether no peg and no wall enters the part and all pegs that have to touch pieces do. Nothing is
+    written after the first clearance that breaks this. S is the jaw separation in mm.
 
     Parameters
     ----------
@@ -97,9 +98,8 @@ def write_clearances(
 
 @inner
 def forget_seen(seen: Array) -> None:
-    """Reset the caches of P pegs and, in the last row, of an
-    orientation with its cosine and sine; ``seen`` is (P + 1, 4).
-    """
+    """Reset ``seen`` (P + 1, 4): the cached clearances of P pegs and, in the last row, a cached
+    orientation."""
     for k in range(seen.shape[0]):
         seen[k, 0], seen[k, 1], seen[k, 2], seen[k, 3] = 0.0, 0.0, 0.0, 0.0
     seen[seen.shape[0] - 1, 1] = 1.0
@@ -107,10 +107,10 @@ def forget_seen(seen: Array) -> None:
 
 @compiled
 def keep_free(motions: SelfMotions, around: Obstacles, seen: Matrix) -> int:
-    """Move the self-motions along which a part is free somewhere to the front, in place; return their number.
+    """Move the self-motions that have a free configuration to the front, in place; return their number.
 
-    Write the clearances of all pegs along them to ``motions.clear``, or lower bounds where these are large;
-    -inf in the first column of a configuration that is not free.
+    The clearances of all pegs along these motions are written to ``motions.clear``; a large clearance may be
+    replaced by a lower bound. The first column is -inf for a configuration that is not free.
 
     Parameters
     ----------
@@ -182,7 +182,8 @@ def count_touching(clear: Array) -> int:
 
 @inner
 def find_middle(clear: Array, begin: int, length: int, first: int, count: int) -> int:
-    """Return the number of the middle one of those configurations of a run at which the most pegs touch.
+    """Return the number of the middle one among the configurations of a free run at which the most pegs
+    touch.
 
     Parameters
     ----------
@@ -227,7 +228,8 @@ def find_touched_piece(config: Array, peg: int, around: Obstacles) -> int:
 
 @inner
 def write_touching(config: Array, clear: Array, touched: IntArray, around: Obstacles, row: Array) -> None:
-    """Write a configuration as a candidate (24,) whose contacts are the pegs, and wall, with clearance 0.
+    """Write a configuration as a candidate (24,) whose contacts are the pegs (and the wall) that have
+    clearance 0.
 
     ``touched`` (P,) names the piece that each peg has to touch; where it is -1, the nearest piece is written.
     A configuration is theta in radians, x, y and the jaw separation S in mm. See ``seating.columns`` for the
@@ -297,8 +299,8 @@ def write_along(
     out: Manifolds,
     number: int,
 ) -> None:
-    """Write the configurations of a free run of a self-motion, with
-    the exact ends of freedom, as set ``number`` of ``out``.
+    """Write the configurations of a free run of a self-motion, with the exact ends of the run, as set
+    ``number`` of ``out``.
 
     Parameters
     ----------

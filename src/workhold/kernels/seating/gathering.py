@@ -8,9 +8,9 @@ Candidates of subsets are kept in the subsets' own frames. Columns of a subset:
 - NAMES : four names, the pattern's numbers of its pegs, and last -1 of none.
 - SHIFT : what is added to x, y and S.
 
-Columns of what is gathered are those of a candidate, then SUBSET and ORIGIN: the subset that makes it and its
-number in the origins, -1 where none does. Of manifolds it is found what lies in which, and where descent
-paths off them begin.
+Columns of what is gathered are those of a candidate, then SUBSET and ORIGIN: the subset that the candidate
+comes from and its number in the origins, both -1 where it comes from no subset. For equilibrium manifolds,
+functions here find the configurations that lie in them and the starts of descent paths off them.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ GATHERED_LENGTH = CANDIDATE_LENGTH + 2
 
 @inner
 def write_moved(row: Array, subset: Array, out: Array) -> None:
-    """Write a candidate of a subset as one of the pattern to ``out``:
-    with pegs named and x, y, S shifted as in the pattern.
+    """Write a candidate of a subset of pegs to ``out`` as a candidate of the whole pattern: with the
+    pattern's peg numbers, and x, y, S shifted.
 
     ``subset`` is a row (11,) with NAMES (4) and SHIFT (3). See ``seating.columns`` for the layout of ``row``,
     ``seating.gathering`` for that of ``subset``. S is the jaw separation in mm.
@@ -63,10 +63,10 @@ def write_moved(row: Array, subset: Array, out: Array) -> None:
 
 @inner
 def keep_reached(out: Array, count: int, end: int, stop: float, widest: float) -> int:
-    """Keep only those of the rows ``count`` to ``end`` of ``out``
-    whose separation is between ``stop`` and ``widest``.
+    """Drop those of the rows ``count`` to ``end`` - 1 of ``out`` whose separation is not between ``stop`` and
+    ``widest``.
 
-    Their columns SUBSET and ORIGIN become -1. Return the new number of rows.
+    The rows kept move up, and their columns SUBSET and ORIGIN become -1. Return the new number of rows.
     """
     for n in range(count, end):
         if stop < out[n, SEPARATION] < widest:
@@ -146,8 +146,9 @@ MOST_CONTACTS = 4
 
 @inner
 def find_longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
-    """Return the length in mm of the longest step between neighbours
-    of ``sets[begin:end]``; turns count times ``arm``.
+    """Return the length in mm of the longest step between neighbouring configurations of ``sets[begin:end]``.
+
+    A turn in radians counts as ``arm`` times that many mm.
     """
     longest = 0.0
     for n in range(begin + 1, end):
@@ -158,7 +159,8 @@ def find_longest_step(sets: Array, begin: int, end: int, arm: float) -> float:
 
 @inner
 def is_in_manifold(config: Array, manifolds: Manifolds, number: int, arm: float, most: float) -> bool:
-    """Return whether a configuration (4,) is as near to a configuration of a set as these are to each other.
+    """Return whether a configuration (4,) lies in a set, to within the distances between neighbours in the
+    set.
 
     A configuration is theta in radians, x, y and the jaw separation S in mm.
 
@@ -224,8 +226,8 @@ def write_set(manifolds: Manifolds, number: int, out: Manifolds, at: int) -> Non
 
 @compiled
 def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifolds) -> int:
-    """Write the sets to ``out``, without those whose middle lies in a
-    set with as many contacts or more; return their number.
+    """Write the sets to ``out``, except those whose middle lies in another set with as many contacts or more;
+    return the number of sets written.
 
     Parameters
     ----------
@@ -249,7 +251,8 @@ def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifold
 
 @compiled
 def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Matrix, whose: IntVector) -> int:
-    """Write configurations just past both ends of each set to ``configs``, and return their number.
+    """Write configurations just past both ends of each equilibrium manifold to ``configs``; return their
+    number.
 
     For a set that gives way (``across`` is not NaN) they are on both sides of its middle; for a whole turn
     there are none. A configuration is theta in radians, x, y and the jaw separation S in mm.
@@ -292,8 +295,8 @@ def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Matrix,
 
 @compiled
 def write_first_of_equals(rows: Matrix, turn: float, shift: float, kept: IntVector) -> int:
-    """Write the indices of those candidates (N, 24) that equal none
-    before them to ``kept``; return their number.
+    """Write the indices of those candidates (N, 24) that equal no earlier candidate to ``kept``; return their
+    number.
 
     See ``seating.columns`` for the layout of ``rows``.
 

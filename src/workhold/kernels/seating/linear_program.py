@@ -1,4 +1,4 @@
-"""The linear programs of a step: the step farthest along an aim, and the shortest way out of what is entered.
+"""The linear programs of a step: the step farthest along an aim, and the shortest step out of obstacles.
 
 A step is in four unknowns, (theta size, x, y, S), within a box and clearances that are linearized.
 """
@@ -54,9 +54,10 @@ def write_shortest_step_out(count: int, work: DescentWorkSpace) -> None:
     """Write the shortest step with which all of ``count`` linearized
     clearances are non-negative to ``work.step``.
 
-    Where there is none, the step is as far as the method came. It is a dual active-set method: from no step
-    at all, to what is entered deepest, along the other constraints that were met, of which one that would
-    pull is let go (D. Goldfarb and A. Idnani, Mathematical Programming 27, 1983).
+    Where there is no such step, the last step of the method is left. A dual active-set method: begin with no
+    step, move to the constraint that is violated most while keeping to the constraints met before, and drop a
+    constraint whose multiplier becomes negative (D. Goldfarb and A. Idnani, Mathematical Programming 27,
+    1983).
     """
     near, basis, triangle, step, way = work.near, work.basis, work.triangle, work.step, work.way
     members = work.members
@@ -126,11 +127,12 @@ def find_direction_left(work: DescentWorkSpace, size: int, aim: Four) -> Four:
 
 @inner
 def find_strongest_normal(work: DescentWorkSpace, size: int, aim: Four) -> int:
-    """Return the row of the basis of the working constraint whose
-    multiplier is the most negative, -1 for none.
+    """Return the row of the basis (see :func:`add_normal`) whose constraint has the most negative multiplier;
+    -1 for none.
 
-    Multipliers come by back substitution in the triangle that orthogonalizing left; they are written to its
-    column 5.
+    That constraint only holds back the step along ``aim`` and is to be dropped. Multipliers come by back
+    substitution in ``work.triangle`` and are written to its column 5; ``size`` is the number of rows of the
+    basis in use.
     """
     basis, triangle = work.basis, work.triangle
     worst, dropped = -1e-9, -1
@@ -150,11 +152,11 @@ def find_strongest_normal(work: DescentWorkSpace, size: int, aim: Four) -> int:
 def find_first_block(
     count: int, trust: float, step: Four, way: Four, taken: int, work: DescentWorkSpace
 ) -> tuple[float, int]:
-    """Return how far a step can go on in the direction ``way``, and
-    the number of the constraint that ends it.
+    """Return (how far a step can go on in the direction ``way``, number of the constraint that ends it).
 
-    It is (inf, -1) where nothing does. Constraints are numbered as in :func:`add_normal`; ``taken`` has bit i
-    set for each clearance i that the direction keeps.
+    The result is (inf, -1) where nothing ends it. Constraints are numbered as in :func:`add_normal`; ``step``
+    is the step so far; bit i of ``taken`` is set for each clearance i that does not change along ``way``,
+    which is not examined.
     """
     near, length, blocking = work.near, inf, -1
     for i in range(count):
@@ -184,9 +186,9 @@ def write_best_step(count: int, trust: float, work: DescentWorkSpace, aim: Four)
     It stays within a box of half width ``trust`` mm and ``count`` linearized clearances; ``aim`` is a unit
     vector.
 
-    A primal active-set method: descend in the null space of the working normals to what blocks, and drop a
-    normal that holds back (M. J. Best and K. Ritter, *Linear Programming: Active Set Analysis and Computer
-    Programs*, 1985). S is the jaw separation in mm.
+    A primal active-set method: move in the null space of the active constraints' normals until another
+    constraint blocks, and drop a constraint that only holds the step back (M. J. Best and K. Ritter, *Linear
+    Programming: Active Set Analysis and Computer Programs*, 1985). S is the jaw separation in mm.
     """
     step, members = (0.0, 0.0, 0.0, 0.0), work.members
     size, taken = 0, 0

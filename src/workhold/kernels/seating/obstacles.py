@@ -3,7 +3,7 @@
 Corners of the part's hull, and convex arcs on it, come no nearer to a wall than they may. A row of a hull has
 the centre x and y of a piece about the centre of the part's box, and its radius. Then follow the unit vector
 to its middle, and the cosine of half its sweep. The cosine is -2 for a corner, which supports in every
-direction. See ``geometry.hull``. Whether a part covers the place that it covers elsewhere is seen from
+direction. See ``geometry.hull``. Two configurations in which a part covers the same area are recognized by
 its outline.
 """
 
@@ -31,8 +31,10 @@ Foot = tuple[float, float, float, float, float]
 
 @inner
 def compute_length(x: float, y: float) -> float:
-    """Return the length of a vector by sqrt(x^2 + y^2), in a third of
-    the time of ``hypot``; its squares must not overflow.
+    """Return the length of the vector (x, y), computed as sqrt(x^2 + y^2) because ``hypot`` takes three times
+    as long.
+
+    The squares must not overflow.
     """
     return sqrt(x * x + y * y)
 
@@ -62,7 +64,10 @@ def compute_turned_place(
 
 @inner
 def compute_cosine_and_sine(theta: float, turn: Array) -> tuple[float, float]:
-    """Return the cosine and sine of an orientation; ``turn`` (3,) caches the last orientation with both."""
+    """Return the cosine and sine of an orientation in radians.
+
+    ``turn`` (3,) caches the last orientation with its cosine and sine; it is updated in place.
+    """
     if theta != turn[0]:
         turn[0], turn[1], turn[2] = theta, cos(theta), sin(theta)
     return (turn[1], turn[2])
@@ -80,10 +85,10 @@ def compute_angle_from_middle(row: Array, dx: float, dy: float) -> float:
 
 @inner
 def is_on_piece(row: Array, x: float, y: float, slack: float) -> bool:
-    """Return whether a point of a piece's line or circle lies on the
-    piece, or past its end by at most ``slack`` mm.
+    """Return whether a point of a piece's line or circle lies on the piece, or past its end by at most
+    ``slack`` mm.
 
-    See ``base.feature`` for the layout of ``row``.
+    (x, y) must lie on the line or circle. See ``base.feature`` for the layout of ``row``.
     """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
@@ -109,14 +114,15 @@ def compute_normal(row: Array, x: float, y: float) -> tuple[float, float]:
 
 @inner
 def find_foot(row: Array, x: float, y: float, side: float) -> Foot:
-    """Return the foot of a point on a piece's line or circle.
+    """Return the foot of the perpendicular from a point to a piece's line or circle.
 
-    On a circle it is that on the point's side of the centre (``side`` 1) or on the opposite side (-1). See
-    ``base.feature`` for the layout of ``row``.
+    On a circle there are two: with ``side`` 1 the foot lies on the point's side of the centre, with -1 on the
+    opposite side; on a line ``side`` is ignored. See ``base.feature`` for the layout of ``row``.
 
     Returns
     -------
-    (x, y, outward normal's x and y, distance in mm of the point from the circle's centre, inf for a line)
+    (x and y of the foot in mm, x and y of the outward normal there, distance in mm of the point from the
+        circle's centre or inf for a line)
     """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
@@ -129,8 +135,8 @@ def find_foot(row: Array, x: float, y: float, side: float) -> Foot:
 
 @inner
 def share_normals(a: Array, b: Array) -> bool:
-    """Return whether two pieces are parallel lines or concentric arcs,
-    so that a normal of one is one of the other.
+    """Return whether two pieces are parallel lines or concentric arcs, so that each normal of one is normal
+    to the other.
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
     """
@@ -170,15 +176,15 @@ def measure_distance_to_piece(row: Array, x: float, y: float) -> float:
 def find_nearest_piece(
     x: float, y: float, rows: Array, first: int, end: int, guess: int
 ) -> tuple[float, int]:
-    """Return the distance in mm of a peg's centre from pieces
-    ``first`` to ``end`` of the boundary, and the nearest piece.
+    """Return (distance in mm of a peg's centre from pieces ``first`` to ``end`` - 1 of the boundary, the
+    nearest piece).
 
-    The distance is negative where the peg is in the part. ``guess`` is a piece that may be the nearest, to
-    save time; it is ignored outside the range.
+    The distance is negative where the peg is in the part. ``guess`` is the number of a piece that may be the
+    nearest, to save time; any other number is allowed.
 
-    Where the nearest point is an inner corner, in which two pieces end, the centre is in the part. It may lie
-    on the outer side of one of them, so that of two equally near pieces the one on whose inner side it is
-    counts. See ``base.feature`` for the layout of ``rows``.
+    Where the nearest point is an inner corner, in which two pieces end, the centre is in the part. The centre
+    may lie on the outer side of one of them. So of two equally near pieces, the piece on whose inner side the
+    centre lies counts. See ``base.feature`` for the layout of ``rows``.
     """
     best, nearest = inf, first
     if first <= guess < end:
@@ -201,17 +207,18 @@ def find_nearest_piece(
 
 @inner
 def measure_clearance(x: float, y: float, rows: Array, first: int, end: int) -> float:
-    """Return the distance of :func:`find_nearest_piece` in mm, negative where the peg is in the part.
+    """Return the distance in mm of a peg's centre (x, y) from pieces ``first`` to ``end`` - 1; negative in
+    the part.
 
-    See ``base.feature`` for the layout of ``rows``.
+    See :func:`find_nearest_piece`, and ``base.feature`` for the layout of ``rows``.
     """
     return find_nearest_piece(x, y, rows, first, end, first)[0]
 
 
 @compiled
 def write_clearances_of_points(points: Matrix, rows: Matrix, first: int, end: int, out: Vector) -> None:
-    """Write the distances in mm of peg centres (M, 2) from pieces
-    ``first`` to ``end`` to ``out`` (M,), negative in the part.
+    """Write to ``out`` (M,) the distances in mm of peg centres (M, 2) from pieces ``first`` to ``end`` - 1,
+    negative in the part.
 
     See ``base.feature`` for the layout of ``rows``.
     """
@@ -225,11 +232,11 @@ SUPPORTS = 1e-12
 
 @inner
 def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, count: int) -> int:
-    """Append the clearances from the wall within ``reach`` mm to
-    ``near`` from row ``count`` on; return the new number.
+    """Append a row to ``near`` for each piece of the part's hull that is within ``reach`` mm of the wall.
 
-    Columns are those of ``closing.write_near_clearances``, with -1 for the peg and the row of the hull as the
-    piece. A configuration is theta in radians, x, y and the jaw separation S in mm.
+    ``count`` rows are written already; return the new number. Columns are those of
+    ``closing.write_near_clearances``, with -1 for the peg and the row of the hull as the piece. A
+    configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     if obstacles.hull.shape[0] == 0:
         return count
@@ -252,11 +259,11 @@ def add_wall(config: Array, obstacles: Obstacles, reach: float, near: Array, cou
 
 @inner
 def find_wall_clearance(config: Array, obstacles: Obstacles, slack: float) -> tuple[float, int]:
-    """Return the distance in mm of the part from the wall and the row
-    of the hull that is nearest; (inf, -1) without one.
+    """Return (distance in mm of the part from the wall, row of the hull that is nearest to it); (inf, -1) for
+    no wall.
 
-    A row counts where it supports in the wall's direction, to within ``slack`` of a cosine. A configuration
-    is theta in radians, x, y and the jaw separation S in mm.
+    A row counts where the hull is supported there in the wall's direction; the cosine of the angle may miss
+    by ``slack``. A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     best, nearest = inf, -1
     if obstacles.hull.shape[0] == 0:
@@ -276,7 +283,8 @@ def find_wall_clearance(config: Array, obstacles: Obstacles, slack: float) -> tu
 
 @inner
 def measure_wall_clearance(config: Array, obstacles: Obstacles, slack: float) -> float:
-    """Return the distance in mm of the part from the wall, inf without one, see :func:`find_wall_clearance`.
+    """Return the distance in mm of the part from the wall, inf where there is no wall; see
+    :func:`find_wall_clearance`.
 
     A configuration is theta in radians, x, y and the jaw separation S in mm.
     """
@@ -287,10 +295,10 @@ def measure_wall_clearance(config: Array, obstacles: Obstacles, slack: float) ->
 def cut_by_wall(
     config: Array, theta: float, y: float, obstacles: Obstacles, intervals: Array, count: int
 ) -> int:
-    """Cut intervals (low, high) in place to where the part is clear
-    of the wall, and return how many are left.
+    """Cut intervals (low, high) of the part's shift in x in place to where the part is clear of the wall.
 
-    They are shifts of the part in x, in mm, from its place in ``config``, at ``theta`` and ``y``. A
+    The first ``count`` rows of ``intervals`` are given; return how many are left. Shifts, in mm, are counted
+    from the part's place in ``config``, but with the orientation ``theta`` and the height ``y``. A
     configuration is theta in radians, x, y and the jaw separation S in mm.
     """
     cosine, sine = cos(theta), sin(theta)
@@ -322,10 +330,9 @@ def cut_by_wall(
 
 @inner
 def is_near(x: float, y: float, row: Array, most: float) -> bool:
-    """Return whether a point is within ``most`` mm of a segment.
+    """Return whether the point (x, y) is within ``most`` mm of a segment.
 
-    For most segments their line or circle decides already that it is not. See ``base.feature`` for the layout
-    of ``row``.
+    See ``base.feature`` for the layout of ``row``.
     """
     if not is_shallow(row):
         dx, dy = x - row[X], y - row[Y]

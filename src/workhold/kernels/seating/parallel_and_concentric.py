@@ -3,9 +3,10 @@
 Forces are parallel at the tangencies of a chord, and on three parallel faces along which the part slides.
 
 About the common centre of two arcs a peg of each jaw is on the arcs, and a further one where the normal of
-its piece goes through the centre. No chord shows where: the normals of the two arcs meet in the centre
-wherever they are touched. But of the pegs of one jaw one is as far from the centre as its arc's radius, and
-the other as the foot of the centre on its piece. That places the centre, and turns the part.
+its piece goes through the centre. Chords do not tell where: the normals of the two arcs meet in the centre
+wherever the arcs are touched. But of two pegs of one jaw, one is at the distance of its arc's radius from the
+centre, and the other is at the foot of the perpendicular from the centre to its piece. That places the
+centre, and turns the part.
 """
 
 from __future__ import annotations
@@ -90,12 +91,11 @@ def write_tangent_chords(rows: Matrix, first: int, end: int, d: float, out: Matr
 def find_separation(
     theta: float, line: Array, other: Array, first: int, third: int, given: HeldPart
 ) -> tuple[bool, float]:
-    """Return (whether the forces have an x component, S in mm) for
-    two pegs on parallel lines at an orientation.
+    """Return (whether the forces have an x component, jaw separation S in mm) for two pegs on parallel lines.
 
-    Peg ``first`` is on ``line``, peg ``third`` of the other jaw on ``other``. Where lines are level, S is not
-    determined (0). See ``base.feature`` for the layout of ``line`` and ``other``. S is the jaw separation in
-    mm.
+    Peg ``first`` is on ``line``, peg ``third`` of the other jaw on ``other``. ``theta`` is the part's
+    orientation. Where the lines are level, S is not determined, and 0 is returned. See ``base.feature`` for
+    the layout of ``line`` and ``other``.
     """
     nx = cos(theta) * line[AXIS_Y] + sin(theta) * line[AXIS_X]
     ny = sin(theta) * line[AXIS_Y] - cos(theta) * line[AXIS_X]
@@ -195,8 +195,8 @@ def is_between(p: float, q: float, r: float, one: float, two: float, three: floa
 
 @compiled
 def write_on_three_faces(slides: Matrix, given: HeldPart, stop: float, widest: float, out: Matrix) -> int:
-    """Write the self-motions on three parallel faces, the middle
-    force against the outer two, to ``out`` (N, 7).
+    """Write the self-motions along three parallel faces, where the middle force opposes the outer two, to
+    ``out`` (N, 7).
 
     Two pegs of one jaw are on a slide (S, 7), and the third is of the other jaw. Return their number, -1 when
     there is no room. Columns: OF_SLIDE (number of the slide), THIRD peg, ON_THIRD (its piece), AT_THETA in
@@ -258,10 +258,11 @@ NEAREST = 1e-6
 
 @inner
 def is_touched(piece: Array, theta: float, dx: float, dy: float) -> bool:
-    """Return whether an arc's contact in the direction (dx, dy) from
-    its centre, in the frame of the pegs, lies on the arc.
+    """Return whether the direction (dx, dy) from an arc's centre leads to a point of the arc itself, not only
+    of its circle.
 
-    See ``base.feature`` for the layout of ``piece``.
+    The direction is in the frame of the pegs, theta the part's orientation. See ``base.feature`` for the
+    layout of ``piece``.
     """
     c, s, scale = cos(theta), sin(theta), piece[RADIUS] / compute_length(dx, dy)
     return is_on_piece(piece, piece[X] + scale * (c * dx + s * dy), piece[Y] + scale * (c * dy - s * dx), END)

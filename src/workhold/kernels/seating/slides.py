@@ -1,4 +1,4 @@
-"""Equilibria of parts that slide on two pegs of one jaw, on parallel faces or equal arcs, until pegs block
+"""Equilibria of parts that slide on two pegs of one jaw, along parallel faces or equal arcs, until pegs block
 them.
 
 Columns of a slide: the pegs SLIDE_FIRST and SLIDE_SECOND, the pieces SLIDE_ONE and SLIDE_TWO that they touch,
@@ -57,11 +57,12 @@ NONE = (nan, nan)
 
 @inner
 def turn_parameter_in(slide: Array, row: Array, t: float, turn: int) -> float:
-    """Return a parameter t if it lies within a slide's range, else NaN.
+    """Return a parameter t of the first peg, shifted by turns, if it then lies within a slide's range; else
+    NaN.
 
-    On an arc, t is brought into [-pi, pi) and shifted by ``turn`` (-1, 0 or 1) whole turns first; on a line
-    only turn 0 counts. See ``seating.slides`` for the layout of ``slide``, ``base.feature`` for that of
-    ``row``.
+    Two cases: (a) on an arc, t is brought into [-pi, pi) and ``turn`` (-1, 0 or 1) whole turns are added; (b)
+    on a line t stays as it is, and the result is NaN unless ``turn`` is 0. See ``seating.slides`` for the
+    layout of ``slide``, ``base.feature`` for that of ``row``.
     """
     if row[IS_ARC] != 0.0:
         t = (t + pi) % TURN - pi + turn * TURN
@@ -81,10 +82,10 @@ def compute_middle_angle(row: Array) -> float:
 
 @inner
 def compute_first_peg_place(row: Array, middle: float, t: float) -> Two:
-    """Return the place (x, y) of the first peg at parameter t of its
-    piece, with ``middle`` of :func:`compute_middle_angle`.
+    """Return the place (x, y) in mm of the first peg at the parameter t of its piece.
 
-    See ``base.feature`` for the layout of ``row``.
+    ``middle`` is the result of :func:`compute_middle_angle` for the piece. See ``base.feature`` for the
+    layout of ``row``.
     """
     if row[IS_ARC] != 0.0:
         return (row[X] + row[RADIUS] * cos(middle + t), row[Y] + row[RADIUS] * sin(middle + t))
@@ -93,10 +94,11 @@ def compute_first_peg_place(row: Array, middle: float, t: float) -> Two:
 
 @inner
 def find_track_crossings(row: Array, middle: float, nx: float, ny: float, level: float) -> Two:
-    """Return two parameters on a piece's line or circle at which n . u equals ``level``, for a unit vector n.
+    """Return the two parameters at which a point u of a piece's line or circle has n . u equal to ``level``
+    mm.
 
-    NaN stands for those that do not exist. ``middle`` is that of :func:`compute_middle_angle`. See
-    ``base.feature`` for the layout of ``row``.
+    (nx, ny) is the unit vector n. NaN stands for a parameter that does not exist; a line has at most one.
+    ``middle`` is that of :func:`compute_middle_angle`. See ``base.feature`` for the layout of ``row``.
     """
     start = nx * row[X] + ny * row[Y]
     if row[IS_ARC] != 0.0:
@@ -111,10 +113,11 @@ def find_track_crossings(row: Array, middle: float, nx: float, ny: float, level:
 
 @inner
 def begin_candidate(out: Array, slide: Array, x: float, y: float, contacts: int, given: HeldPart) -> None:
-    """Write a candidate with both contacts of a slide to ``out``
-    (24,), the first at (x, y), posed for separation 0.
+    """Write a candidate that has the two contacts of a slide to ``out`` (24,), with ``contacts`` contacts in
+    all.
 
-    See ``seating.slides`` for the layout of ``slide``, ``seating.columns`` for that of candidates.
+    The first peg is at (x, y) in the part's frame; the part is placed as at separation 0. See
+    ``seating.slides`` for the layout of ``slide``, ``seating.columns`` for that of candidates.
     """
     c, s = cos(slide[SLIDE_PSI]), sin(slide[SLIDE_PSI])
     first = int(slide[SLIDE_FIRST])
@@ -128,8 +131,8 @@ def begin_candidate(out: Array, slide: Array, x: float, y: float, contacts: int,
 def find_parallel_normals(
     slide: Array, row: Array, middle: float, piece: Array, side: float, above: float
 ) -> Two:
-    """Return two parameters of a slide at which a third peg meets a
-    piece with a normal parallel to the first peg's.
+    """Return the two parameters of a slide at which a third peg touches a piece with a normal parallel to the
+    first peg's normal.
 
     The third peg is ``above`` mm over the first; ``side`` (1 or -1) selects the sense of the normal. NaN
     stands for those that do not exist. See ``seating.slides`` for the layout of ``slide``, ``base.feature``
@@ -175,8 +178,8 @@ def compute_third_peg_place(
 
 @compiled
 def write_parallel_third_contacts(slides: Matrix, given: HeldPart, out: Matrix) -> int:
-    """Write the candidates of slides (S, 7) with a third contact, of
-    the other jaw, with a parallel normal to ``out``.
+    """Write the candidates in which a slide (S, 7) is stopped by a peg of the other jaw with a parallel
+    normal to ``out``.
 
     The third peg is on an arc or, if the part moves round an arc, on a line. Return the number of candidates
     (N, 24), -1 when there is no room. See ``seating.slides`` for the layout of ``slides``,
@@ -224,10 +227,10 @@ def write_parallel_third_contacts(slides: Matrix, given: HeldPart, out: Matrix) 
 
 @inner
 def turn_into_range(pair: Array, given: HeldPart, psi: float) -> float:
-    """Return an orientation psi shifted by whole turns and clamped
-    into the range of a pair; as it is for a pocket.
+    """Return an orientation psi shifted by whole turns and clamped into the range of a pair.
 
-    See ``seating.columns`` for the layout of ``pair``.
+    For a pocket, which has no range, psi is returned unchanged. See ``seating.columns`` for the layout of
+    ``pair``.
     """
     if pair[KIND] == 1.0:
         return psi
@@ -240,11 +243,11 @@ def turn_into_range(pair: Array, given: HeldPart, psi: float) -> float:
 def write_held_slides(
     slides: Matrix, left: JawCells, right: JawCells, given: HeldPart, pocket_pieces: IntMatrix, out: Matrix
 ) -> int:
-    """Write the candidates of slides (S, 7) with a pair of the other
-    jaw at the height where both fit to ``out`` (N, 24).
+    """Write the candidates in which a slide (S, 7) and a pair of the other jaw hold the part to ``out`` (N,
+    24).
 
-    Return their number, -1 when there is no room. See ``seating.slides`` for the layout of ``slides``,
-    ``seating.columns`` for that of candidates.
+    Slide and pair then fit the part at one height. Return the number of candidates, -1 when there is no room.
+    See ``seating.slides`` for the layout of ``slides``, ``seating.columns`` for that of candidates.
     """
     count = 0
     for n in range(slides.shape[0]):
@@ -284,11 +287,12 @@ def write_held_slides(
 
 @inner
 def find_blocking_parameters(row: Array, middle: float, piece: Array, ox: float, oy: float) -> Two:
-    """Return two parameters of a slide at which a peg is on the line
-    or circle of a piece, NaN for those that do not exist.
+    """Return the two parameters of a slide at which another peg is on the line or circle of a piece; NaN for
+    none.
 
-    The peg is (ox, oy) mm from the slide's first peg, in the part's frame. See ``base.feature`` for the
-    layout of ``row`` and ``piece``.
+    The other peg is (ox, oy) mm from the slide's first peg, in the part's frame. ``row`` is the first peg's
+    piece, ``middle`` its :func:`compute_middle_angle`. See ``base.feature`` for the layout of ``row`` and
+    ``piece``.
     """
     if piece[IS_ARC] == 0.0:
         nx, ny = piece[AXIS_Y], -piece[AXIS_X]
@@ -310,11 +314,10 @@ def find_blocking_parameters(row: Array, middle: float, piece: Array, ox: float,
 
 @compiled
 def write_blocked_slides(slides: Matrix, given: HeldPart, out: Matrix) -> int:
-    """Write the candidates of slides (S, 7) with a third contact, of a
-    peg of their own jaw that blocks them, to ``out``.
+    """Write the candidates in which a slide (S, 7) is blocked by a third peg of its own jaw to ``out``.
 
-    Their place is that at separation 0. Return the number of candidates (N, 24), -1 when there is no room.
-    See ``seating.slides`` for the layout of ``slides``, ``seating.columns`` for that of candidates.
+    The part's place is that at separation 0. Return the number of candidates (N, 24), -1 when there is no
+    room. See ``seating.slides`` for the layout of ``slides``, ``seating.columns`` for that of candidates.
     """
     count = 0
     for n in range(slides.shape[0]):

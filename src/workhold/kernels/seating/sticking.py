@@ -118,10 +118,12 @@ def find_root_between(p: Cubic, low: float, high: float) -> float:
 def is_pressing(
     straight: Array, across: Array, right: IntArray, i: int, j: int, k: int, fi: float, fj: float, fk: float
 ) -> bool:
-    """Return whether three contacts at edges of their cones balance
-    with forces of one sign that close the jaw.
+    """Return whether three contacts i, j, k balance with non-negative forces that close the jaw, at edges of
+    their cones.
 
-    ``fi``, ``fj``, ``fk`` are signed friction coefficients with which the three wrenches are dependent.
+    ``fi``, ``fj``, ``fk`` are signed friction coefficients, which must make the three wrenches linearly
+    dependent. See ``seating.sticking`` for ``straight`` and ``across``; ``right`` is 1 for contacts of the
+    jaw that moves.
     """
     h0, h1, h2, size = 0.0, 0.0, 0.0, 0.0
     for way in range(3):
@@ -149,10 +151,10 @@ def is_pressing(
 def find_friction_of_three(
     straight: Array, across: Array, right: IntArray, left_out: int, least: float
 ) -> float:
-    """Return the least friction coefficient at which three contacts,
-    all except ``left_out``, balance at edges of cones.
+    """Return the least friction coefficient at which all contacts except ``left_out`` balance, each at an
+    edge of its cone.
 
-    Return ``least`` where there is none below that.
+    Return ``least`` where there is none below ``least``.
     """
     i, j, k = (1 if left_out == 0 else 0), (2 if left_out <= 1 else 1), (3 if left_out <= 2 else 2)
     for signs in range(8):
@@ -192,10 +194,10 @@ def find_friction_of_three(
 
 @inner
 def find_friction_of_two(points: Array, normals: Array, right: IntArray, least: float) -> float:
-    """Return the least friction coefficient at which the line through
-    two contacts of both jaws lies in both cones.
+    """Return the least friction coefficient at which two of four contacts, one of each jaw, balance alone.
 
-    Return ``least`` where there is none below that. ``points`` and ``normals`` are (4, 2).
+    The line through both contacts then lies in both friction cones. Return ``least`` where there is none
+    below ``least``. ``points`` and ``normals`` are (4, 2).
     """
     for i in range(4):
         for j in range(i + 1, 4):
@@ -217,10 +219,10 @@ def find_friction_of_two(points: Array, normals: Array, right: IntArray, least: 
 
 @inner
 def is_each_pushing(matrix: Array, inverse: Array) -> bool:
-    """Return whether four forces whose wrenches add up to zero and
-    that close the jaw with force 1 are all non-negative.
+    """Return whether four forces balance with none negative.
 
-    ``matrix`` (4, 4) holds the system and is overwritten, as is ``inverse``.
+    The forces are those whose wrenches add up to zero and that close the jaw with force 1. ``matrix`` (4, 4)
+    holds the equations and is overwritten, as is ``inverse``.
     """
     if not eliminate(matrix, inverse) > SINGULAR:
         return False
@@ -232,11 +234,10 @@ def is_each_pushing(matrix: Array, inverse: Array) -> bool:
 def is_balanced(
     straight: Array, across: Array, right: IntArray, friction: float, matrix: Array, inverse: Array
 ) -> bool:
-    """Return whether three of four contacts balance the jaw inside
-    their friction cones, for a friction coefficient.
+    """Return whether some three of four contacts balance the jaw inside their friction cones.
 
-    This is the case when four of the six edges of some three cones do. ``matrix`` and ``inverse`` are (4, 4)
-    work space.
+    ``friction`` is the friction coefficient. It is enough to try four of the six edges of three cones at a
+    time. ``matrix`` and ``inverse`` are (4, 4) work space.
     """
     # Edges no longer than about 1, so that their determinant shows whether they are independent.
     along = 1.0 / max(1.0, friction)

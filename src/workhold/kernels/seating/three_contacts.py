@@ -89,8 +89,8 @@ def may_balance(s: PairState, nx: float, ny: float, ray: Ray, turn: float) -> bo
 def write_off_level(
     discs: Array, s: PairState, cosine: float, sine: float, speed: float, reach: float, off: Array
 ) -> None:
-    """Write the heights above the first peg that points in discs of
-    the part may have over a range of psi to ``off``.
+    """Write the heights above the first peg that points in given discs of the part may have over a range of
+    psi.
 
     Seen from the first peg, a point c of the part rises by x . (P - c) per radian; P moves no faster than
     ``speed`` (mm per radian). Symbols are those of ``seating.two_contact_curves``.
@@ -153,7 +153,8 @@ def judge_by_foot(
     speed: float,
     reach: float,
 ) -> int:
-    """Return the verdict on a range by the foot of P alone.
+    """Return the verdict on a range of psi by the foot of the perpendicular from the instant centre P to a
+    piece alone.
 
     NOTHING: there is no root; HALVES: halve the range; MAYBE: examine it further. See ``base.feature`` for
     the layout of ``piece``. Symbols are those of ``seating.two_contact_curves``.
@@ -191,8 +192,8 @@ def may_decide(
 ) -> bool:
     """Return whether :func:`compute_slope_range` may show that a range has at most one root, or none.
 
-    If not, it need not be called; its doubt without P' is already too large. See ``base.feature`` for the
-    layout of ``piece``. Symbols are those of ``seating.two_contact_curves``.
+    If False, that function need not be called: its doubt is too large even where P' is taken as 0. See
+    ``base.feature`` for the layout of ``piece``. Symbols are those of ``seating.two_contact_curves``.
     """
     move, gx, gy = speed * reach, s[6] - f[0], s[7] - f[1]
     turn, ratio = (0.0, 1.0) if piece[IS_ARC] == 0.0 else (asin(move / f[4]), piece[RADIUS] / f[4])
@@ -274,12 +275,13 @@ def write_roots_of_cell(
     out: Array,
     count: int,
 ) -> int:
-    """Append the roots of MISS over a cell with peg ``third`` on piece ``number`` to ``out`` (N, 6).
+    """Append the orientations in a cell at which the pair and peg ``third`` on piece ``number`` may balance
+    to ``out`` (N, 6).
 
-    Return the new number of roots, -1 when there is no room. ``middle`` (19,) is the cell's row of
-    ``write_middles``, ``side`` that of the foot. See ``seating.columns`` for the layout of ``cell``,
-    ``seating.two_contact_curves`` for that of ``middle``. Symbols are those of
-    ``seating.two_contact_curves``.
+    These are the roots of MISS. Return the new number of roots, -1 when there is no room. ``middle`` (19,) is
+    the cell's row of ``write_middles``, ``side`` selects the foot on a circle (see ``obstacles.find_foot``).
+    See ``seating.columns`` for the layout of ``cell``, ``seating.two_contact_curves`` for that of ``middle``.
+    Symbols are those of ``seating.two_contact_curves``.
     """
     pair, piece = given.pairs[int(cell[PAIR])], given.rows[number]
     k, tail, speed = int(pair[SOURCE]), int(pair[FIRST_PEG]), cell[SPEED]
@@ -368,7 +370,8 @@ def write_three_contacts(
     work: Matrix,
     out: Matrix,
 ) -> int:
-    """Write all roots of MISS at which two pegs of one jaw and one of the other may balance to ``out``.
+    """Write the orientations at which two pegs of one jaw and one of the other may balance (roots of MISS) to
+    ``out``.
 
     Return their number, -1 when there is no room. See ``seating.columns`` for the layout of ``cells``.
     Symbols are those of ``seating.two_contact_curves``.

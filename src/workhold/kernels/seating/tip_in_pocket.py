@@ -1,9 +1,9 @@
-"""A part that stands on a piece of its hull on a wall, with the tip in a pocket.
+"""A part that stands on a piece of its hull on a wall, with the tip of a clamp in a pocket of its boundary.
 
-Let the tip be in a pocket. The distance of the locator from another piece, or from its circle by squares, is
-then a trigonometric polynomial of second degree. Its derivatives are bounded by its coefficients. Where the
-wall is along the tip's travel, the orientation follows from the tip's height alone, by one of the first
-degree.
+With the tip in a pocket, the distance of the locator from another piece (for an arc, a difference of squares
+of distances) is a trigonometric polynomial in theta of second degree. Its derivatives are bounded by its
+coefficients. Where the wall is along the tip's travel, the tip's height alone determines the orientation, by
+such a polynomial of first degree.
 """
 
 from __future__ import annotations
@@ -33,9 +33,10 @@ ROUNDING = 2e-15
 
 @inner
 def evaluate_waves(waves: Waves, theta: float) -> tuple[float, float]:
-    """Return the value and derivative at theta (radians) of a trigonometric polynomial.
+    """Return (value, derivative) of a trigonometric polynomial at theta in radians.
 
-    Coefficients: constant, of cos and sin theta, of cos and sin 2 theta.
+    ``waves`` are its coefficients: the constant, then those of cos theta, sin theta, cos 2 theta and sin 2
+    theta.
     """
     c, s = cos(theta), sin(theta)
     twice_c, twice_s = c * c - s * s, 2.0 * s * c
@@ -47,12 +48,12 @@ def evaluate_waves(waves: Waves, theta: float) -> tuple[float, float]:
 def write_zeros(waves: Waves, low: float, high: float, stack: Array, found: Array) -> int:
     """Write the zeros of a trigonometric polynomial in [low, high] to ``found`` (N, 2); return their number.
 
-    The columns are theta in radians, and 1 where it is undecided whether there is a zero, else 0. At most N
-    are written, which may be only some if the polynomial nearly vanishes everywhere.
+    The columns are theta in radians, and a flag: 1 where it is undecided whether there is a zero, else 0. At
+    most N are written, which may be only some if the polynomial nearly vanishes everywhere.
 
     Parameters
     ----------
-    waves : coefficients: constant, of cos and sin theta, of cos and sin 2 theta.
+    waves : coefficients, see :func:`evaluate_waves`.
     stack : (DEPTH, 2) work space.
     """
     first, second = hypot(waves[1], waves[2]), hypot(waves[3], waves[4])
@@ -85,11 +86,12 @@ def write_zeros(waves: Waves, low: float, high: float, stack: Array, found: Arra
 def make_distance_waves(
     row: Array, ox: float, oy: float, dx: float, dy: float, along: float, above: float
 ) -> Waves:
-    """Return the locator's distance from a line or circle, as
-    coefficients of a trigonometric polynomial in theta.
+    """Return the locator's distance from a line or circle as the coefficients of a trigonometric polynomial
+    in theta.
 
-    It is the signed distance in mm from a line; for a circle, the difference of squares |locator - centre|^2
-    - R^2 over 2 R. The part turns about its point (ox, oy). See ``base.feature`` for the layout of ``row``.
+    Two cases: (a) for a line, the signed distance in mm; (b) for a circle, (|locator - centre|^2 - R^2) / (2
+    R). The part turns about its point (ox, oy). See :func:`evaluate_waves` for the coefficients,
+    ``base.feature`` for the layout of ``row``.
 
     Parameters
     ----------

@@ -64,11 +64,10 @@ def has_none(values: Interval) -> bool:
 
 @inner
 def judge_range(turn: Interval, middle: float, value: Interval, slope: Interval) -> tuple[int, Interval]:
-    """Return the verdict on a range by a function's value in its
-    middle and its slope, and what is left of the range.
+    """Return (verdict on a range of orientations, the part of the range that may have roots of a function).
 
-    NONE: no root; HALVES: halve the range; REST: go on with what is left; ROOT: one root, known to ``KNOWN``
-    radians; IN_DOUBT: too narrow or hardly steep.
+    NONE: no root; HALVES: halve the range; REST: go on with the part returned; ROOT: one root, known to
+    ``KNOWN`` radians; IN_DOUBT: the range is too narrow to be halved, or the function hardly steep.
 
     Parameters
     ----------
@@ -93,10 +92,10 @@ def judge_range(turn: Interval, middle: float, value: Interval, slope: Interval)
 
 @inner
 def push_rest(verdict: int, turn: Interval, looked: int, stack: Array, depth: int) -> int:
-    """Push a range on the stack, as it is for the verdict REST, else as two halves; return the new depth.
+    """Push a range on the stack, whole if the verdict is REST, else as two halves; return the new depth.
 
     Return -1, with nothing pushed, when the range is too narrow to be halved, there is no room, or
-    ``looked``, the number of ranges examined, has reached ``MOST_RANGES``.
+    ``looked``, the number of ranges examined so far, has reached ``MOST_RANGES``.
     """
     if verdict == REST:
         stack[depth, 0], stack[depth, 1] = turn

@@ -8,8 +8,8 @@ With r_a and r_b the unit normals at both contacts, w from the first contact u t
 
 Beside a tangency P runs off, and its speed is of little use. But both cross products change no faster than
 the directions in them turn. So p is bounded by their quotient from below, and from above where the divisor
-cannot vanish. Seen from the part, what is far off is in a direction that hardly changes. To either side of
-its middle a range moves u by max(p) times half its width at most. What rounding does to a computed chord is
+cannot vanish. Seen from the part, a far point lies in a direction that hardly changes. To either side of its
+middle a range moves u by max(p) times half its width at most. What rounding does to a computed chord is
 bounded in ``chord.evaluation``.
 
 Roots of three functions of the orientation are equilibria.
@@ -103,10 +103,9 @@ def compute_pair_state(pair: Array, given: HeldPart, psi: float) -> PairState:
 
 @inner
 def is_on_its_pieces(pair: Array, given: HeldPart, psi: float, x: float, y: float) -> bool:
-    """Return whether the contacts of a pair at psi, the first at
-    (x, y), lie on their pieces; curves go past the ends.
+    """Return whether both contacts of a pair at psi lie on their pieces, the first peg being at (x, y).
 
-    See ``seating.columns`` for the layout of ``pair``.
+    Curves go a little past the ends of pieces. See ``seating.columns`` for the layout of ``pair``.
     """
     if pair[KIND] == 1.0:
         return True
@@ -121,23 +120,23 @@ def is_on_its_pieces(pair: Array, given: HeldPart, psi: float, x: float, y: floa
 def compute_pair_height(
     pair: Array, given: HeldPart, x: float, y: float, cosine: float, sine: float
 ) -> float:
-    """Return the part's height as a pair fixes it: the height of the
-    first peg's place on the part minus the peg's own.
+    """Return minus the height in mm of the part's origin when a pair holds the part.
 
-    (x, y) is that place, ``cosine`` and ``sine`` are those of psi. Pairs that hold the part together have
-    equal heights. See ``seating.columns`` for the layout of ``pair``.
+    It is the height of the first peg's place (x, y) on the part, above the part's origin, minus the height of
+    the peg itself. ``cosine`` and ``sine`` are those of psi. Pairs that hold the part together have equal
+    heights. See ``seating.columns`` for the layout of ``pair``.
     """
     return cosine * y - sine * x - given.pegs[int(pair[FIRST_PEG]), 1]
 
 
 @inner
 def write_cell(cell: Array, number: int, low: float, high: float, speed: float, given: HeldPart) -> None:
-    """Write the cell (7,) of pair ``number`` over psi in [low, high],
-    shifted by whole turns so that LOW is in [0, 2 pi).
+    """Write the cell (7,) of the pair ``number`` over [low, high] of psi, shifted by whole turns so that LOW
+    is in [0, 2 pi).
 
-    ``speed`` bounds that of P in mm per radian. Bounds of the height h follow from h' = -x . P and h'' = -y .
-    P - x . P'. See ``seating.columns`` for the layout of ``cell``. Symbols are those of
-    ``seating.two_contact_curves``.
+    ``speed`` bounds that of the instant centre P in mm per radian. The bounds of the height h follow from h'
+    = -x . P and h'' = -y . P - x . P'. See ``seating.columns`` for the layout of ``cell``. Symbols are those
+    of ``seating.two_contact_curves``.
     """
     pair = given.pairs[number]
     middle, reach = (low + high) / 2.0, (high - low) / 2.0
@@ -211,10 +210,14 @@ OF_DIRECTION, OF_BOUND = 1e-15, 1e-9
 
 @inner
 def make_ray(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach: float) -> Ray:
-    """Return the ray of a pair over a range of psi, with distances from 0 to inf where nothing is known.
+    """Return the ray of a pair over a range of psi: the half line from the first contact on which the instant
+    centre P lies.
 
-    See ``Ray`` for its seven numbers. See ``base.tables`` for the layout of ``curve``, ``base.feature`` for
-    that of ``a`` and ``b``. Symbols are those of ``seating.two_contact_curves``.
+    Its seven numbers are: least and largest distance of P from the first contact in mm (0 and inf where
+    nothing is known), the ray's unit vector (x, y) in the middle of the range, how far the contact moves to
+    either side of its place there in mm, and how far the normals at both contacts turn in radians. See
+    ``base.tables`` for the layout of ``curve``, ``base.feature`` for that of ``a`` and ``b``. Symbols are
+    those of ``seating.two_contact_curves``.
 
     Parameters
     ----------
@@ -322,16 +325,16 @@ def is_foot_off(
     ray: Ray,
     reach: float,
 ) -> bool:
-    """Return whether, over a range, the ray shows that a third
-    contact at the foot of P cannot balance a pair.
+    """Return whether a third contact at the foot of P certainly cannot balance a pair anywhere in a range of
+    psi.
 
-    That is, the foot is off the piece, off the third peg's level, or the force there cannot balance the other
-    two. See ``base.feature`` for the layout of ``piece``. Symbols are those of
-    ``seating.two_contact_curves``.
+    It cannot where the foot is off the piece, or not at the third peg's height, or where the force there
+    cannot balance the other two. Bounds follow from the ray. See ``base.feature`` for the layout of
+    ``piece``. Symbols are those of ``seating.two_contact_curves``.
 
     Parameters
     ----------
-    side : of the foot, see ``obstacles.find_foot``.
+    side : which foot on a circle, see ``obstacles.find_foot``.
     push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
     above : height of the third peg over the first, in mm.
     s, cosine, sine : pair and orientation in the middle of the range.
@@ -432,16 +435,16 @@ def measure_gap(piece: Array, x: float, y: float) -> float:
 
 @inner
 def have_no_root(f_low: float, f_high: float) -> bool:
-    """Return whether a function's values at two orientations have one
-    sign and neither is within ``AT_END`` of 0.
-    """
+    """Return whether two values of a function have one sign and neither is within ``AT_END`` of 0."""
     return f_low * f_high > 0.0 and min(abs(f_low), abs(f_high)) > AT_END
 
 
 @inner
 def find_root_between(function: RootFunction, low: float, high: float) -> tuple[bool, float]:
-    """Return (found, psi): whether a function changes its sign over
-    [low, high] or is 0 at an end, and a root there.
+    """Return (found, psi): whether the function has a root in [low, high], and such a root.
+
+    A root is found where the values at the ends differ in sign, or one of them is within ``AT_END`` of 0.
+    Where none is found, psi is the end with the value nearer to 0.
     """
     f_low = evaluate_root_function(function, low)
     f_high = evaluate_root_function(function, high)
@@ -465,10 +468,10 @@ def find_root_between(function: RootFunction, low: float, high: float) -> tuple[
 
 @inner
 def is_level(function: RootFunction, low: float, high: float, least: float) -> bool:
-    """Return whether a function's value in the middle of a range is clearly not 0.
+    """Return whether a function clearly has no root in a range too narrow to be cut.
 
-    Its absolute value exceeds ``least`` and twice the differences from the values at both ends. It is meant
-    for ranges too narrow to cut.
+    That is so where the absolute value in the middle exceeds ``least`` and twice the differences from the
+    values at both ends.
     """
     f = evaluate_root_function(function, (low + high) / 2.0)
     f_low = evaluate_root_function(function, low)

@@ -1,5 +1,5 @@
-"""A part that stands on a piece of its hull on a wall, between a locator and a tip: where three forces
-balance.
+"""A part that stands on a piece of its hull on a wall, between a locator and a clamp's tip: orientations at
+which the three forces balance.
 
 The part turns about the centre of that piece, which keeps its distance from the wall. The separation S
 follows from the orientation, and the forces balance where S' = 0, enclosed with S'' by intervals
@@ -97,7 +97,8 @@ def compute_both_contacts(
     way: float,
     within: bool,
 ) -> tuple[Contact, Contact]:
-    """Return the contacts of locator and tip over a range of orientations, see ``turning.compute_contact``.
+    """Return (contact of the locator, contact of the tip) over a range of orientations, see
+    ``turning.compute_contact``.
 
     See ``seating.turning`` for the layout of ``locator`` and ``tip``.
 
@@ -105,7 +106,7 @@ def compute_both_contacts(
     ----------
     locator, tip : shapes of the pieces that they touch.
     high : see :func:`compute_heights`.
-    upright : whether the wall is.
+    upright : whether the wall is upright.
     turn : range of theta in radians.
     way : ``facing`` of the locator's contact.
     within : whether only the pieces themselves count, not their whole lines or circles.
@@ -125,9 +126,9 @@ def compute_rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
     """Return (whether wall, locator and tip may all press, whether S
     is smooth throughout, enclosures of S' and S'').
 
-    ``one`` and ``two`` are the contacts of locator and tip, ``wall`` is the half plane (3,). With b =
-    (1, tan) of the tip, unit forces along x: the locator's force is what that leaves along the wall, and the
-    wall's is the rest. S is the jaw separation in mm.
+    ``one`` and ``two`` are the contacts of locator and tip, ``wall`` is the half plane (3,). The tip's force
+    has the component 1 along x. The locator's force balances the tip's along the wall, and the wall's force
+    balances the rest. S is the jaw separation in mm.
     """
     if not (one[0] and two[0]):
         return NOWHERE
@@ -204,8 +205,8 @@ def write_balance(
     out: Array,
     count: int,
 ) -> int:
-    """Append the candidate of three contacts at orientation
-    ``theta``, if these may lie on their pieces, to ``out``.
+    """Append the candidate of three contacts at orientation ``theta`` to ``out``, if the contacts may lie on
+    their pieces.
 
     Return the new number of candidates, -1 when there is no room. See ``seating.turning`` for the layout of
     ``shapes``.

@@ -51,8 +51,8 @@ class ToolkitRules:
 
     Parameters
     ----------
-    toolkit : what is judged by them.
-    every : whether all pairs of clamps of a seat are listed; else one pair stands for them.
+    toolkit : the toolkit that fixtures are judged by.
+    every : whether all pairs of clamps of a seat are listed; otherwise one listed pair stands for them.
     """
 
     toolkit: Toolkit
@@ -65,7 +65,7 @@ class ToolkitRules:
 
     @cached_property
     def carriers(self) -> dict[str, Carrier]:
-        """What pegs stand on, by name."""
+        """The carriers on which pegs stand, by name."""
         return {one.name: one for one in self.toolkit.carriers}
 
     @cached_property
@@ -90,7 +90,9 @@ class ToolkitRules:
 
     @cached_property
     def jaw(self) -> EndedWall | None:
-        """The wall with ends, centred on the columns beside it; None for an endless wall or none."""
+        """The wall with ends, centred on the columns beside it; None where the toolkit has no wall or an
+        endless one.
+        """
         for wall in self.walls:
             columns = self.lattices[0].columns
             if wall.width is not None and columns is not None:
@@ -128,15 +130,19 @@ class ToolkitRules:
 
     @cached_property
     def stroke(self) -> ClampStroke:
-        """The rules of each clamp's stroke; a travel of minus the stroke puts the tip at its hole."""
+        """The rules of each clamp's stroke.
+
+        Where a clamp has a stroke, its tip is at its hole at a travel of minus the stroke.
+        """
         travel = next((tip.travel for tip in self.tips.values()), None)
         span = None if travel is None or travel.most is None else (-travel.most, -travel.least)
         return ClampStroke(span, self.wall_noun)
 
     @cached_property
     def from_lowest(self) -> tuple[str, ...]:
-        """The nouns, of "column" and "row", that count from the lowest in use;
-        rows beside a wall count from the wall.
+        """Those of the nouns "column" and "row" that are counted from the lowest one in use.
+
+        Rows beside a wall are counted from the wall instead.
         """
         if self.walls:
             return () if self.jaw is not None else ("column",)
@@ -172,7 +178,9 @@ class ToolkitRules:
 
     @property
     def same_words(self) -> str:
-        """The words that call a fixture a repeat of an earlier one, before its number."""
+        """Words of a message that a fixture is the same as an earlier one; the earlier one's number follows
+        them.
+        """
         is_one = self.every or self.clamps < 2
         return "it is the same as" if is_one else "it has the seat and the directions of"
 
@@ -186,7 +194,7 @@ class ToolkitRules:
 
     @property
     def wider_words(self) -> str:
-        """The words for wider queries that a listing also answers."""
+        """The words that name queries with weaker limits, whose results would contain this listing too."""
         fewer = "fewer restrictions or more"
         if not self.clamps:
             return f"a smaller gap or contact margin, a larger opening, more rows, {fewer} types"
@@ -206,7 +214,7 @@ class ToolkitRules:
         return [(name, peg) for name, peg in named if not peg.is_on_wall]
 
     def compute_travels(self, fixture: Fixture) -> dict[str, float]:
-        """Return the travels in mm of a fixture by name: one, or one for each of two clamps."""
+        """Return the travels of a fixture in mm by name; one travel, or with two clamps one for each."""
         if not self.clamps:
             return {"opening": fixture.travel}
         if self.clamps == 1:
@@ -215,8 +223,10 @@ class ToolkitRules:
         return {f"place of the tip of {name} on its line": travel for name, travel in named}
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
-        """Return whether a fixture has the pegs of its type and directions, in order;
-        pegs of two jaws may come in any order.
+        """Return whether a fixture has exactly the pegs that its type and directions ask for, in the right
+        order.
+
+        The order of pegs of two jaws does not matter.
         """
         directions, carriers = list_directions(fixture), self.carriers.values()
         pegs = next((one.pegs for one in self.toolkit.arrangements if one.name == fixture.type), ())
@@ -228,12 +238,12 @@ class ToolkitRules:
         return len(directions) == self.clamps and order(there) == order(wanted)
 
     def complete_fixture(self, fixture: Fixture) -> Fixture:
-        """Return a fixture with the travels, in mm, that put its clamps' tips where they are written.
+        """Return a fixture with travels in mm added, at which its clamps' tips are where they are written.
 
         Raises
         ------
         InputError
-            When it is of another type, or stands on something else.
+            When the fixture is of another type, or its pegs stand on carriers that the toolkit does not have.
         """
         types = self.toolkit.types
         clamps = 2 if fixture.pair is not None else 1 if fixture.direction is not None else 0
@@ -262,8 +272,9 @@ class ToolkitRules:
         return (0.0, 0.0) if travel is None else travel.unit
 
     def make_contact(self, peg: Peg, side: Side) -> BallContact:
-        """Return the contact of a peg or clamp tip with a side; a flat lies on
-        lines, and elsewhere the peg is round.
+        """Return the contact of a peg or clamp tip with a side.
+
+        A peg with a flat touches a straight side by its flat, and an arc by its round body.
         """
         carrier = self.carriers[peg.carrier]
         body = None if carrier.flat is None else arb(carrier.peg_radius)
@@ -271,9 +282,9 @@ class ToolkitRules:
         return BallContact(self.place(peg), make_exact_point(*self.find_way(peg)), side, radius, body=body)
 
     def make_contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
-        """Return the contacts of all pegs of a fixture, in their order.
+        """Return the contacts of all pegs of a fixture, in the order of the pegs.
 
-        Of two clamps the first has travel 0 and the second travel 1.
+        With two clamps, the first has travel 0 and the second travel 1 (indices of the pose's travels).
         """
         on_wall = [outline.faces[peg.face] for peg in fixture.pegs if peg.is_on_wall]
         written = BallPose.from_written(fixture.pose)
@@ -291,8 +302,10 @@ class ToolkitRules:
     def find_pressed_contacts(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> list[BallContact]:
-        """Return the contacts that take up the forces at a pose; on a jaw with
-        ends, those of the common stretch.
+        """Return the contacts at which the forces act at a pose.
+
+        They are ``contacts``, but on a wall that has ends (a flat jaw) the ends of the stretch common to part
+        and jaw take the place of the ends of the whole contact.
         """
         if self.jaw is None:
             return [*contacts]
@@ -308,11 +321,11 @@ class ToolkitRules:
         outline: BallOutline,
         shares: Sequence[arb],
     ) -> Iterator[Finding]:
-        """Yield a finding where a jaw with ends does not reach its force, or other
-        columns would hold the part better.
+        """Yield a finding where a jaw with ends is too short for its force, or other columns would hold the
+        part better.
 
-        ``contacts`` and ``shares`` are those of an endless wall; yields nothing for a toolkit without such a
-        jaw.
+        ``contacts`` and ``shares`` are those for an endless wall. Yields nothing for a toolkit without a jaw
+        with ends.
         """
         if self.jaw is None:
             return
@@ -327,9 +340,9 @@ class ToolkitRules:
         yield from self.jaw.judge(columns, force_at, select_outline_for(outline, WALL), pose)
 
     def number_shared_faces(self, fixture: Fixture, contacts: Sequence[BallContact]) -> list[int]:
-        """Return a number for each contact; contacts with equal numbers share one error of a face.
+        """Return a number for each contact; contacts with the same number share the error of one face.
 
-        It is the face's number, or a negative one for a corner on a wall, which has an error of its own.
+        It is the face's number, or a negative number for a corner on a wall, which has an error of its own.
         """
         out = [peg.face for peg in fixture.pegs]
         for place, contact in enumerate(contacts):
@@ -357,8 +370,10 @@ class ToolkitRules:
                 yield from judge_slack(AGREEMENT - off, words)
 
     def judge_question(self, fixture: Fixture) -> Iterator[Finding]:
-        """Yield a finding where a fixture lacks the pegs of its type, two share a
-        hole, or directions are not asked for.
+        """Yield a finding where a fixture does not answer the query: wrong pegs for its type, or directions
+        not asked for.
+
+        Also yields one where two pegs share a hole.
         """
         directions, pegs = list_directions(fixture), fixture.pegs
         if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
@@ -386,8 +401,9 @@ class ToolkitRules:
                 yield Finding(True, f"two {carrier.peg}s are in the same hole")
 
     def judge_hole_numbers(self, fixture: Fixture) -> Iterator[Finding]:
-        """Yield a finding for each column or row that the carrier does not have, or
-        that is not counted from the lowest.
+        """Yield a finding for each column or row that the carrier does not have.
+
+        Also yields one where columns or rows that should be counted from the lowest in use are not.
         """
         standing = self.list_placed(fixture)
         for noun in ("column", "row"):
@@ -409,12 +425,14 @@ class ToolkitRules:
     def is_counted(self, peg: Peg, noun: str) -> bool:
         """Return whether a peg's column or row (``noun``) is a number of the lattice.
 
-        An unbolted clamp has only its line: the row if it moves along x, else the column.
+        For a clamp that is not bolted only its line is: the row if it moves along x, else the column.
         """
         return not find_direction(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
 
     def judge_clamp_place(self, name: str, clamp: Peg) -> Iterator[Finding]:
-        """Yield a finding where a clamp is not named by its hole, or if unbolted by its line."""
+        """Yield a finding where a bolted clamp is not named by its hole, or an unbolted clamp by its row or
+        column.
+        """
         is_bolted = self.stroke.span is not None
         place = name_clamp_place(
             self.lattices[0].name, find_direction(clamp), clamp.column, clamp.row, is_bolted
@@ -428,7 +446,7 @@ class ToolkitRules:
     def judge_standing(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> Iterator[Finding]:
-        """Yield a finding where walls, jaws, locators or clamps cannot stand as they do at a pose."""
+        """Yield a finding for each wall, jaw, locator or clamp that cannot stand as it does at a pose."""
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
         if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
@@ -461,15 +479,18 @@ class ToolkitRules:
                 )
 
     def fits(self, noun: str, numbers: Sequence[int]) -> bool:
-        """Return whether the fixed lattice has columns or rows (``noun``) of
-        these numbers, after any allowed shift.
+        """Return whether the fixed carrier has columns or rows (``noun``) of these numbers.
+
+        Where they are counted from the lowest in use, only their span must fit.
         """
         count, lowest = getattr(self.lattices[0], f"{noun}s"), min(numbers) if noun in self.from_lowest else 0
         return min(numbers) >= lowest and (count is None or max(numbers) - lowest < count)
 
     def find_crowding(self, fixture: Fixture) -> str:
-        """Return a sentence, without full stop, on the first peg in a blocked hole or
-        pair of bodies that overlap; else "".
+        """Return a sentence, without full stop, on the first peg in a blocked hole or the first two bodies
+        that overlap.
+
+        Returns "" where there are none.
         """
         pegs = [(peg, self.carriers[peg.carrier]) for peg in fixture.pegs]
         for name, (peg, carrier) in zip(self.names, pegs, strict=True):

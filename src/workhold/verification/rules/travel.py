@@ -79,9 +79,10 @@ def judge_opening(jaw: Carrier, separation: arb) -> Iterator[Finding]:
 
 
 def judge_nearest_rows(jaw: Carrier, lowest: int, separation: arb) -> Iterator[Finding]:
-    """Yield a finding where a jaw that slides along its rows could have its pegs one row nearer.
+    """Yield a finding where a jaw that slides along its rows could have its pegs one row nearer to the part.
 
-    ``lowest`` is the first row in use. One row nearer, the jaw is one pitch farther from the wall.
+    ``lowest`` is the first row in use and ``separation`` is in mm. With the pegs one row nearer, the jaw
+    would stand one pitch farther from the wall.
     """
     assert jaw.travel is not None
     if lowest > 0:
@@ -122,18 +123,21 @@ def is_along_x(clamp: Peg) -> bool:
 
 
 def find_clamp_line(clamp: Peg) -> int:
-    """Return the row of a clamp along x, or the column of a clamp along y, counted from 0."""
+    """Return the index, from 0, of a clamp's line: its row if it moves along x, its column if along y."""
     return clamp.row if is_along_x(clamp) else clamp.column
 
 
 def count_quarter_turns(direction: str) -> int:
-    """Return the number, 0 to 3, of counter-clockwise quarter turns from -x to a clamp's direction."""
+    """Return the number, 0 to 3, of counter-clockwise quarter turns that carry the direction -x to
+    ``direction``.
+    """
     return ("-x", "-y", "+x", "+y").index(direction)
 
 
 def turn_hole_back(turns: int, column: int, row: int) -> tuple[int, int]:
-    """Return column and row of a hole after the plate is turned clockwise by
-    ``turns`` (0 to 3) quarter turns.
+    """Return (column, row) of a hole after the plate is turned clockwise by ``turns`` quarter turns, 0 to 3.
+
+    Both may become negative.
     """
     return ((column, row), (row, -column), (-column, -row), (-row, column))[turns]
 
@@ -162,8 +166,9 @@ class ClampStroke:
 
     Parameters
     ----------
-    span : least and most in mm from its hole to its tip; None for a clamp that is its tip alone.
-    wall : name of the wall that it keeps clear of; empty where there is none.
+    span : (least, most) distance in mm from its hole to its tip; None for a clamp that consists of its tip
+        alone.
+    wall : name of the wall that the clamp must keep clear of; empty where there is none.
     """
 
     span: tuple[float, float] | None
@@ -177,10 +182,10 @@ class ClampStroke:
         pose: BallPose,
         outline: BallOutline,
     ) -> Iterator[Finding]:
-        """Yield a finding where a clamp's stroke is out of range, or the clamp
-        enters the wall, a locator or the part.
+        """Yield a finding where a clamp's stroke is out of range, or the clamp's body enters the wall, a
+        locator or the part.
 
-        ``locators`` are contacts by name; ``name`` is the clamp's in messages.
+        ``locators`` are (name, contact); ``name`` is the clamp's name in messages.
         """
         tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
         if self.wall:
@@ -228,8 +233,9 @@ class ClampStroke:
             )
 
     def judge_nearest_hole(self, name: str, stroke: arb, pitch: float) -> Iterator[Finding]:
-        """Yield a finding where a clamp could be bolted one hole nearer: ``stroke``
-        less ``pitch`` mm is still in range.
+        """Yield a finding where the clamp could be bolted one hole nearer to its tip.
+
+        It could where its ``stroke`` less one ``pitch``, both in mm, is still in range.
         """
         assert self.span is not None
         yield from judge_slack(
@@ -241,7 +247,9 @@ class ClampStroke:
     def judge_clearance_between(
         self, one: BallContact, other: BallContact, pose: BallPose
     ) -> Iterator[Finding]:
-        """Yield a finding where two clamps, each from hole to tip with its radius, overlap."""
+        """Yield a finding where two clamps overlap; each is the strip from hole to tip, out to the clamp's
+        radius.
+        """
         tips = one.place(pose), other.place(pose)
         holes = tips if self.span is None else (one.hole, other.hole)
         apart = measure_piece_distance(*zip(tips, holes, strict=True)) - one.radius - other.radius
@@ -263,10 +271,10 @@ def measure_piece_distance(one: tuple[Point, Point], other: tuple[Point, Point])
 def compute_capsule_clearance(
     start: Point, end: Point, radius: arb, sides: Iterable[Side], enough: float
 ) -> arb:
-    """Return the distance in mm from a capsule to the nearest of some sides,
-    negative inside, at most ``enough``.
+    """Return the least distance in mm between a capsule and any of the sides; negative where they overlap.
 
-    The capsule's axis runs from start to end, which must differ.
+    The capsule is all that is within ``radius`` of the line from ``start`` to ``end``, which must differ.
+    Distances of more than ``enough`` mm are returned as ``enough``.
     """
     piece = make_line_side(start, end)
     middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
@@ -291,11 +299,10 @@ def compute_piece_distance(piece: LineSide, side: Side) -> arb:
 
 
 def find_nearest_places(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
-    """Yield (place, distance) where a segment's line may be nearest to a side:
-    mm from the segment's start, and mm.
+    """Yield (place, distance), in mm, for each point of a segment's line that may be nearest to a side.
 
-    Places may lie beyond the segment's ends. These are crossings with a line; of an arc also the foot from
-    its centre.
+    The place is measured from the segment's start and may lie beyond its ends. The points are crossings with
+    the side's line or circle, and of an arc also the foot of the perpendicular from its centre.
     """
     if isinstance(side, ArcSide):
         ray = side.measure_from_center(piece.start)

@@ -1,12 +1,13 @@
 """A straight wall that the part lies flush on, as two contacts at the ends of a hull edge.
 
-A wall that has ends, such as a flat jaw, reaches over some x. What the part touches of its line, faces along
-it, joints and arcs, is met there from the first point to the last, the common stretch. The wall pushes at the
-ends of that. Where its force acts follows from the pegs alone, however far the wall reaches.
-
 The wall runs along x at y = 0 with the part above it. What touches it is derived from the outline at the
 written pose: the lowest joints and convex arcs. The two ends are contacts like any other, each with an
 equation of its own: its lowest point is at y = 0.
+
+A wall that has ends, such as a flat jaw, covers only a range of x. The part touches the wall's line in faces
+along it, joints and arcs. The stretch from the first to the last of these points within that range is the
+common stretch, and the wall pushes at its ends. Where the wall's total force acts follows from the pegs
+alone, and does not depend on the range.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class WallSupport:
 
     Parameters
     ----------
-    center, bow : of the arc, and its radius; the joint itself and 0; in mm in the workpiece's frame.
+    center, bow : centre and radius of the arc, or the joint itself and 0; in mm in the workpiece's frame.
     faces : numbers of the arc, or of the two faces that meet at the joint.
     """
 
@@ -71,9 +72,10 @@ class WallContact(BallContact):
 
     Parameters
     ----------
-    piece : what touches.
-    faces : numbers of the arc, of a face that lies along the wall, or of the two that meet at a joint.
-    length : of the contact with the wall, in mm.
+    piece : the joint or arc.
+    faces : numbers of the arc, or at a joint of a face that lies along the wall, else of the two that meet
+        there.
+    length : of the part's contact with the wall, in mm.
     """
 
     is_flush: ClassVar[bool] = True
@@ -107,10 +109,10 @@ class WallContact(BallContact):
 
 
 def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
-    """Return the left and the right end of the part's contact with a wall at a
-    pose; ``sides`` are those they are given.
+    """Return [left end, right end] of the part's contact with a wall at a pose.
 
-    Where nothing lies on the wall, the two lowest points are taken.
+    ``sides`` gives the side of each contact, left first. Where nothing lies on the wall, the two lowest
+    points are the ends.
     """
     lows = [
         (float(y.mid()), float(x.mid()), piece)
@@ -131,8 +133,8 @@ def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPo
 
 
 def list_supports(outline: BallOutline, pose: BallPose) -> Iterator[WallSupport]:
-    """Yield all convex arcs that have a horizontal tangent at their lowest
-    point, then all joints of an outline.
+    """Yield the supports of an outline at a pose: first convex arcs with a horizontal tangent at their lowest
+    point, then all joints.
     """
     down = -pose.sine, -pose.cosine
     for face, side in outline.faces.items():
@@ -146,8 +148,9 @@ def list_supports(outline: BallOutline, pose: BallPose) -> Iterator[WallSupport]
 
 
 def find_end(flat: Sequence[tuple[float, WallSupport]]) -> WallSupport:
-    """Return the support with the least place of (place in mm, support); among
-    equal ones a joint rather than an arc.
+    """Return the support with the least place; where several have it, a joint rather than an arc.
+
+    ``flat`` holds (place in mm, support).
     """
     least = min(place for place, _ in flat)
     near = [low for low in flat if low[0] <= least + AGREEMENT]
@@ -155,8 +158,9 @@ def find_end(flat: Sequence[tuple[float, WallSupport]]) -> WallSupport:
 
 
 def find_touching_numbers(end: WallSupport, outline: BallOutline, pose: BallPose) -> tuple[int, ...]:
-    """Return the face of a joint that lies along the wall; without one, the
-    numbers of all faces of the support.
+    """Return the face numbers of the wall contact at a support.
+
+    At a joint of a face that lies along the wall it is that face alone, otherwise all faces of the support.
     """
     for face in end.faces:
         side = outline.faces[face]
@@ -212,8 +216,8 @@ class EndedWall:
         return arb(self.columns - 1) * self.pitch / 2
 
     def find_common_stretch(self, outline: BallOutline, pose: BallPose, shift: arb) -> SharedStretch | None:
-        """Return the common stretch once the part is shifted by ``shift`` mm along
-        x; None where part and jaw share none.
+        """Return the stretch common to part and jaw once the part is shifted by ``shift`` mm along x; None
+        where there is none.
         """
         first, last = self.middle - arb(self.width) / 2 - shift, self.middle + arb(self.width) / 2 - shift
         lefts: list[tuple[arb, int, tuple[int, ...]]] = []
@@ -239,8 +243,9 @@ class EndedWall:
     def limit_contacts(
         self, ends: Sequence[WallContact], outline: BallOutline, pose: BallPose
     ) -> list[WallContact]:
-        """Return the ends of the common stretch as contacts, or the given
-        ``ends`` where part and jaw share none.
+        """Return the contacts at the ends of the stretch common to part and jaw.
+
+        Returns ``ends`` unchanged where part and jaw have no common stretch.
         """
         found = self.find_common_stretch(outline, pose, arb(0))
         if found is None:
@@ -255,10 +260,11 @@ class EndedWall:
     def judge(
         self, columns: Sequence[int], force_at: arb, outline: BallOutline, pose: BallPose
     ) -> Iterator[Finding]:
-        """Yield a finding where the jaw does not reach the wall's force, or other
-        columns would hold the part better.
+        """Yield a finding where the jaw does not reach the wall's force, or other columns would hold the part
+        better.
 
-        The pegs stand in ``columns``, and the force of the wall acts at ``force_at``, x in mm.
+        ``columns`` are those in which the pegs stand; ``force_at`` is the x in mm at which the wall's force
+        acts.
         """
         first, found = min(columns), dict[int, tuple[SharedStretch, arb]]()
         for column in range(self.columns - (max(columns) - first)):
@@ -324,11 +330,11 @@ def check_flush(
     outline: BallOutline,
     stated: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
-    """Yield a finding where the part does not lie flush on a wall, or its two
-    ends are not where they are written.
+    """Yield a finding where the part does not lie flush on a wall, or its two ends are not where they are
+    written.
 
-    ``ends`` are those of the whole contact, ``stated`` those that the file states: the ends of what the wall
-    reaches of it; None means the same. ``noun`` names the wall in messages.
+    ``ends`` are (name, peg, contact) of the whole contact. ``stated`` are the contacts that the file states,
+    limited to what the wall covers; None means those of ``ends``. ``noun`` names the wall in messages.
     """
     (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
     yield from judge_slack(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
