@@ -38,7 +38,7 @@ def algebra_result(part: str, pitch: float, columns: int, peg_radius: float) -> 
     from workhold import Query
     from workhold.algebra import engine
 
-    solve, spent = vars(engine)["orientations"], [0.0, 0.0]
+    solve, spent = vars(engine)["find_candidate_orientations"], [0.0, 0.0]
 
     def orientations(*arguments: Any) -> Any:
         """Orientations of systems, with the time they take."""
@@ -48,12 +48,12 @@ def algebra_result(part: str, pitch: float, columns: int, peg_radius: float) -> 
         spent[1] += process_time() - before
         return outcome
 
-    vars(engine)["orientations"] = orientations
+    vars(engine)["find_candidate_orientations"] = orientations
     workpiece, vise = loaded(part, pitch, columns, peg_radius)
     start, before = perf_counter(), process_time()
     result = engine.find_fixtures_by_algebra(Query(workpiece, vise))
     seconds, processor = perf_counter() - start, process_time() - before
-    vars(engine)["orientations"] = solve
+    vars(engine)["find_candidate_orientations"] = solve
     return result, {
         "found": dict(result.found),
         "systems": result.statistics["systems"],

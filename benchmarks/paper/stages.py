@@ -72,7 +72,11 @@ def timed(part: str, pitch: float, columns: int, peg_radius: float = PEG_RADIUS)
     Problem.from_query = watched("features", Problem.from_query)  # type: ignore[method-assign]
     ToolkitSearch.from_problem = watched("curves", ToolkitSearch.from_problem)  # type: ignore[method-assign]
     vars(design)["run_blocks"] = watched("searching", design.run_blocks)
-    for stage, name in (("deciding", "take"), ("deciding", "finish_deciding"), ("measuring", "measure")):
+    for stage, name in (
+        ("deciding", "take_records"),
+        ("deciding", "finish_deciding"),
+        ("measuring", "measure"),
+    ):
         setattr(ResultCollector, name, watched(stage, getattr(ResultCollector, name)))
     vars(results)["add_table"] = watched("ranking", results.add_table)
     best: dict[str, float] = {}

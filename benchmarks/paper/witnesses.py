@@ -99,12 +99,12 @@ def found_by_naive_roots(result: Any, tolerance: float) -> Any:
     """What the algebra lists with roots in doubles; every other step is proven as always."""
     from workhold.algebra import engine
 
-    kept = vars(engine)["orientations"]
-    vars(engine)["orientations"] = naive_roots(tolerance)
+    kept = vars(engine)["find_candidate_orientations"]
+    vars(engine)["find_candidate_orientations"] = naive_roots(tolerance)
     try:
         return engine.find_fixtures_by_algebra(result.query)
     finally:
-        vars(engine)["orientations"] = kept
+        vars(engine)["find_candidate_orientations"] = kept
 
 
 def missing(result: Any, few: Any) -> list[Any]:
