@@ -257,13 +257,14 @@ def test_straps_over_supports_need_the_least_force_of_all_sets(count, pitch):
     result = workhold.design(BLOCK, plate, loads=loads, thickness=25, strapped=2, best=2)
     for fixture in result:
         search = StrapSearch(fixture, result.query, make_question(result.query))
-        found = SupportedStraps(search, PadPlaces.of(search))
+        found = SupportedStraps(search, PadPlaces.from_search(search))
         pads, strapped = found.list_sets()
         needs = [
             max(need)
             for some, number in zip(pads.tolist(), strapped.tolist(), strict=True)
-            if found.stands(np.array([some]))[0]
-            and None not in (need := found.needs(StrappedTriple(tuple(some), found.combinations[number])))
+            if found.find_stable(np.array([some]))[0]
+            and None
+            not in (need := found.compute_needs(StrappedTriple(tuple(some), found.combinations[number])))
         ]
         hold = fixture.hold
         assert len(needs) > 10 and hold.clamp_needed == pytest.approx(min(needs), rel=1e-9)

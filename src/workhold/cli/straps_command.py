@@ -144,7 +144,7 @@ def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion
 
 def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dict[str, Any]:
     """Return the straps found as plain data for JSON: pegs, pose, straps, friction, safety factor and weight."""
-    from workhold.model.friction import COUNTED_BY_STRAPS, find_friction_coefficient
+    from workhold.model.friction import find_friction_coefficient
 
     return {
         "type": "strapped",
@@ -154,7 +154,7 @@ def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dic
         ],
         "pose": {"theta_deg": fixture.pose.theta_deg, "x": fixture.pose.x, "y": fixture.pose.y},
         **found.to_data(),
-        "friction": {name: find_friction_coefficient(asked.friction, name) for name in COUNTED_BY_STRAPS},
+        "friction": {name: find_friction_coefficient(asked.friction, name) for name in asked.counted},
         "safety": asked.safety,
         "weight": asked.weight,
     }

@@ -18,8 +18,6 @@ from workhold.limits import MOST_FRICTION, convert_real
 
 __all__ = [
     "COEFFICIENTS",
-    "COUNTED_BY_STRAPS",
-    "COUNTED_OVER_SUPPORTS",
     "SAFETY",
     "FrictionCoefficient",
     "Coefficients",
@@ -57,9 +55,6 @@ COEFFICIENTS: Mapping[str, FrictionCoefficient] = {
     "support": FrictionCoefficient(0.10, "support and milled steel", "as of a smooth jaw"),
     "tip": FrictionCoefficient(0.10, "clamp tip and milled steel", "as of a smooth jaw"),
 }
-# Those that count where straps press a part down onto the plate, and onto supports.
-COUNTED_BY_STRAPS = "tip", "plate"
-COUNTED_OVER_SUPPORTS = "tip", "support"
 
 
 def to_coefficients(value: Any) -> Coefficients | None:

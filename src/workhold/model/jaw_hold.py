@@ -30,6 +30,7 @@ __all__ = [
     "ProgramJawForce",
     "Rectangle",
     "choose_hold_ranking",
+    "find_largest_force",
 ]
 
 # Least and greatest x, then least and greatest z, in mm.
@@ -133,6 +134,12 @@ class ProgramJawForce:
     move: int
 
 
+def find_largest_force(needs: Sequence[float | None]) -> float | None:
+    """Return the largest of some forces in N; None where there is none, and where one of them is None."""
+    known = [need for need in needs if need is not None]
+    return max(known) if known and len(known) == len(needs) else None
+
+
 @frozen
 class JawHold:
     """Hold of a part between two flat jaws.
@@ -194,9 +201,7 @@ class JawHold:
         """Jaw force in N that the worst load or tool needs; None without loads and program, and where no
         force is enough.
         """
-        each = self.forces_needed
-        known = [one for one in each if one is not None]
-        return max(known) if known and len(known) == len(each) else None
+        return find_largest_force(self.forces_needed)
 
     @property
     def forces_needed(self) -> tuple[float | None, ...]:

@@ -19,7 +19,7 @@ from workhold.errors import InputError
 from workhold.fixels.strap_set import StrapSet
 from workhold.limits import convert_real, refuse_long
 from workhold.model.first_choice import has_house_order
-from workhold.model.jaw_hold import ProgramJawForce
+from workhold.model.jaw_hold import ProgramJawForce, find_largest_force
 from workhold.model.quality import Figure
 
 __all__ = [
@@ -198,8 +198,7 @@ class StrappedHold:
         """Force in N of each strap that the worst load needs; None without loads, and where no force is
         enough.
         """
-        each = [one for one in self.needs if one is not None]
-        return max(each) if each and len(each) == len(self.needs) else None
+        return find_largest_force(self.needs)
 
     @property
     def is_unfit(self) -> bool:

@@ -34,7 +34,7 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.geometry.symmetry import find_rotations_onto_itself
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.friction import find_friction_coefficient
-from workhold.model.jaw_hold import JawHold, JawPatch, ProgramJawForce
+from workhold.model.jaw_hold import JawHold, JawPatch, ProgramJawForce, find_largest_force
 from workhold.model.notes import NoFixture, Note, Remark, Stage
 from workhold.model.program import Program
 from workhold.model.quality import round_number_coarsely
@@ -621,15 +621,6 @@ class JawSearch:
         ends = hold.fixed.ends, hold.moving.ends
         if max(one[1] for one in ends) >= self.jaws.width or min(one[0] for one in ends) <= 0.0:
             yield "the part reaches to the end of the jaws or beyond"
-
-
-def find_largest_force(needs: Sequence[float | None]) -> float | None:
-    """Return the largest of some forces in N; None where one of them is None.
-
-    At least one force must be given.
-    """
-    known = [need for need in needs if need is not None]
-    return max(known) if len(known) == len(needs) else None
 
 
 def is_square(theta: float) -> bool:

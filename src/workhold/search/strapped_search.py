@@ -240,7 +240,7 @@ def find_strapped_holds(
     query = result.query
     straps = query.toolkit.strap_set
     assert straps is not None
-    wanted, seated = query.strapped or USUAL_SEATS, 0
+    asked, wanted, seated = make_question(query), query.strapped or USUAL_SEATS, 0
     unseen = StrappedHold((), None, None, (), straps.max_force, is_looked_at=False)
     holds = [unseen] * len(result)
     for place in range(len(result)):
@@ -249,7 +249,7 @@ def find_strapped_holds(
         if cancel is not None and cancel.is_set():
             return holds, False
         fixture = result[place]
-        search = StrapSearch(fixture, query, make_question(query))
+        search = StrapSearch(fixture, query, asked)
         holds[place] = search.find_best(cancel) if query.is_loaded else search.find_unloaded_hold()
         seated += holds[place].push is not None
         if progress is not None:

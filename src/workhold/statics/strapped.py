@@ -9,6 +9,7 @@ computed, and why it is safe, is in :mod:`workhold.statics.friction`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from math import pi
 
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 from workhold.statics.friction import DIRECTIONS
 from workhold.statics.patches import PressedPolygon
 
-__all__ = ["StrappedPart", "StrapsOnPart"]
+__all__ = ["PressingTips", "StrappedPart", "StrapsOnPart"]
 
 Array = NDArray[np.float64]
 
@@ -112,6 +113,44 @@ class StrappedPart:
             return self.friction * np.eye(len(self.below))
         cells = self.below.cells
         return np.asarray(self.friction * (self.below.compute_pressures(cells.centre) * cells.area).T)
+
+
+@frozen(eq=False)
+class PressingTips:
+    """The N places at which tips may press on a part, and what a tip does to the part there.
+
+    Parameters
+    ----------
+    part : the part without straps.
+    at : (N, 2) points of the tips in mm.
+    heights : (N,) heights of the faces under them in mm, above the part's lower side.
+    coefficient : coefficient of friction between a tip and the part.
+    """
+
+    part: StrappedPart
+    at: Array
+    heights: Array
+    coefficient: float
+
+    @cached_property
+    def down(self) -> Array:
+        """Wrenches (N, 6) of a tip that presses down with 1 N at each place."""
+        return self.part.compute_level_wrenches(self.at, self.heights, (0.0, 0.0, -1.0))
+
+    @cached_property
+    def friction(self) -> Array:
+        """Wrenches (N, 16, 6) of a friction force of 1 N on the part at each place, in 16 directions."""
+        return self.part.compute_friction_wrenches(self.at, self.heights)
+
+    def press(self, chosen: Sequence[int], part: StrappedPart | None = None) -> StrapsOnPart:
+        """Return a part with straps at some places, given by index; ``part`` is its own if None."""
+        numbers = list(chosen)
+        return StrapsOnPart(part or self.part, self.down[numbers], self.friction[numbers], self.coefficient)
+
+    def compute_work(self, motion: Array) -> Array:
+        """Return the work (N,) that a tip at each place does on a motion (6,), with its friction, per N of force."""
+        rubbed = (self.friction @ motion).max(axis=1, initial=0.0)
+        return np.asarray(self.down @ motion + self.coefficient * rubbed)
 
 
 @frozen(eq=False)

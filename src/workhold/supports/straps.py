@@ -32,14 +32,12 @@ from workhold.geometry.loop import make_loop_segments
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.friction import (
-    COUNTED_BY_STRAPS,
-    COUNTED_OVER_SUPPORTS,
     SAFETY,
     Coefficients,
     find_friction_coefficient,
     to_coefficients,
 )
-from workhold.model.jaw_hold import ProgramJawForce
+from workhold.model.jaw_hold import ProgramJawForce, find_largest_force
 from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone
@@ -48,10 +46,10 @@ from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.statics.friction import MotionProgram, enclose_directions
 from workhold.statics.jaw_program import CuttingPieces, PressedPart, find_worst_move
 from workhold.statics.patches import PressedPolygon
-from workhold.statics.strapped import StrappedPart, StrapsOnPart
+from workhold.statics.strapped import PressingTips, StrappedPart, StrapsOnPart
 from workhold.supports.hand_push import find_hand_push
 from workhold.supports.strap_places import StrapPlaces, find_strap_places
-from workhold.supports.straps_over_supports import PadPlaces, SupportedStraps
+from workhold.supports.straps_over_supports import ALIKE, PadPlaces, SupportedStraps
 from workhold.supports.straps_past_tools import are_clear
 
 __all__ = [
@@ -71,8 +69,6 @@ BoolArray = NDArray[np.bool_]
 CHORD = 0.1
 # How far beside the kern in mm the middle of the tips may be by rounding.
 KERN_SLACK = 1e-7
-# By how much, of a force, sets are no better than one another.
-ALIKE = 1e-9
 LOCATORS = 3
 # What stands for the thickness in mm of a part that nothing loads, where nobody says.
 UNKNOWN_HEIGHT = 1.0
@@ -114,7 +110,7 @@ class StrapQuestion:
     @property
     def counted(self) -> tuple[str, str]:
         """Names of the two coefficients of friction that are used."""
-        return COUNTED_OVER_SUPPORTS if self.is_over_supports else COUNTED_BY_STRAPS
+        return "tip", self.below
 
     def find_plate(self, fixture: Fixture) -> Carrier:
         """Return the plate of a fixture, with the holes for locators."""
@@ -264,9 +260,9 @@ class StrapSearch:
     @cached_property
     def part(self) -> StrappedPart:
         """The part on the plate, without straps."""
-        return self.part_on(self.foot)
+        return self.make_part_on(self.foot)
 
-    def part_on(self, below: PressedPolygon | Array) -> StrappedPart:
+    def make_part_on(self, below: PressedPolygon | Array) -> StrappedPart:
         """Return the part, without straps, on its foot or on the points (S, 2) of S supports."""
         fixture, request = self.fixture, self.asked.request
         touched, inward = fixture.contact_points[self.locators], -fixture.normals[self.locators]
@@ -306,11 +302,6 @@ class StrapSearch:
         )
         return StrapPlaces(places.hole[clear], places.at[clear])
 
-    @cached_property
-    def heights(self) -> Array:
-        """Height in mm of the face under the tip at each place, (P,)."""
-        return self.measure_heights(self.places.at)
-
     def measure_heights(self, at: Array) -> Array:
         """Return the height in mm, above the part's lower side, of the
         face under tips at points (N, 2), as (N,).
@@ -321,19 +312,14 @@ class StrapSearch:
         return np.array([request.find_clamped_height((float(x), float(y))) for x, y in back.apply(at)])
 
     @cached_property
-    def down(self) -> Array:
-        """Wrenches (P, 6) of a tip that presses down with 1 N at each place."""
-        return self.part.compute_level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
+    def tips(self) -> PressingTips:
+        """Tips at all P places."""
+        return self.make_tips(self.part, self.places.at)
 
-    @cached_property
-    def tip_friction(self) -> Array:
-        """Wrenches (P, 16, 6) of a friction force of 1 N on the part at each place, in 16 directions."""
-        return self.part.compute_friction_wrenches(self.places.at, self.heights)
-
-    @property
-    def coefficient(self) -> float:
-        """Coefficient of friction between a tip and the part."""
-        return find_friction_coefficient(self.asked.friction, "tip")
+    def make_tips(self, part: StrappedPart, at: Array) -> PressingTips:
+        """Return the tips that may press on a part at points (N, 2), in mm in the plate's frame."""
+        friction = find_friction_coefficient(self.asked.friction, "tip")
+        return PressingTips(part, at, self.measure_heights(at), friction)
 
     @cached_property
     def loads(self) -> list[Array]:
@@ -370,7 +356,7 @@ class StrapSearch:
         cuts = CuttingPieces.from_program(program, self.asked.request.thickness)
         return cuts if len(cuts) else None
 
-    def program_need(self, grip: StrapsOnPart) -> ProgramJawForce | None:
+    def find_program_need(self, grip: StrapsOnPart) -> ProgramJawForce | None:
         """Return the largest strap force that the program's tools need,
         and at which move; None without their forces.
         """
@@ -380,12 +366,12 @@ class StrapSearch:
         theta = radians(pose.theta_deg)
         return find_worst_move(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, self.weight)
 
-    def reckon(self, grip: StrapsOnPart, keep: Callable[[Array, float], None], enough: float) -> float:
+    def compute_force(self, grip: StrapsOnPart, keep: Callable[[Array, float], None], enough: float) -> float:
         """Return the force in N of each strap that loads and program need,
         or a lower bound of it that exceeds ``enough``.
 
         inf where no force holds. For a program, the need is that of the hardest load found by an ascent; the
-        need in the final answer is proven (:meth:`program_need`). ``keep`` is called with each motion (6,)
+        need in the final answer is proven (:meth:`find_program_need`). ``keep`` is called with each motion (6,)
         that a load drives, and the power of the load on it.
         """
         program, need = MotionProgram(grip), 0.0
@@ -393,22 +379,23 @@ class StrapSearch:
             force, motion = program.find_driven_motion(row)
             power = float(-row @ motion)
             if force is None:
-                keep(motion / np.abs(motion).max(), power / np.abs(motion).max())
+                size = np.abs(motion).max()
+                keep(motion / size, power / size)
                 return inf
             if force > need:
                 need = force
                 keep(motion, power)
             if need > enough:
                 return need
-        return need if self.cuts is None else max(need, self.reckon_program(self.cuts, grip, keep))
+        return need if self.cuts is None else max(need, self.compute_program_force(self.cuts, grip, keep))
 
-    def reckon_program(
+    def compute_program_force(
         self, cuts: CuttingPieces, grip: StrapsOnPart, keep: Callable[[Array, float], None]
     ) -> float:
         """Return the force in N of each strap that the program needs,
         by the hardest load that an ascent finds.
 
-        ``keep`` is called as in :meth:`reckon`.
+        ``keep`` is called as in :meth:`compute_force`.
         """
         pose, motions = self.fixture.pose, MotionProgram(grip)
         theta = radians(pose.theta_deg)
@@ -419,31 +406,24 @@ class StrapSearch:
             keep(motion, float(-load @ motion))
         if force == inf:
             _, motion = motions.find_driven_motion(hardest)
-            keep(motion / np.abs(motion).max(), float(-hardest @ motion) / np.abs(motion).max())
+            size = np.abs(motion).max()
+            keep(motion / size, float(-hardest @ motion) / size)
         return force
-
-    def place_straps(self, chosen: Sequence[int]) -> StrapsOnPart:
-        """Return the part with straps at some places, given by index."""
-        numbers = list(chosen)
-        return StrapsOnPart(self.part, self.down[numbers], self.tip_friction[numbers], self.coefficient)
 
     def compute_needs(self, chosen: Sequence[int]) -> tuple[float | None, ...]:
         """Return, for each load, the force in N that each strap at some
         places needs; None where no force holds the load.
         """
-        return self.needs_of(self.place_straps(chosen))
+        return self.compute_needs_of(self.tips.press(chosen))
 
-    def needs_of(self, grip: StrapsOnPart) -> tuple[float | None, ...]:
+    def compute_needs_of(self, grip: StrapsOnPart) -> tuple[float | None, ...]:
         """Return, for each load, the force in N that each strap on a part
         needs; None where no force holds the load.
         """
         program = MotionProgram(grip)
         out = []
         for rows in self.loads:
-            forces = [program.find_least_force(row) for row in rows]
-            out.append(
-                None if None in forces else max((one for one in forces if one is not None), default=0.0)
-            )
+            out.append(find_largest_force([program.find_least_force(row) for row in rows]))
         return tuple(out)
 
     def find_compatible_pairs(self) -> BoolArray:
@@ -462,7 +442,7 @@ class StrapSearch:
         After ``cancel``, the best straps found so far.
         """
         if self.asked.is_over_supports:
-            return self.best_over_supports(cancel)
+            return self.find_best_over_supports(cancel)
         hold = evolve(self.find_unloaded_hold(), places=len(self.places))
         chosen = SetSearch(self).find_least(self.asked.straps.count, cancel)
         if chosen is None:
@@ -472,7 +452,7 @@ class StrapSearch:
             Strap(
                 (int(self.places.hole[k, 0]), int(self.places.hole[k, 1])),
                 (float(self.places.at[k, 0]), float(self.places.at[k, 1])),
-                float(self.heights[k]),
+                float(self.tips.heights[k]),
             )
             for k in chosen
         )
@@ -480,17 +460,17 @@ class StrapSearch:
             hold,
             straps=straps,
             clamp_needed_each=each,
-            program_need=self.program_need(self.place_straps(chosen)),
+            program_need=self.find_program_need(self.tips.press(chosen)),
         )
 
-    def best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
+    def find_best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
         """Return the supports, and the straps over them, that need the least force.
 
         A hold without straps where there are no places for them.
         """
-        pads = PadPlaces.of(self)
+        pads = PadPlaces.from_search(self)
         hold, found = evolve(self.find_unloaded_hold(), places=len(pads)), SupportedStraps(self, pads)
-        chosen = found.least(cancel)
+        chosen = found.find_least(cancel)
         if chosen is None:
             return hold
         raised = (self.query.toolkit.supports or SupportPads()).height or 0.0
@@ -499,15 +479,18 @@ class StrapSearch:
         holes = [(int(column), int(row)) for column, row in pads.hole]
         straps = tuple(
             Strap(
-                bolt, (float(pads.at[k, 0]), float(pads.at[k, 1])), float(found.heights[k]) + raised, holes[k]
+                bolt,
+                (float(pads.at[k, 0]), float(pads.at[k, 1])),
+                float(found.tips.heights[k]) + raised,
+                holes[k],
             )
             for k, bolt in zip(chosen.strapped, bolts, strict=True)
         )
         return evolve(
             hold,
             straps=straps,
-            clamp_needed_each=found.needs(chosen),
-            program_need=self.program_need(found.on(chosen)),
+            clamp_needed_each=found.compute_needs(chosen),
+            program_need=self.find_program_need(found.place_straps(chosen)),
             supports=tuple(holes[k] for k in chosen.pads),
         )
 
@@ -631,14 +614,11 @@ class SetSearch:
         The motions that are found on the way are kept.
         """
         search = self.search
-        return search.reckon(search.place_straps(chosen.tolist()), self.keep_motion, self.least_force)
+        return search.compute_force(search.tips.press(chosen.tolist()), self.keep_motion, self.least_force)
 
     def keep_motion(self, motion: Array, power: float) -> None:
         """Append a motion (6,) and the power of the load that drives it, for bounds."""
-        search = self.search
-        rubbed = (search.tip_friction @ motion).max(axis=1, initial=0.0)
-        work = search.down @ motion + search.coefficient * rubbed
-        self.work = np.column_stack([self.work, work])
+        self.work = np.column_stack([self.work, self.search.tips.compute_work(motion)])
         self.power = np.append(self.power, power)
 
 

@@ -31,7 +31,7 @@ from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
 from workhold.statics.friction import BROKEN
-from workhold.statics.strapped import StrappedPart, StrapsOnPart
+from workhold.statics.strapped import PressingTips, StrappedPart, StrapsOnPart
 from workhold.supports.choosing import list_triples
 from workhold.supports.faces import TouchableFace, compute_area_center
 from workhold.supports.holes import find_holes_under_face
@@ -41,7 +41,7 @@ from workhold.supports.straps_past_tools import are_clear, keep_clear
 if TYPE_CHECKING:
     from workhold.supports.straps import StrapSearch
 
-__all__ = ["StrappedTriple", "PadPlaces", "SupportedStraps", "find_middle", "stand_on"]
+__all__ = ["StrappedTriple", "PadPlaces", "SupportedStraps", "find_middle", "contain_point"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -75,7 +75,7 @@ class PadPlaces:
         return len(self.hole)
 
     @classmethod
-    def of(cls, search: StrapSearch) -> PadPlaces:
+    def from_search(cls, search: StrapSearch) -> PadPlaces:
         """Return the holes that may hold a support under the part of a search.
 
         Raises
@@ -147,7 +147,7 @@ def find_middle(fixture: Fixture, workpiece: Workpiece) -> Array:
     return np.array(fixture.pose.apply(float(x), float(y)))
 
 
-def stand_on(middle: Array, corners: Array) -> BoolArray:
+def contain_point(middle: Array, corners: Array) -> BoolArray:
     """Return a mask (N,): True for triangles that contain a point (2,), also on a side.
 
     ``corners`` (N, 3, 2) are those of the triangles, in either sense of rotation.
@@ -205,36 +205,21 @@ class SupportedStraps:
     @cached_property
     def whole(self) -> StrappedPart:
         """The part on all H pads together, without straps."""
-        return self.search.part_on(self.places.at)
+        return self.search.make_part_on(self.places.at)
 
     @cached_property
-    def heights(self) -> Array:
-        """Height in mm, above the part's lower side, of the face over each pad, (H,)."""
-        return self.search.measure_heights(self.places.at)
+    def tips(self) -> PressingTips:
+        """Tips over all H pads."""
+        return self.search.make_tips(self.whole, self.places.at)
 
-    @cached_property
-    def down(self) -> Array:
-        """Wrenches (H, 6) of a tip that presses down with 1 N over each pad."""
-        return self.whole.compute_level_wrenches(self.places.at, self.heights, (0.0, 0.0, -1.0))
-
-    @cached_property
-    def tip_friction(self) -> Array:
-        """Wrenches (H, 16, 6) of a friction force of 1 N on the part over each pad, in 16 directions."""
-        return self.whole.compute_friction_wrenches(self.places.at, self.heights)
-
-    def on(self, chosen: StrappedTriple) -> StrapsOnPart:
+    def place_straps(self, chosen: StrappedTriple) -> StrapsOnPart:
         """Return the part on three supports, with straps over some of them."""
         part = evolve(self.whole, below=self.places.at[list(chosen.pads)])
-        return self.strap(part, chosen.strapped)
+        return self.tips.press(chosen.strapped, part)
 
-    def strap(self, part: StrappedPart, strapped: Sequence[int]) -> StrapsOnPart:
-        """Return a part with straps over the pads ``strapped``, given by index."""
-        numbers = list(strapped)
-        return StrapsOnPart(part, self.down[numbers], self.tip_friction[numbers], self.search.coefficient)
-
-    def needs(self, chosen: StrappedTriple) -> tuple[float | None, ...]:
+    def compute_needs(self, chosen: StrappedTriple) -> tuple[float | None, ...]:
         """Return, for each load, the force in N that each strap needs; None where no force holds the load."""
-        return self.search.needs_of(self.on(chosen))
+        return self.search.compute_needs_of(self.place_straps(chosen))
 
     def find_bolts(self, strapped: Sequence[int]) -> tuple[tuple[int, int], ...] | None:
         """Return holes (column, row) for the bolts of straps over some
@@ -285,41 +270,41 @@ class SupportedStraps:
             strapped.append(numbers[numbers >= 0])
         return np.concatenate(pads), np.concatenate(strapped)
 
-    def stands(self, pads: IntArray) -> BoolArray:
+    def find_stable(self, pads: IntArray) -> BoolArray:
         """Return a mask (N,): True for three pads on which the part stands before it is strapped.
 
         The centre of the part's area must be over their triangle. ``pads`` is (N, 3).
         """
         middle = find_middle(self.search.fixture, self.search.query.workpiece)
-        return stand_on(middle, self.places.at[pads])
+        return contain_point(middle, self.places.at[pads])
 
-    def least(self, cancel: Event | None = None) -> StrappedTriple | None:
+    def find_least(self, cancel: Event | None = None) -> StrappedTriple | None:
         """Return the supports and straps that need the least force; None where there are no places for them.
 
         Sets on which the part stands come first. Where no force is enough, the first set.
         """
         pads, strapped = self.list_sets()
-        stands = self.stands(pads)
+        stands = self.find_stable(pads)
         first: StrappedTriple | None = None
         for chosen in (stands, ~stands):
             some, of = pads[chosen], strapped[chosen]
             if not len(some):
                 continue
-            number, force = self.least_of(some, of, cancel)
+            number, force = self.find_least_of(some, of, cancel)
             found = StrappedTriple(tuple(some[number].tolist()), self.combinations[int(of[number])])
             if force < inf:
                 return found
             first = first or found
         return first
 
-    def least_of(self, pads: IntArray, strapped: IntArray, cancel: Event | None) -> tuple[int, float]:
+    def find_least_of(self, pads: IntArray, strapped: IntArray, cancel: Event | None) -> tuple[int, float]:
         """Return (1) the index of the set that needs the least force, and
         (2) this force in N; inf where none is enough.
 
         ``pads`` (N, 3) and ``strapped`` (N,) are as :meth:`list_sets` returns them.
         """
         members = np.array(self.combinations, np.int64).reshape(len(self.combinations), -1)[strapped]
-        bounds, seen = self.bounds(pads, members), len(self.power)
+        bounds, seen = self.bound_forces(pads, members), len(self.power)
         best, least = 0, inf
         while cancel is None or not cancel.is_set():
             number = int(bounds.argmin())
@@ -329,17 +314,16 @@ class SupportedStraps:
             if chosen.strapped not in self.relaxed:
                 # On all pads together no more is needed than on three of them.
                 self.relaxed.add(chosen.strapped)
-                grip = self.strap(self.whole, chosen.strapped)
-                self.search.reckon(grip, self.keep, inf)
+                self.search.compute_force(self.tips.press(chosen.strapped), self.keep_motion, inf)
             else:
-                need = self.search.reckon(self.on(chosen), self.keep, least)
+                need = self.search.compute_force(self.place_straps(chosen), self.keep_motion, least)
                 if need < least:
                     best, least = number, need
                 bounds[number] = inf
-            bounds, seen = np.maximum(bounds, self.bounds(pads, members, seen)), len(self.power)
+            bounds, seen = np.maximum(bounds, self.bound_forces(pads, members, seen)), len(self.power)
         return best, least
 
-    def bounds(self, pads: IntArray, members: IntArray, since: int = 0) -> Array:
+    def bound_forces(self, pads: IntArray, members: IntArray, since: int = 0) -> Array:
         """Return lower bounds in N of the forces that sets need, (N,); inf
         where a motion shows that no force is enough.
 
@@ -354,14 +338,15 @@ class SupportedStraps:
             np.maximum(out, np.where(allowed[pads].all(axis=1), force, 0.0), out=out)
         return out
 
-    def keep(self, motion: Array, power: float) -> None:
+    def keep_motion(self, motion: Array, power: float) -> None:
         """Append a motion (6,) and the power of the load that drives it, for bounds."""
-        part, search = self.whole, self.search
+        part = self.whole
         forces = part.pressing_below
         rubbed = (part.rubbing_below @ motion).max(axis=1, initial=0.0)
         pressed = forces @ motion + part.friction * rubbed
         size = 1.0 + np.abs(forces * motion).sum(axis=1) + part.friction * np.abs(rubbed)
-        tips = (self.tip_friction @ motion).max(axis=1, initial=0.0)
-        work = self.down @ motion + search.coefficient * tips
         self.allowed = np.column_stack([self.allowed, pressed <= 2.0 * BROKEN * size])
-        self.work, self.power = np.column_stack([self.work, work]), np.append(self.power, power)
+        self.work, self.power = (
+            np.column_stack([self.work, self.tips.compute_work(motion)]),
+            np.append(self.power, power),
+        )

@@ -11,7 +11,7 @@ from workhold.model.program import Program
 from workhold.model.straps import StrappedHold
 from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
 from workhold.supports.straps import StrapQuestion
-from workhold.supports.straps_over_supports import find_middle, stand_on
+from workhold.supports.straps_over_supports import contain_point, find_middle
 from workhold.units import Unit
 
 __all__ = [
@@ -82,7 +82,7 @@ def stands_on_supports(found: StrappedHold, fixture: Fixture, asked: StrapQuesti
     """Return whether the centre of the part's area is over the triangle of its three supports."""
     plate = asked.find_plate(fixture)
     corners = np.array([plate.compute_hole_center(*one) for one in found.supports], np.float64)
-    return bool(stand_on(find_middle(fixture, fixture.listing.result.workpiece), corners[None])[0])
+    return bool(contain_point(find_middle(fixture, fixture.listing.result.workpiece), corners[None])[0])
 
 
 def list_remarks(found: StrappedHold) -> list[str]:

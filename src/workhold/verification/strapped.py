@@ -146,9 +146,9 @@ class StrapJudge:
         for key in keys:
             self.seen.setdefault(key, place)
         yield from self.find_zone_faults(fixture)
-        yield from self.tool_faults(fixture, hold)
+        yield from self.find_tool_faults(fixture, hold)
         if hold.is_looked_at:
-            yield from self.push_faults(fixture, hold)
+            yield from self.find_push_faults(fixture, hold)
             yield from self.find_strap_faults(fixture, hold)
 
     def make_keys(self, fixture: Fixture) -> list[tuple[object, ...]]:
@@ -205,7 +205,7 @@ class StrapJudge:
                 if is_inside(point, [loop]) or measure_distance(point, loop) < radius - AGREEMENT:
                     yield f"locator {peg.hole} stands in a keep-out zone"
 
-    def tool_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+    def find_tool_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Yield one sentence for each locator, strap or support to which a tool of the program comes too
         near.
         """
@@ -230,14 +230,13 @@ class StrapJudge:
         """
         back, radius = fixture.pose.inverse, self.straps.tip_radius
         plate = self.query.toolkit.plates[0]
-        raised = self.raised if self.straps.is_over_supports else 0.0
         for number, one in enumerate(hold.straps, 1):
             x, y = (float(value) for value in self.straps.bolts.compute_hole_center(*one.hole))
             far = hypot(x - one.at[0], y - one.at[1])
             share = 2 * radius / far if far else 0.0
             heel = back.apply(x + share * (x - one.at[0]), y + share * (y - one.at[1]))
             tip, bolt, end = ((float(a), float(b)) for a, b in (back.apply(*one.at), back.apply(x, y), heel))
-            name, low = f"strap {number}", one.height - raised
+            name, low = f"strap {number}", one.height - self.raised
             top = low + self.straps.standout
             yield HoldingElement(name, name, tip, end, radius, top, low=low)
             yield HoldingElement(f"the bolt of {name}", name, bolt, end, radius, top)
@@ -246,7 +245,7 @@ class StrapJudge:
             name = f"the support in {plate.name_place(column, row)}"
             yield HoldingElement(name, name, (x, y), (x, y), self.request.pad_radius, 0.0)
 
-    def push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+    def find_push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Yield the faults of the push by hand.
 
         It must be at the outline, near enough to square to it, and press the part against all three locators,
@@ -288,7 +287,7 @@ class StrapJudge:
             yield f"{len(hold.straps)} straps hold it, and {self.straps.count} are asked for"
             return
         for number, one in enumerate(hold.straps, 1):
-            yield from (f"strap {number} {words}" for words in self.place_faults(fixture, one))
+            yield from (f"strap {number} {words}" for words in self.find_place_faults(fixture, one))
         for one, other in combinations(hold.straps, 2):
             if one.hole == other.hole:
                 yield "two straps have their bolts in one hole"
@@ -299,7 +298,7 @@ class StrapJudge:
                 yield "the tips of two straps overlap"
         foot = self.make_foot(fixture.pose)
         if self.straps.is_over_supports:
-            faults = list(self.support_faults(fixture, hold))
+            faults = list(self.find_support_faults(fixture, hold))
             yield from faults
             if not faults:
                 yield from self.find_force_faults(fixture, hold, foot)
@@ -312,7 +311,7 @@ class StrapJudge:
             yield "the straps alone do not press the part flat on the plate"
         yield from self.find_force_faults(fixture, hold, foot)
 
-    def support_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+    def find_support_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Yield the faults of the three supports: where they stand, and whether each strap's tip is over one
         of them.
         """
@@ -344,7 +343,7 @@ class StrapJudge:
         if np.linalg.solve(corners.T, [*middle, 1.0]).min() < -AGREEMENT:
             yield "the straps alone tip the part over its supports"
 
-    def place_faults(self, fixture: Fixture, strap: Strap) -> Iterator[str]:
+    def find_place_faults(self, fixture: Fixture, strap: Strap) -> Iterator[str]:
         """Yield the faults of a strap's place, as words that follow "strap 1".
 
         Its bolt must be in a free hole, clear of the part, and its tip on the part's upper face with the foot
@@ -439,14 +438,11 @@ class StrapJudge:
     ) -> tuple[HeldBetweenJaws, Array]:
         """Return (part held between plate and tips, centre (3,) that moments are taken about)."""
         centre = np.array([*foot.centre, 0.0])
-        below = self.below(hold, foot, centre)
-        raised = self.raised if self.straps.is_over_supports else 0.0
-        places = np.array([[*one.at, one.height - raised] for one in hold.straps]) - centre
-        turns = [2 * pi * k / WAYS for k in range(WAYS)]
-        rubbing = np.stack([compute_wrenches(places, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
+        below = self.make_jaw_below(hold, foot, centre)
+        places = np.array([[*one.at, one.height - self.raised] for one in hold.straps]) - centre
         tips = PressingJaw(
             compute_wrenches(places, (0.0, 0.0, -1.0)).sum(axis=0)[None],
-            rubbing,
+            list_rubbing_wrenches(places),
             np.full((1, len(places)), find_friction_coefficient(self.query.friction, "tip")),
         )
         points, inward = locate_contacts(fixture, self.query)
@@ -463,10 +459,12 @@ class StrapJudge:
 
     @property
     def raised(self) -> float:
-        """The height in mm of the supports, which carry the part above the plate; 0 where it is not given."""
+        """How far supports carry the part above the plate, in mm; 0 without them, and where it is not given."""
+        if not self.straps.is_over_supports:
+            return 0.0
         return (self.query.toolkit.supports or SupportPads()).height or 0.0
 
-    def below(self, hold: StrappedHold, foot: Foot, centre: Array) -> PressingJaw:
+    def make_jaw_below(self, hold: StrappedHold, foot: Foot, centre: Array) -> PressingJaw:
         """Return what presses upward below the part: the plate on the foot, or the three supports, each at a
         point.
         """
@@ -474,10 +472,10 @@ class StrapJudge:
             return foot.make_pressing_jaw(find_friction_coefficient(self.query.friction, "plate"), centre)
         plate = self.query.toolkit.plates[0]
         at = np.array([[*plate.compute_hole_center(*one), 0.0] for one in hold.supports], float) - centre
-        turns = [2 * pi * k / WAYS for k in range(WAYS)]
-        rubbing = np.stack([compute_wrenches(at, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
         coefficient = find_friction_coefficient(self.query.friction, "support")
-        return PressingJaw(compute_wrenches(at, (0.0, 0.0, 1.0)), rubbing, coefficient * np.eye(SUPPORTS))
+        return PressingJaw(
+            compute_wrenches(at, (0.0, 0.0, 1.0)), list_rubbing_wrenches(at), coefficient * np.eye(SUPPORTS)
+        )
 
     def compute_weight_wrench(self, foot: Foot, centre: Array) -> Array:
         """Return the wrench (6,) of the part's weight, which acts at the centre of its foot."""
@@ -618,3 +616,9 @@ def is_inside(point: tuple[float, float], loops: Sequence[Sequence[Segment]]) ->
 def get_running_sign(segment: Segment) -> float:
     """Return 1 where a segment's parameter grows from its start to its end, -1 where it falls."""
     return segment.sign if isinstance(segment, Arc) else 1.0
+
+
+def list_rubbing_wrenches(places: Array) -> Array:
+    """Return wrenches (N, 16, 6) of friction of 1 N at points (N, 3), in 16 directions."""
+    turns = [2 * pi * k / WAYS for k in range(WAYS)]
+    return np.stack([compute_wrenches(places, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
