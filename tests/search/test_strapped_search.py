@@ -13,10 +13,12 @@ from polygon_seats import polygon_seats
 from slow_seats import faces_of, slow_seats
 from strap_program import force_by_other_program
 from workhold import InputError, Load, Plate, Query, Restrictions, StrapPlate, Workpiece, circle_zone
+from workhold.model.jaw_hold import find_largest_force
 from workhold.model.pose import Pose
 from workhold.search.seat_search import find_seats
 from workhold.supports.straps import StrapSearch, make_question
 from workhold.supports.straps_over_supports import PadPlaces, StrappedTriple, SupportedStraps
+from workhold.supports.words_of_straps import describe_assumptions
 
 BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
 TRIANGLE = Workpiece.from_points("triangle", [(0, 0), (61, 0), (20, 47)])
@@ -281,6 +283,18 @@ def test_friction_of_supports_counts_under_straps_and_that_of_the_plate_does_not
         return workhold.design(BLOCK, plate, **asked)[0].hold.clamp_needed
 
     assert need(plate=0.3) == need() > need(support=0.3)
+
+
+def test_friction_is_named_of_what_is_below():
+    for over in ("plate", "supports"):
+        result = workhold.design(BLOCK, StrapPlate(20, 3, 8, 6, over=over), thickness=25, strapped=1, best=1)
+        words = describe_assumptions(make_question(result.query))
+        assert ("support and milled steel" in words) == (over == "supports")
+
+
+def test_the_largest_force_is_unknown_where_one_is():
+    assert find_largest_force([3.0, 7.0, 5.0]) == 7.0
+    assert find_largest_force([3.0, None]) is find_largest_force([]) is None
 
 
 def test_a_plate_without_ends_has_its_supports_in_holes_with_names():
