@@ -159,6 +159,8 @@ class JawHold:
     max_force : rated force of the vise in N; None where nobody says.
     unit_force : given jaw force times the safety factor of the loads, in N; None where no jaw force is given.
     warnings : warnings as sentences.
+    parallel_offsets : how far the parallels stand from the fixed and from the moving jaw, in mm; (0, 0) for
+        one beside each jaw.
     """
 
     parallels: float
@@ -174,11 +176,23 @@ class JawHold:
     max_force: float | None = None
     unit_force: float | None = None
     warnings: tuple[str, ...] = field(default=())
+    parallel_offsets: tuple[float, float] = (0.0, 0.0)
 
     @property
     def is_unfit(self) -> bool:
         """Whether a jaw touches corners only."""
         return self.fixed.is_corner or self.moving.is_corner
+
+    @property
+    def has_moved_parallels(self) -> bool:
+        """Whether a parallel stands away from its jaw, as tools come through the part beside the jaw."""
+        return self.parallel_offsets != (0.0, 0.0)
+
+    @property
+    def parallels_across(self) -> tuple[float, float]:
+        """Places y in mm of the parallels' outer sides, at which they bear the part."""
+        near, far = self.parallel_offsets
+        return near, self.opening - far
 
     @property
     def grip(self) -> float:

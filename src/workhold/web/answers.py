@@ -19,6 +19,7 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
+from workhold.model.hold_words import write_setup_sentences
 from workhold.model.jaw_hold import JawHold
 from workhold.model.moved_setup import find_move_to_middle, find_overhangs, move_fixture_by_holes
 from workhold.model.quality import FIGURES
@@ -197,14 +198,20 @@ def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longe
 def describe_hold(fixture: Fixture) -> dict[str, Any]:
     """Return how flat jaws or straps hold a part, as plain data in the form of result files, with warnings in
     words.
+
+    A listed fixture also has the steps to set it up.
     """
     hold = fixture.hold
     if not isinstance(hold, JawHold):
         return describe_straps(fixture)
-    entry = make_hold_entry(fixture)
-    names = ("parallels", "stop", "fixed", "moving", "warnings")
+    entry, steps = make_hold_entry(fixture), dict[str, list[str]]()
+    if fixture.listed is not None:
+        query = fixture.listed.result.query
+        steps = {"steps": [f"{step}." for step in write_setup_sentences(fixture, query, MILLIMETRE)]}
+    names = ("parallels", "parallel_offsets", "stop", "fixed", "moving", "warnings")
     return {
-        **{name: entry[name] for name in names},
+        **{name: entry[name] for name in names if name in entry},
+        **steps,
         "full_contact": hold.full_contact,
         "unfit": hold.is_unfit,
         "clamp_needed_each": list(hold.clamp_needed_each),

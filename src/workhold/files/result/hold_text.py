@@ -61,11 +61,13 @@ def make_hold_entry(fixture: Fixture) -> dict[str, Any]:
         rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
 
-    need = hold.program_need
+    need, offsets = hold.program_need, hold.parallel_offsets
+    moved = {"parallel_offsets": [round_length_for_file(one) for one in offsets]}
     of_program = {} if need is None else {"program_force": make_need_entry(need)}
     return {
         "type": fixture.type,
         "parallels": round_length_for_file(hold.parallels),
+        **(moved if hold.has_moved_parallels else {}),
         "stop": hold.stop,
         "fixed": patch_entry(hold.fixed),
         "moving": patch_entry(hold.moving),
