@@ -108,7 +108,12 @@ def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
     if hold.clamp_needed_each:
         tables.append(
             tabulate_needs(
-                (load.name for load in query.loads), hold.clamp_needed_each, "jaw force needed", unit
+                (load.name for load in query.loads),
+                hold.clamp_needed_each,
+                "jaw force needed",
+                unit,
+                hold.safety_each[: len(query.loads)],
+                query.jaw_force,
             )
         )
     return (*tables, *write_warnings(hold))

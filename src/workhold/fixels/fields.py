@@ -347,6 +347,7 @@ STOP = ToolkitField(
             "none",
             is_usual=True,
             choices=(
+                Choice(None, "none"),
                 Choice("left", "at the left end"),
                 Choice("right", "at the right end"),
                 Choice("both", "left and right, each a set-up"),

@@ -246,6 +246,18 @@ class JawHold:
         return self.unit_force / self.clamp_needed if self.clamp_needed > 0 else inf
 
     @property
+    def safety_each(self) -> tuple[float, ...]:
+        """How many times the given jaw force holds each load, then the program; 0 where no force is enough,
+        inf where none is needed. Empty without a given jaw force.
+        """
+        given = self.unit_force
+        if given is None:
+            return ()
+        return tuple(
+            0.0 if need is None else given / need if need > 0 else inf for need in self.forces_needed
+        )
+
+    @property
     def is_beyond_rating(self) -> bool:
         """Whether a load or the program needs more than the rated jaw force, or no force is enough."""
         if None in self.forces_needed:

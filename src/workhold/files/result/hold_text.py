@@ -19,9 +19,9 @@ from workhold.files.result.strapped_text import (
     make_need_entry,
     make_strapped_entry,
 )
-from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, JawPatch
+from workhold.model.query import Query
 from workhold.model.result import Result
 
 __all__ = [
@@ -99,10 +99,11 @@ BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "pa
 AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
 
 
-def list_hold_columns(toolkit: Toolkit) -> list[str]:
-    """Return the column names of :func:`list_hold_rows` for a toolkit."""
-    if toolkit.strap_set is not None:
-        return list_strapped_columns(toolkit.strap_set.count)
+def list_hold_columns(query: Query) -> list[str]:
+    """Return the column names of :func:`list_hold_rows` for a result of a query."""
+    straps = query.toolkit.strap_set
+    if straps is not None:
+        return list_strapped_columns(query, straps.count)
     return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
 
 
