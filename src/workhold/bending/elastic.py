@@ -134,12 +134,10 @@ class ElasticBody:
         footing.
         """
         solving = load_elements().solving
-        shares, faces = footing.shares, footing.faces.tolist()
+        faces = footing.faces.tolist()
         own = {face: self.scalar.GetFE(solving.ElementId(solving.BND, face)) for face in set(faces)}
-        shares = np.where(
-            self.mesh.surface.is_turned[footing.faces][:, None], shares[:, [0, 2, 1]], footing.shares
-        )
-        values = [own[face].CalcShape(x, y) for face, (x, y, _) in zip(faces, shares.tolist(), strict=True)]
+        shares = zip(faces, footing.shares.tolist(), strict=True)
+        values = [own[face].CalcShape(x, y) for face, (x, y, _) in shares]
         return np.array(values, np.float64).reshape(len(faces), -1)
 
     def compute_work(self, forces: PointForces, footing: Footing | None = None) -> Array:
@@ -182,8 +180,7 @@ class ElasticBody:
 
         The shape functions of a face depend only on the order of the numbers of its corners.
         """
-        surface = self.surface
-        order = np.column_stack([surface.vertices.argsort(axis=1), surface.is_turned])
+        order = self.surface.vertices.argsort(axis=1)
         kinds, first, own = np.unique(order, axis=0, return_index=True, return_inverse=True)
         return kinds, first, own.ravel()
 

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from ctypes import CDLL
 from functools import cached_property
 from typing import Any
 
@@ -19,12 +24,15 @@ __all__ = ["PartMesh", "curve_mesh", "make_mesh"]
 TETRAHEDRA = 1000
 # The volume of a tetrahedron over the cube of the size that the mesher is given, as it fills a plate.
 SHARE = 0.17
+# The process's own numbers of its output and its error output.
+OUTPUTS = (1, 2)
 # Beyond this elements of the third order would take minutes.
 MOST_TETRAHEDRA = 12_000
 # How fast elements grow away from small ones, and how many fit on the radius of a round face: elements are curved, so that
-# one for each radian follows it well. The second ones, which are the mesher's own, are for parts that it fails on so.
-FEW = {"grading": 0.8, "curvaturesafety": 1.0}
-MORE = {"grading": 0.3, "curvaturesafety": 2.0}
+# five round a bore follow it well. The further ones, of which the last are the mesher's own, are for parts that it fails
+# on so.
+FEW = {"grading": 0.8, "curvaturesafety": 0.8}
+MORE = ({"grading": 0.8, "curvaturesafety": 1.0}, {"grading": 0.3, "curvaturesafety": 2.0})
 # The mesher's rounds of making elements better; its threads wait for each other for longer than they work.
 COMMON = {"optsteps3d": 2, "parallel_meshing": False}
 # Sizes of elements are no larger than this many times a part's least extent: a plate then bends by its true
@@ -64,7 +72,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
             (shape.mass / (SHARE * TETRAHEDRA)) ** (1 / 3), OF_LEAST_EXTENT * float((high - low).min())
         )
         mesh = fill(shape, size)
-    except RuntimeError as error:
+    except list_mesher_errors() as error:
         raise InputError(
             "the part cannot be meshed, so it is not known how far it bends: repair its solid in the CAD program."
         ) from error
@@ -73,7 +81,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
     if mesh.ne > MOST_TETRAHEDRA:
         raise InputError(
             f"the part takes {mesh.ne:,} elements, and {MOST_TETRAHEDRA:,} are reckoned with at most: leave small fillets "
-            "and holes out of the model."
+            "and holes out of the model; a sheet much wider than it is thick is not bent at all."
         )
     return curve_mesh(mesh)
 
@@ -81,13 +89,47 @@ def make_mesh(part: PartToBend) -> PartMesh:
 def fill(shape: Any, size: float) -> Any:
     """Return a library mesh of a shape, with tetrahedra of at most ``size`` mm.
 
-    It has few tetrahedra, or more where the shape cannot be meshed with few.
+    It has few tetrahedra, or more where the shape cannot be meshed with few. Raises one of the errors of
+    :func:`list_mesher_errors` where it cannot be meshed at all.
     """
     whole = load_elements().shapes.OCCGeometry(shape)
+    with silence_output():
+        for settings in (FEW, *MORE[:-1]):
+            try:
+                return whole.GenerateMesh(maxh=size, **COMMON, **settings)
+            except list_mesher_errors():
+                continue
+        return whole.GenerateMesh(maxh=size, **COMMON, **MORE[-1])
+
+
+def list_mesher_errors() -> tuple[type[Exception], ...]:
+    """Return the classes of errors that the library raises where it cannot mesh a shape."""
+    return (RuntimeError, load_elements().meshing.NgException)
+
+
+@contextmanager
+def silence_output() -> Iterator[None]:
+    """Throw away what the process writes to its output and its error output meanwhile.
+
+    Where the mesher fails it writes pages of its own there.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    kept = [os.dup(number) for number in OUTPUTS]
     try:
-        return whole.GenerateMesh(maxh=size, **COMMON, **FEW)
-    except RuntimeError:
-        return whole.GenerateMesh(maxh=size, **COMMON, **MORE)
+        for number in OUTPUTS:
+            os.dup2(nowhere, number)
+        yield
+    finally:
+        # What the library has written and not yet handed on goes the same way.
+        with suppress(OSError, AttributeError, TypeError):
+            CDLL(None).fflush(None)
+        for number, own in zip(OUTPUTS, kept, strict=True):
+            os.dup2(own, number)
+            os.close(own)
+        os.close(nowhere)
 
 
 def curve_mesh(mesh: Any) -> PartMesh:

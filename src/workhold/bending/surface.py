@@ -67,7 +67,6 @@ class Surface:
     normals : (4 F, 3) outward unit normals.
     faces : (F, 15) indices of the nodes of each face, in the order of ``LATTICE``.
     vertices : (F, 3) the library's numbers of the corners of each face, counter-clockwise from outside.
-    is_turned : (F,) whether the library has the second and the third corner in the opposite order.
     """
 
     nodes: Array
@@ -75,7 +74,6 @@ class Surface:
     normals: Array
     faces: IntArray
     vertices: IntArray
-    is_turned: NDArray[np.bool_]
 
     @property
     def corners(self) -> Array:
@@ -154,7 +152,7 @@ def list_small_triangles() -> IntArray:
 
 
 def find_surface(mesh: Any) -> Surface:
-    """Return the surface of a mesh of the library."""
+    """Return the surface of a mesh of the library, whose faces run counter-clockwise from outside."""
     solving = load_elements().solving
     elements = list(mesh.Elements(solving.BND))
     vertices = np.array([[v.nr for v in one.vertices] for one in elements], np.int64)
@@ -162,14 +160,6 @@ def find_surface(mesh: Any) -> Surface:
     mapped = mesh.MapToAllElements(rule, solving.BND)
     shape = (len(elements), len(LATTICE), 3)
     places = np.array(solving.CoefficientFunction((solving.x, solving.y, solving.z))(mapped)).reshape(shape)
-    facing = np.array(solving.specialcf.normal(3)(mapped)).reshape(shape).mean(axis=1)
-    first, second, third = (number_of(*one) for one in ((4, 0), (0, 4), (0, 0)))
-    a, b, c = places[:, first], places[:, second], places[:, third]
-    inward = (np.cross(b - a, c - a) * facing).sum(axis=1) < 0
-    # A face that runs clockwise is turned over: its second and third corners change places.
-    turned_over = [number_of(i, k) for i, _, k in QUARTERS.tolist()]
-    places[inward] = places[inward][:, turned_over]
-    vertices[inward] = vertices[inward][:, [0, 2, 1]]
     _, faces = np.unique(name_nodes(vertices, int(mesh.nv)), return_inverse=True)
     faces = faces.reshape(len(elements), len(LATTICE))
     nodes = np.zeros((int(faces.max()) + 1, 3))
@@ -178,7 +168,7 @@ def find_surface(mesh: Any) -> Surface:
     a, b, c = np.moveaxis(nodes[triangles[:, :3]], 1, 0)
     normals = np.cross(b - a, c - a)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    return Surface(nodes, triangles, normals, faces, vertices, inward)
+    return Surface(nodes, triangles, normals, faces, vertices)
 
 
 def name_nodes(vertices: IntArray, count: int) -> IntArray:
