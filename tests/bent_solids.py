@@ -1,4 +1,4 @@
-"""Five solids that clamps bend, made with Open CASCADE: each bends in a way of its own."""
+"""Six solids that clamps bend, made with Open CASCADE: each bends in a way of its own."""
 
 from __future__ import annotations
 
@@ -75,10 +75,21 @@ def angle() -> Any:
     return cut(body, *(cylinder(4.5, 20, (12, y, -1)) for y in (40, 75)))
 
 
+def bored() -> Any:
+    """A block with 60 faces: 18 bores, and a wall with six windows along one side."""
+    body = cut(
+        box(100, 60, 10),
+        *(cylinder(3, 20, (12 + 15 * i, 12 + 18 * j, -1)) for i in range(6) for j in range(3)),
+    )
+    body = fused(body, box(100, 10, 35, (0, 50, 0)))
+    return cut(body, *(box(8, 12, 10, (8 + 15 * i, 49, 16)) for i in range(6)))
+
+
 SOLIDS: dict[str, Callable[[], Any]] = {
     "plate": plate,
     "housing": housing,
     "bracket": bracket,
     "ring": ring,
     "L": angle,
+    "block": bored,
 }

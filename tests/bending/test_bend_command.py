@@ -135,6 +135,27 @@ def test_the_sheet_has_a_page_of_it(result_file: str, tmp_path: Path) -> None:
     assert outcome.exit_code == 2 and "give --material" in outcome.stderr
 
 
+def test_seats_under_straps_are_bent_where_straps_were_found(tmp_path: Path) -> None:
+    part = workhold.Workpiece.from_points("plate", [(0, 0), (80, 0), (80, 50), (0, 50)])
+    plate = workhold.StrapPlate(pitch=10, peg_radius=3, columns=14, rows=10, straps=2, tip_radius=4)
+    load = Load(points=[(40, 25)], force=150)
+    path, bare = tmp_path / "strapped.json", tmp_path / "bare.json"
+    workhold.save(workhold.design(part, plate, loads=[load], thickness=8, strapped=1, best=3), path)
+    workhold.save(workhold.design(part, plate, thickness=8, strapped=1, best=2), bare)
+    outcome = run(str(path))
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "strap force N" in outcome.stdout
+    told = json.loads(run(str(path), "--json").stdout)
+    assert [one["rank"] for one in told["fixtures"]] == [1]
+    outcome = run(str(bare))
+    assert outcome.exit_code == 2 and "has straps, so that nothing bends its part" in outcome.stderr
+    sheet = tmp_path / "strapped.svg"
+    words = ["sheet", str(path), "1", "--date", "2026-01-01", "--material", "mild-steel", "-o", str(sheet)]
+    outcome = CliRunner().invoke(app, words)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "At a strap force of" in sheet.read_text()
+
+
 @pytest.mark.parametrize("kept", [0, 1])
 def test_stopped_on_the_way_it_tells_what_is_found(
     result_file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept: int

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, pi, radians, sin
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -30,7 +29,9 @@ from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motion
 from workhold.bending.laying import Constraints, find_rigid_motion
 from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
+from workhold.bending.patches import find_foot_corners, make_foot
 from workhold.bending.shape import PrismShape
+from workhold.bending.surface import LATTICE
 
 need_elements()
 
@@ -167,9 +168,12 @@ def some_loads(body: ElasticBody, count: int = 6) -> list[PointForces]:
     ]
 
 
-def test_what_one_load_moves_another_by_is_what_that_moves_the_first_by() -> None:
-    """Maxwell and Betti, also of loads that do not balance."""
-    body = bodies(block, (60.0, 20.0), 15.0)[0]
+@pytest.mark.parametrize("make, sizes", [(block, (60.0, 20.0)), (ring, (40.0, 3.0))])
+def test_what_one_load_moves_another_by_is_what_that_moves_the_first_by(
+    make: Callable[..., Workpiece], sizes: tuple[float, ...]
+) -> None:
+    """Maxwell and Betti, also of loads that do not balance, and on curved elements."""
+    body = bodies(make, sizes, 15.0)[0]
     works = np.array([body.compute_work(load) for load in some_loads(body)])
     compliance = np.einsum("ank,bnk->ab", works, body.respond(works))
     assert np.abs(compliance - compliance.T).max() <= 1e-8 * np.abs(compliance).max()
@@ -211,6 +215,8 @@ def field_at(
 def test_every_node_of_the_surface_is_there_once() -> None:
     surface = bodies(ring, (40.0, 3.0), 10.0)[0].surface
     assert len(np.unique(np.round(surface.nodes, 6), axis=0)) == len(surface.nodes)
+    everywhere = surface.place_on(np.arange(len(surface.faces)), LATTICE)
+    assert surface.nodes[surface.faces] == pytest.approx(everywhere, abs=1e-9)
     corners = surface.nodes[surface.triangles[:, :3]]
     area = (
         np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
@@ -314,6 +320,40 @@ def test_a_body_that_is_laid_against_three_points_and_a_floor_is_where_they_are(
     assert find_rigid_motion(levels) == pytest.approx(motion)
 
 
+def test_a_thin_part_has_elements_about_as_large_as_twice_its_thickness(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(meshing, "TETRAHEDRA", 100)
+    corners = make_mesh(PrismShape(block(80.0, 60.0), 2.0)).surface.corners
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
+    assert longest < 1.5 * 2.0 * meshing.OF_LEAST_EXTENT
+
+
+def test_a_prism_has_its_holes_and_may_run_either_way_round() -> None:
+    """Arcs, too: a slot in a disc."""
+    slot = [[-10, -4, 0], [10, -4, 1], [10, 4, 0], [-10, 4, 1]]
+    turned = [[-10, 4, 0], [10, 4, -1], [10, -4, 0], [-10, -4, -1]]
+    expected = 5.0 * (pi * 900.0 - 160.0 - pi * 16.0)
+    for hole in (slot, turned):
+        disc = Workpiece.from_loops("disc", [[[-30, 0, 1], [30, 0, 1]], hole])
+        assert PrismShape(disc, 5.0).build().mass == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_foot_is_weighted_by_its_area() -> None:
+    """Elements are smaller round a bore, and no heavier for it."""
+    hole = [[48, 10, 1], [54, 10, 1]]
+    part = Workpiece.from_loops("part", [[[0, 0, 0], [60, 0, 0], [60, 20, 0], [0, 20, 0]], hole])
+    surface = make_mesh(PrismShape(part, 4.0)).surface
+    foot = make_foot(find_foot_corners(surface.nodes, surface.triangles, surface.normals, 0.0))
+    assert foot is not None
+    area, bore = 1200.0, pi * 9.0
+    middle = (area * 30.0 - bore * 51.0) / (area - bore)
+    assert foot.middle == pytest.approx([middle, 10.0, 0.0], abs=0.02)
+    assert foot.press(UP).wrench[[2, 4]] == pytest.approx([1.0, -middle], abs=0.02)
+    turning = foot.make_unit_moment().wrench
+    assert np.abs(turning[:3]).max() < 1e-12 and turning[5] == pytest.approx(1.0)
+
+
 def test_a_part_that_is_no_solid_is_refused_in_a_sentence() -> None:
     class Nothing:
         def build(self):
@@ -326,19 +366,28 @@ def test_a_part_that_is_no_solid_is_refused_in_a_sentence() -> None:
         make_mesh(Nothing())
 
 
-def test_a_part_that_few_elements_do_not_fill_is_filled_with_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(meshing, "FEW", {"grading": -1.0, "curvaturesafety": 0.0})
-    monkeypatch.setattr(meshing, "MORE", {"grading": 0.5, "curvaturesafety": 1.0})
+def block_with_bores() -> PrismShape:
+    """A block that the mesher does not fill where it is asked for few elements round a bore."""
+    bores = [[[x - 3, y, 1], [x + 3, y, 1]] for x in range(12, 90, 15) for y in (12, 30)]
+    outline = [[0, 0, 0], [100, 0, 0], [100, 42, 0], [0, 42, 0]]
+    return PrismShape(Workpiece.from_loops("block", [outline, *bores]), 10.0)
 
-    class Mesher:
-        def __init__(self, shape):
-            self.shape = shape
 
-        def GenerateMesh(self, **settings):  # noqa: N802
-            if settings["grading"] < 0.0:
-                raise RuntimeError("Meshing failed!")
-            return "filled"
+FAILING = {"grading": 1.0, "curvaturesafety": 0.3}
 
-    library = SimpleNamespace(shapes=SimpleNamespace(OCCGeometry=Mesher))
-    monkeypatch.setattr(meshing, "load_elements", lambda: library)
-    assert meshing.fill("shape", 1.0) == "filled"
+
+def test_a_part_that_few_elements_do_not_fill_is_filled_with_more(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The mesher says pages then, which nobody is shown."""
+    monkeypatch.setattr(meshing, "FEW", FAILING)
+    assert make_mesh(block_with_bores()).made.ne > 0
+    said = capfd.readouterr()
+    assert said.out == said.err == ""
+
+
+def test_a_part_that_nothing_fills_is_refused_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(meshing, "FEW", FAILING)
+    monkeypatch.setattr(meshing, "MORE", (FAILING,))
+    with pytest.raises(InputError, match="cannot be meshed"):
+        make_mesh(block_with_bores())

@@ -1,4 +1,4 @@
-"""Five solids against meshes eight times as fine: what is told lies within the error that is told."""
+"""Six solids against meshes eight times as fine: what is told lies within the error that is told."""
 
 from __future__ import annotations
 

@@ -4,22 +4,47 @@ from __future__ import annotations
 
 import sys
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 import workhold
 from bent_bodies import METAL, MODULUS, RATIO, need_elements, refine_mesh
 from workhold import InputError, Load, Result
 from workhold.bending import asking, library, meshing
-from workhold.bending.asking import BendingQuestion, SolvedLoads, UnitLoads, find_bendings, measure_distances
+from workhold.bending.asking import (
+    BendingQuestion,
+    HeldFixture,
+    SolvedLoads,
+    UnitLoads,
+    find_bendings,
+    find_pressed,
+    measure_distances,
+)
 from workhold.bending.elastic import ElasticBody
 from workhold.bending.figures import find_bending_figure
-from workhold.bending.holding import ElasticHold, make_elastic_hold
+from workhold.bending.holding import (
+    ElasticHold,
+    PadsBelow,
+    make_elastic_hold,
+    make_strips,
+    sample_rectangle,
+)
 from workhold.bending.materials import MATERIALS, ElasticMaterial, find_material
 from workhold.bending.meshing import make_mesh
-from workhold.bending.patches import LoadPatch, make_foot
+from workhold.bending.patches import (
+    BESIDE,
+    PEG_WIDTH,
+    LoadPatch,
+    find_foot_corners,
+    make_disc,
+    make_foot,
+    make_strip,
+)
 from workhold.bending.shape import PrismShape
+from workhold.statics.loads import find_touched_points
 from workhold.statics.pins import compute_deflections
 from workhold.units import INCH, MILLIMETRE
 
@@ -60,7 +85,7 @@ def body_of(high: float = HIGH) -> ElasticBody:
 
 def foot_of(body: ElasticBody) -> LoadPatch:
     surface = body.surface
-    foot = make_foot(surface.nodes, surface.triangles, surface.normals, 0.0)
+    foot = make_foot(find_foot_corners(surface.nodes, surface.triangles, surface.normals, 0.0))
     assert foot is not None
     return foot
 
@@ -114,6 +139,23 @@ def test_a_rigid_motion_of_the_part_is_taken_out(name: str) -> None:
     assert np.abs(there[1]).max() < 1e-9 * scale
 
 
+@pytest.mark.parametrize("name", ["vise", "plate", "two clamps", "fence"])
+def test_a_clamped_part_touches_its_locators_and_what_closes_follows(name: str) -> None:
+    result, hold = result_in(name), hold_in(name)
+    solved = SolvedLoads(body_of(), UnitLoads(body_of().surface))
+    numbers = solved.units.add(hold.columns)
+    reads = [solved.units.add(level) for level in hold.locating]
+    held = HeldFixture(hold, numbers, reads, 3000.0, False)
+    _, motion = solved.find_clamped(held)
+    rigid = np.array([read.wrench @ motion for read in hold.locating[0]])
+    there = solved.read(reads[0], numbers) @ hold.clamping + rigid
+    carriers = [result.toolkit.find_carrier(peg.carrier) for peg in result[0].pegs]
+    moves = np.array([one.travel is not None for one in carriers])
+    assert np.abs(there[~moves]).max() < 1e-9
+    follows = np.abs(hold.movers).sum(axis=1) > 0.0
+    assert np.abs(there[moves]).max() > 1e-4 and follows[moves].any() and not follows[~moves].any()
+
+
 @pytest.mark.parametrize("name", ["vise", "plate", "plain vise"])
 def test_twice_the_force_bends_twice_as_far(name: str) -> None:
     once, twice = (bent(result_in(name), jaw_force=force) for force in (1000.0, 2000.0))
@@ -155,6 +197,20 @@ def test_solved_at_once_is_what_is_superposed(order: int) -> None:
     summed = SolvedLoads(body, solved.units, is_summed=True)
     assert summed.add_up(numbers, hold.clamping) == pytest.approx(at_once, abs=1e-12)
     assert len(summed.responses) == 1 and len(solved.responses) == len(set(numbers))
+    # The same unit loads with other factors are another sum.
+    assert summed.add_up(numbers, 3.0 * hold.clamping) == pytest.approx(3.0 * at_once, abs=1e-12)
+
+
+def test_a_part_gives_most_where_it_is_weakest() -> None:
+    """Of loads alike in the middle and at the end of a thin tongue, that at the end."""
+    tongue = [(0, 0), (40, 0), (40, 25), (90, 25), (90, 31), (40, 31), (40, 60), (0, 60)]
+    part = workhold.Workpiece.from_points("tongue", tongue)
+    loads = [Load(points=[(20, 30)], force=150), Load(points=[(88, 28)], force=150)]
+    result = workhold.design(part, TOOLKITS["vise"], best=1, thickness=HIGH, loads=loads, jaw_force=3000.0)
+    for given in (result, evolve(result, query=evolve(result.query, loads=loads[::-1]))):
+        give = find_bendings(given, [0], PrismShape(part, HIGH), BendingQuestion(METAL, HIGH, 3000.0))[0].give
+        assert give is not None and give.at == pytest.approx((88.0, 28.0, HIGH))
+        assert give.load == 2 if given is result else give.load == 1
 
 
 def test_unit_loads_that_fixtures_share_are_solved_once() -> None:
@@ -193,6 +249,89 @@ def test_only_faces_to_be_cut_count() -> None:
     other = workhold.Workpiece.from_points("other", [(200, 0), (300, 0), (300, 50)])
     with pytest.raises(InputError, match=r"nothing of other lies on what is to be cut \(faces 2\)"):
         asking.find_cut_nodes(body_of().surface, (2,), other, HIGH)
+
+
+def test_only_faces_that_are_cut_all_over_are_searched_between_nodes() -> None:
+    """What a cut edge's neighbours do beside it is not told."""
+    result = result_in("vise")
+    for name, high in (("top", HIGH), ("bottom", 0.0)):
+        assert bent(result, jaw_force=3000.0, faces=(name,)).clamp_distortion.at[2] == pytest.approx(high)
+    side = bent(result, jaw_force=3000.0, faces=(0,)).clamp_distortion.at
+    assert side[1] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", ["vise", "plate", "fence", "plain vise"])
+def test_the_place_of_the_most_is_outside_of_dents(name: str) -> None:
+    one = bent(result_in(name), jaw_force=3000.0)
+    away = np.linalg.norm(hold_in(name).pressed - np.array(one.clamp_distortion.at), axis=1)
+    assert away.min() > 1.999
+
+
+def test_the_dent_of_a_clamp_on_top_does_not_count() -> None:
+    below = PadsBelow(
+        np.array([(10.0, 10.0), (70.0, 10.0), (20.0, 50.0)]), 4.0, np.array([40.0, 25.0, HIGH]), 3.0, 500.0
+    )
+    hold = hold_in("vise", below=below)
+    away = np.linalg.norm(hold.pressed - below.clamp, axis=1)
+    assert (away < 3.0).sum() >= 16 and hold.clamping[4] == 500.0
+    assert hold.clamping[5:].sum() == pytest.approx(500.0)
+
+
+def test_places_of_which_one_is_pressed_are_pressed() -> None:
+    nodes = np.array([(0.0, 0, 0), (10.0, 0, 0), (30.0, 0, 0)])
+    points = np.array([(0.5, 0, 0), (10.0, 1.0, 0)])
+    assert find_pressed(nodes, points).tolist() == [True, True, False]
+
+
+def test_jaws_press_as_hard_as_loads_need_where_nobody_says() -> None:
+    part = workhold.Workpiece.from_points("plate", CORNERS)
+    for name in ("vise", "plain vise"):
+        loads = [Load(points=[(60, 20)], force=150)]
+        first = workhold.design(part, TOOLKITS[name], best=1, thickness=HIGH, loads=loads)[0]
+        one = first.bending()
+        needed = first.quality.get("jaw_force_needed", first.quality.get("clamp_needed"))
+        assert one.jaw_force == needed and not one.is_stated
+
+
+def test_a_jaw_that_touches_a_line_presses_on_a_strip_about_it() -> None:
+    points, areas = sample_rectangle((20.0, 20.0, 0.0, 99.0), 5.0, 12.0)
+    assert points[:, 0].mean() == pytest.approx(20.0) and np.ptp(points[:, 0]) < PEG_WIDTH
+    assert points[:, 2].max() < 12.0 and areas.sum() == pytest.approx(12.0 * PEG_WIDTH)
+
+
+def test_movements_are_read_beside_what_presses() -> None:
+    strip = make_strip((10.0, 0.0), (0.0, -1.0), 0.0, 8.0)
+    assert np.abs(strip.points[:, 0] - 10.0).max() < PEG_WIDTH / 2
+    assert sorted(set(strip.beside[:, 0].round(9))) == [
+        10 - PEG_WIDTH / 2 - BESIDE,
+        10 + PEG_WIDTH / 2 + BESIDE,
+    ]
+    disc = make_disc(np.array([5.0, 5.0, 8.0]), 3.0, None)
+    assert np.hypot(*(disc.beside[:, :2] - 5.0).T) == pytest.approx(3.0 + BESIDE)
+    assert np.hypot(*(disc.points[:, :2] - 5.0).T).max() < 3.0
+
+
+def test_a_part_between_flat_jaws_is_laid_against_the_fixed_one() -> None:
+    result, hold = result_in("plain vise"), hold_in("plain vise")
+    pose = result[0].pose
+    for read in hold.locating[0]:
+        there = pose.apply(read.points[:, :2])
+        assert np.abs(there[:, 1]).max() < 1e-9
+
+
+def test_pegs_on_a_solid_press_no_higher_than_its_faces(tmp_path: Path) -> None:
+    """The bracket's foot is 10 mm high, its wall 42."""
+    pytest.importorskip("OCP")
+    from step_shapes import write_step
+
+    from bent_solids import SOLIDS
+
+    part = workhold.load(write_step(tmp_path / "bracket.step", SOLIDS["bracket"]()))
+    result = workhold.design(part, workhold.Vise(pitch=10, columns=4, peg_radius=3), best=1, jaw_force=3000)
+    points, normals = find_touched_points(result[0], part, result.toolkit)
+    strips = make_strips(result[0], part, points, normals, 42.0, None)
+    tops = [float(one.points[:, 2].max()) for one in strips]
+    assert min(tops) < 10.0 and max(tops) < 42.0
 
 
 def test_distances_from_lines_and_arcs() -> None:
@@ -276,6 +415,10 @@ def test_what_is_told_has_its_error_its_place_and_its_remedy() -> None:
     assert "thou" in one.list_sentences("jaw", INCH)[0]
     assert one.list_warnings(None, MILLIMETRE) == one.list_warnings(1.0, MILLIMETRE) == []
     assert len(one.list_warnings(1e-6, MILLIMETRE)) == 2
+    assert one.give is not None and one.give.value != one.clamp_distortion.value
+    between = (one.give.value + one.clamp_distortion.value) / 2
+    (only,) = one.list_warnings(between, MILLIMETRE)
+    assert ("at the cutter" in only) == (one.give.value > between)
     data = one.to_data()
     assert data["clamp_distortion"]["value"] == one.figures["clamp_distortion"]
     assert data["give"]["load"] == 1 and data["elements"] == one.elements

@@ -14,16 +14,17 @@ from itertools import chain
 from threading import Event
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
 from workhold.bending.figures import Bending, BentPlace
-from workhold.bending.holding import ElasticHold, PadsBelow, make_elastic_hold
+from workhold.bending.holding import BELOW, ElasticHold, PadsBelow, make_elastic_hold
 from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
-from workhold.bending.patches import BESIDE, make_disc, make_foot
+from workhold.bending.patches import BESIDE, RestingFaces, find_foot_corners, make_disc, make_foot
 from workhold.bending.places import CutterLoads, list_cutter_loads
+from workhold.bending.resting import PlateRest, find_rest
 from workhold.bending.shape import PartToBend
 from workhold.bending.surface import Footing, Surface, list_lattice
 from workhold.contact.problem import Progress
@@ -33,6 +34,7 @@ from workhold.geometry.segment import Segment, measure_distance_to_segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.result import Result
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["BendingQuestion", "find_bendings"]
@@ -43,6 +45,8 @@ Mask = NDArray[np.bool_]
 CUTTER_RADIUS = 2.0
 # The error that is told, of the change from the second order to the third.
 UNSURE = 2.0
+# What is added to it where a part may lift off a plate, of the movement: cells of other sizes change that as much.
+OF_CELLS = 0.1
 # Nodes so near to a face of the outline are on it, in mm.
 ON_FACE = 0.02
 TOP, BOTTOM = "top", "bottom"
@@ -158,6 +162,7 @@ class HeldFixture:
     numbers : for each column of the hold, its number in :class:`UnitLoads`.
     reads : for each level of the hold's locators, the numbers of its readings in :class:`UnitLoads`.
     force, is_stated : jaw force in N, and whether it is a convention because nobody said it.
+    rest : where the part touches the plate that straps press it on; None without straps on a plate.
     """
 
     hold: ElasticHold
@@ -165,6 +170,11 @@ class HeldFixture:
     reads: list[list[int]]
     force: float
     is_stated: bool
+    rest: PlateRest | None = None
+
+    def estimate_error(self, value: float, change: float) -> float:
+        """Return the error estimate in mm of a movement ``value`` that the third order changes by ``change``."""
+        return UNSURE * change + (0.0 if self.rest is None else OF_CELLS * value)
 
 
 @frozen(eq=False)
@@ -195,13 +205,13 @@ class WorstGive:
     value : movement in mm.
     load : index of the load in the :class:`workhold.bending.places.CutterLoads`.
     place : index of the :class:`PressedPlace`.
-    vector : (4,) forces along x, y and z in N, and moment about z in N mm.
+    factors : factors of the place's four unit loads, then of the fixture's columns, under this load.
     """
 
     value: float
     load: int
     place: int
-    vector: Array
+    factors: Array
 
 
 def find_bendings(
@@ -233,13 +243,16 @@ def find_bendings(
     tell(0.0, 0)
     mesh = make_mesh(shape)
     surface = mesh.surface
-    foot = make_foot(surface.nodes, surface.triangles, surface.normals, 0.0)
+    corners = find_foot_corners(surface.nodes, surface.triangles, surface.normals, 0.0)
+    foot = make_foot(corners)
     if foot is None:
         raise InputError(
             "the part has no level face that it lies on, so it is not known what bears it: design it the other side up."
         )
     tell(MESHED, 0)
     units = UnitLoads(surface)
+    is_strapped = any(isinstance(result[row].hold, StrappedHold) for row in rows)
+    faces = RestingFaces.from_corners(corners) if is_strapped else None
     held: list[HeldFixture] = []
     for row in rows:
         fixture = result[row]
@@ -254,6 +267,7 @@ def find_bendings(
             pressed_up_to=query.pressed_up_to,
             stiffness=asked.stiffness,
             below=asked.below.get(row),
+            faces=faces,
         )
         reads = [units.add(level) for level in hold.locating]
         held.append(HeldFixture(hold, units.add(hold.columns), reads, force, is_stated))
@@ -268,6 +282,7 @@ def find_bendings(
             return []
         second.solve(number)
         tell(MESHED + (SOLVED - MESHED) * (count + 1) / len(needed), 0)
+    held = [second.lay_on_plate(one) for one in held]
     is_cut = find_cut_nodes(surface, asked.faces, query.workpiece, height)
     gives = [None if loads is None else second.find_worst_give(one, loads, places) for one in held]
     cut = {number for give in gives if give is not None for number in places[give.place].cuts}
@@ -308,7 +323,8 @@ def describe(
     given = None
     if give is not None and loads is not None:
         before, after = (
-            level.move_place(one, places[give.place], give.vector[:, None])[:, 0] for level in (second, third)
+            level.move_place(one, places[give.place], give.factors[:, None])[:, 0]
+            for level in (second, third)
         )
         value, change = float(np.linalg.norm(after)), float(np.linalg.norm(after - before))
         row, there = int(loads.row[give.load]), loads.points[give.load].tolist()
@@ -318,7 +334,7 @@ def describe(
             line, tool = int(moves.line[row]), int(moves.tool[row])
         else:
             load = -row
-        given = BentPlace(value, UNSURE * change, tuple(there), line, tool, load)
+        given = BentPlace(value, one.estimate_error(value, change), tuple(there), line, tool, load)
     return Bending(
         asked.material,
         one.force,
@@ -361,7 +377,8 @@ def find_most_moved(
     face, point = np.divmod(int(far.argmax()), len(shares))
     before = second.clamp_on(one, faces[[face]], shares[[point]])[0, 0]
     change = float(np.linalg.norm(after[face, point] - before))
-    return BentPlace(float(far[face, point]), UNSURE * change, tuple(points[face, point].tolist()))
+    value = float(far[face, point])
+    return BentPlace(value, one.estimate_error(value, change), tuple(points[face, point].tolist()))
 
 
 def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPlace]:
@@ -514,18 +531,58 @@ class SolvedLoads:
         motion = self.find_motion(one, one.numbers, clamping, np.zeros(len(one.hold.gives)))
         return self.add_up(one.numbers, clamping), motion
 
-    def move_place(self, one: HeldFixture, place: PressedPlace, vectors: Array) -> Array:
-        """Return the movement (3, V) in mm of a place under V forces and moments on it, ``vectors`` (4, V).
+    def lay_on_plate(self, one: HeldFixture) -> HeldFixture:
+        """Return a fixture with the forces by which a plate bears its part under clamping; unchanged where its
+        part lies on no plate that it may lift off.
+        """
+        resting = list(one.hold.resting)
+        if not resting:
+            return one
+        cells = [one.numbers[k] for k in resting]
+        moved = self.read(cells, one.numbers)
+        wrenches = np.array([column.wrench[BELOW] for column in one.hold.columns])
+        clamping = one.hold.clamping.copy()
+        rest = find_rest(moved[:, resting], wrenches[resting], moved @ clamping, wrenches.T @ clamping)
+        clamping[resting] = rest.pressures
+        touching = [resting[k] for k in rest.touching.tolist()]
+        columns = tuple(one.hold.columns[k] for k in touching)
+        hold = evolve(
+            one.hold, clamping=clamping, resting=tuple(touching), locating=(one.hold.locating[0], columns)
+        )
+        reads = [one.reads[0], [one.numbers[k] for k in touching]]
+        return evolve(one, hold=hold, reads=reads, rest=rest)
+
+    def find_factors(self, one: HeldFixture, place: PressedPlace, vectors: Array) -> Array:
+        """Return the factors (4 + C, V) of a place's four unit loads and a fixture's C columns under V loads there.
+
+        ``vectors`` (4, V) are forces along x, y and z in N, and moments about z in N mm.
+        """
+        hold = one.hold
+        factors = np.vstack([vectors, hold.answers @ place.wrenches @ vectors])
+        if one.rest is not None:
+            resting = list(hold.resting)
+            numbers = [*place.cuts, *one.numbers]
+            rise = self.read([one.numbers[k] for k in resting], numbers) @ factors
+            wrenches = np.array([column.wrench[BELOW] for column in hold.columns]).T
+            load = place.wrenches[BELOW] @ vectors + wrenches @ factors[4:]
+            factors[[4 + k for k in resting]] += one.rest.bear(rise, load)
+        return factors
+
+    def move_place(self, one: HeldFixture, place: PressedPlace, factors: Array) -> Array:
+        """Return the movement (3, V) in mm of a place under V loads on it.
 
         The forces at contacts that balance the load, and the contacts' giving way, are included.
+
+        Parameters
+        ----------
+        factors : (4 + C, V) factors of the unit loads, see :meth:`find_factors`.
         """
-        answers = one.hold.answers @ place.wrenches @ vectors
         numbers = [*place.cuts, *one.numbers]
         rigid = make_rigid_motions(place.middle[None])[0]
         moved = []
-        for factors, answer in zip(np.vstack([vectors, answers]).T, answers.T, strict=True):
-            motion = self.find_motion(one, numbers, factors, one.hold.gives @ answer)
-            loaded, shares = self.gather(numbers, factors)
+        for own in np.ascontiguousarray(factors.T):
+            motion = self.find_motion(one, numbers, own, one.hold.gives @ own[4:])
+            loaded, shares = self.gather(numbers, own)
             moved.append(self.read(place.reads, loaded) @ shares + rigid @ motion)
         return np.array(moved).T
 
@@ -533,7 +590,8 @@ class SolvedLoads:
         """Return the load under which a fixture gives most; each load counts at the nearest of the chosen
         places.
         """
-        matrices = [self.move_place(one, place, np.eye(4)) for place in places]
+        factors = [self.find_factors(one, place, np.eye(4)) for place in places]
+        matrices = [self.move_place(one, *pair) for pair in zip(places, factors, strict=True)]
         worst: WorstGive | None = None
         for number in range(len(loads)):
             place = int(loads.owner[number])
@@ -541,7 +599,7 @@ class SolvedLoads:
             sizes = np.linalg.norm(vectors @ matrices[place].T, axis=1)
             most = int(sizes.argmax())
             if worst is None or sizes[most] > worst.value:
-                worst = WorstGive(float(sizes[most]), number, place, vectors[most])
+                worst = WorstGive(float(sizes[most]), number, place, factors[place] @ vectors[most])
         assert worst is not None
         return worst
 

@@ -20,6 +20,7 @@ from workhold.bending.laying import Constraints, find_rigid_motion
 from workhold.bending.patches import (
     PEG_WIDTH,
     LoadPatch,
+    RestingFaces,
     make_disc,
     make_rectangle,
     make_strip,
@@ -29,12 +30,13 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
 from workhold.model.straps import StrappedHold
+from workhold.model.support_request import find_usual_pad_radius
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import TouchableFeatures
-from workhold.statics.loads import compute_shared_forces, find_contacts_on_part
+from workhold.statics.loads import compute_shared_forces, find_contacts_on_part, find_touched_points
 from workhold.statics.pins import PinRuns, compute_deflections, find_runs_on_solid
 
-__all__ = ["ElasticHold", "PadsBelow", "make_elastic_hold"]
+__all__ = ["BELOW", "ElasticHold", "PadsBelow", "make_elastic_hold"]
 
 Array = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
@@ -79,6 +81,9 @@ class ElasticHold:
     gives : (R, C) how far each of these contacts gives way outward, in mm per N of each unit load.
     pressed : (K, 3) points that are pressed, around which the surface is dented.
     size : a length of the part in mm, by which turns are scaled.
+    resting : indices of the unit loads by which a plate presses from below on a part that may lift off it.
+        Their factors under clamping are 0 here, until it is known which of them touch
+        (:mod:`workhold.bending.resting`); their rows of ``answers`` are 0 as well.
     """
 
     columns: tuple[PointForces, ...]
@@ -89,6 +94,7 @@ class ElasticHold:
     gives: Array
     pressed: Array
     size: float
+    resting: tuple[int, ...] = ()
     constraints: tuple[Array, ...] = field(init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -128,37 +134,35 @@ def make_elastic_hold(
     pressed_up_to: float | None = None,
     stiffness: float = np.inf,
     below: PadsBelow | None = None,
+    faces: RestingFaces | None = None,
 ) -> ElasticHold:
     """Return the elastic hold of a part in a fixture.
 
     Parameters
     ----------
     foot : the level faces that the part lies on.
-    jaw_force : in N.
+    jaw_force : in N; of each strap where straps hold the part.
     height : height of the part in mm.
     pressed_up_to : height in mm up to which pegs press on a prism; None for its height. Not used for a solid.
     stiffness : stiffness of the closed jaw over that of one contact.
     below : pads and a clamp on top; if None the part lies on ``foot``.
+    faces : the faces of ``foot``, cut into cells, for a part that straps press on a plate.
     """
     size = max(np.ptp(np.array(workpiece.bounds).reshape(2, 2), axis=0).max(), height)
+    if workpiece.solid is None:
+        pressed_up_to = height if pressed_up_to is None else min(height, pressed_up_to)
     if isinstance(fixture.hold, StrappedHold):
-        raise InputError(
-            "how far straps bend a part is not worked out: leave bending out, or take a plate with clamps."
+        return make_strapped_hold(
+            fixture, fixture.hold, workpiece, toolkit, foot, faces, jaw_force, height, pressed_up_to
         )
     if fixture.hold is not None:
         return make_elastic_jaw_hold(fixture, fixture.hold, foot, jaw_force, height, float(size))
-    if workpiece.solid is None:
-        pressed_up_to = height if pressed_up_to is None else min(height, pressed_up_to)
     touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
     matrices = touched.compute_for_fixture(fixture, toolkit)
     contacts, normals, *_ = find_contacts_on_part(fixture, workpiece, toolkit, touched, matrices)
     points = contacts + touched.center
     carriers = toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)
-    low, high = find_pressed_heights(fixture, workpiece, toolkit, matrices.points, height, pressed_up_to)
-    strips = [
-        make_strip((point[0], point[1]), (normal[0], normal[1]), *heights)
-        for point, normal, *heights in zip(points, normals, low, high, strict=True)
-    ]
+    strips = make_strips(fixture, workpiece, points, normals, height, pressed_up_to)
     outward = np.column_stack([normals, np.zeros(len(normals))])
     pegs = tuple(strip.press(-normal) for strip, normal in zip(strips, outward, strict=True))
     forces = matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
@@ -186,26 +190,36 @@ def make_elastic_hold(
     return add_support_from_below(held, foot, below)
 
 
-def find_pressed_heights(
+def make_strips(
     fixture: Fixture,
     workpiece: Workpiece,
-    toolkit: Toolkit,
     points: Array,
+    normals: Array,
     height: float,
     pressed_up_to: float | None,
-) -> tuple[Array, Array]:
-    """Return (low, high), each (P,): heights between which each contact presses, in mm above the part's lower
-    side.
+) -> list[LoadPatch]:
+    """Return the strip of each peg, tip or wall of a fixture, where it touches the part.
 
-    On a prism they are 0 and ``pressed_up_to``; on a solid those of its faces, at most ``height``.
+    On a prism a strip reaches from 0 to ``pressed_up_to``; on a solid over the heights of its face, at most to
+    ``height``.
+
+    Parameters
+    ----------
+    points, normals : (P, 2) points where they touch, in mm, and outward unit normals there, in the part's
+        coordinates.
     """
-    count = len(fixture.pegs)
+    count = len(points)
     if workpiece.solid is None:
-        return np.zeros(count), np.full(count, pressed_up_to)
-    faces = np.array([[peg.face for peg in fixture.pegs]])
-    low, high = find_runs_on_solid(faces, points + np.array(workpiece.center), workpiece)
-    whole = np.isnan(low[0]) | np.isnan(high[0])
-    return np.where(whole, 0.0, low[0]), np.where(whole, height, np.minimum(high[0], height))
+        low, high = np.zeros(count), np.full(count, pressed_up_to)
+    else:
+        faces = np.array([[peg.face for peg in fixture.pegs]])
+        least, most = (one[0] for one in find_runs_on_solid(faces, points[None], workpiece))
+        whole = np.isnan(least) | np.isnan(most)
+        low, high = np.where(whole, 0.0, least), np.where(whole, height, np.minimum(most, height))
+    return [
+        make_strip((point[0], point[1]), (normal[0], normal[1]), *heights)
+        for point, normal, *heights in zip(points, normals, low, high, strict=True)
+    ]
 
 
 def find_flexibilities(
@@ -227,33 +241,47 @@ def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow 
 
     They are the pads with their clamp on top, or where ``below`` is None the level faces ``foot``.
     """
-    count = len(held.columns)
-    more: tuple[PointForces, ...] = ()
-    extra = np.zeros(0)
-    dents = [held.pressed]
     if below is None:
-        bearing, reads = press_foot(foot)
-    else:
-        pads = [make_disc(np.array([x, y, 0.0]), below.pad_radius, -UP) for x, y in below.pads]
-        tip = make_disc(below.clamp, below.tip_radius, UP)
-        bearing, reads = tuple(pad.press(UP) for pad in pads), tuple(pad.read(-UP) for pad in pads)
-        more, extra = (tip.press(-UP),), np.array([below.force])
-        dents += [patch.points for patch in (*pads, tip)]
-    wrenches = np.array([one.wrench for one in (*held.columns, *more)]).T
-    pressing = np.concatenate([held.clamping, extra])
+        return bear_from_below(held, *press_foot(foot))
+    tip = make_disc(below.clamp, below.tip_radius, UP)
+    clamped = evolve(
+        held,
+        columns=(*held.columns, tip.press(-UP)),
+        clamping=np.append(held.clamping, below.force),
+        answers=np.vstack([held.answers, np.zeros((1, 6))]),
+        gives=np.hstack([held.gives, np.zeros((len(held.gives), 1))]),
+        pressed=np.concatenate([held.pressed, tip.points]),
+    )
+    return bear_on_pads(clamped, below.pads, below.pad_radius)
+
+
+def bear_on_pads(held: ElasticHold, pads: Array, radius: float) -> ElasticHold:
+    """Return the hold with three pads below the part added, (3, 2) centres in mm and their radius in mm."""
+    discs = [make_disc(np.array([x, y, 0.0]), radius, -UP) for x, y in pads]
+    more = np.concatenate([held.pressed, *(disc.points for disc in discs)])
+    bearing, reads = (disc.press(UP) for disc in discs), (disc.read(-UP) for disc in discs)
+    return bear_from_below(evolve(held, pressed=more), tuple(bearing), tuple(reads))
+
+
+def bear_from_below(
+    held: ElasticHold, bearing: tuple[PointForces, ...], reads: tuple[PointForces, ...]
+) -> ElasticHold:
+    """Return the hold with three unit loads from below added, and the factors with which they bear clamping and
+    loads.
+
+    ``reads`` are the readings that are 0 where the part lies on what bears it.
+    """
     inverse = np.linalg.inv(np.array([one.wrench[BELOW] for one in bearing]).T)
-    clamped = -inverse @ (wrenches @ pressing)[BELOW]
-    idle = np.zeros((len(more), 6))
-    together = wrenches @ np.vstack([held.answers, idle]) + np.eye(6)
-    borne = -inverse @ together[BELOW]
+    wrenches = np.array([one.wrench for one in held.columns]).T
+    clamped = -inverse @ (wrenches @ held.clamping)[BELOW]
+    borne = -inverse @ (wrenches @ held.answers + np.eye(6))[BELOW]
     return evolve(
         held,
-        columns=(*held.columns, *more, *bearing),
-        clamping=np.concatenate([pressing, clamped]),
-        answers=np.vstack([held.answers, idle, borne]),
+        columns=(*held.columns, *bearing),
+        clamping=np.concatenate([held.clamping, clamped]),
+        answers=np.vstack([held.answers, borne]),
         locating=(*held.locating, reads),
-        gives=np.hstack([held.gives, np.zeros((count, len(more) + len(bearing)))]),
-        pressed=np.concatenate(dents),
+        gives=np.hstack([held.gives, np.zeros((len(held.gives), len(bearing)))]),
     )
 
 
@@ -263,11 +291,107 @@ def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointFor
     The loads are upward pressures 1, x and y about the centre, which add up to any affine pressure; the
     readings fit a plane to the movement of the foot.
     """
-    assert foot.weights is not None
-    middle = foot.weights @ foot.points
-    arms = foot.points - middle
+    arms = foot.points - foot.middle
     factors = [np.ones(len(arms)), arms[:, 0], arms[:, 1]]
     return tuple(foot.press(UP, one) for one in factors), tuple(foot.press(-UP, one) for one in factors)
+
+
+def make_strapped_hold(
+    fixture: Fixture,
+    hold: StrappedHold,
+    workpiece: Workpiece,
+    toolkit: Toolkit,
+    foot: LoadPatch,
+    faces: RestingFaces | None,
+    strap_force: float,
+    height: float,
+    pressed_up_to: float | None,
+) -> ElasticHold:
+    """Return the elastic hold of straps, each of which presses straight down with ``strap_force`` N.
+
+    Below, the part lies on three pads, or on a plate that presses on those cells of ``faces`` that touch it.
+    Loads along the plate are borne by friction, at tips and below, each as near to slipping as the others.
+
+    Raises
+    ------
+    InputError
+        For a fixture without straps.
+    """
+    if not hold.straps or toolkit.strap_set is None:
+        raise InputError("a fixture has no straps, so that nothing bends its part: bend one that has some.")
+    back, size = fixture.pose.inverse, max(np.ptp(foot.points, axis=0).max(), height)
+    raised = (toolkit.supports.height or 0.0) if toolkit.supports is not None and hold.supports else 0.0
+    tops = [height if workpiece.solid is None else one.height - raised for one in hold.straps]
+    tips = [
+        make_disc(np.array([*back.apply(*one.at), top]), toolkit.strap_set.tip_radius, UP)
+        for one, top in zip(hold.straps, tops, strict=True)
+    ]
+    count = len(tips)
+    clamping = np.full(count, strap_force)
+    columns = tuple(tip.press(-UP) for tip in tips)
+    points, normals = find_touched_points(fixture, workpiece, toolkit)
+    strips = make_strips(fixture, workpiece, points, normals, height, pressed_up_to)
+    outward = np.column_stack([normals, np.zeros(len(normals))])
+    reads = tuple(strip.read(normal) for strip, normal in zip(strips, outward, strict=True))
+    held = ElasticHold(
+        columns, clamping, np.zeros((count, 6)), (reads,), np.zeros((len(reads), 0)),
+        np.zeros((len(reads), count)), np.concatenate([tip.points for tip in tips]), float(size),
+    )  # fmt: skip
+    if not hold.supports:
+        assert faces is not None
+        held = add_friction(held, (*tips, foot), np.array([*[strap_force] * count, count * strap_force]))
+        cells = list(faces.cells)
+        for tip, top in zip(tips, tops, strict=True):
+            x, y, _ = tip.middle.tolist()
+            cells += faces.make_cells_under((x, y), toolkit.strap_set.tip_radius, top)
+        resting = tuple(range(len(held.columns), len(held.columns) + len(cells)))
+        pressing = tuple(cell.press(UP) for cell in cells)
+        return evolve(
+            held,
+            columns=(*held.columns, *pressing),
+            clamping=np.concatenate([held.clamping, np.zeros(len(cells))]),
+            answers=np.vstack([held.answers, np.zeros((len(cells), 6))]),
+            locating=(*held.locating, pressing),
+            gives=np.zeros((len(reads), len(held.columns) + len(cells))),
+            resting=resting,
+        )
+    plate = next(one for one in toolkit.carriers if one.has_lattice and one.travel is None)
+    at = np.array([back.apply(*plate.compute_hole_center(*one)) for one in hold.supports])
+    radius = find_usual_pad_radius(toolkit)
+    borne = bear_on_pads(held, at, radius).clamping[count:]
+    if (borne < -1e-6 * strap_force).any():
+        raise InputError("the straps tip the part off its supports, so that it is not known what bears it.")
+    pads = [make_disc(np.array([x, y, 0.0]), radius, -UP) for x, y in at]
+    limits = np.array([*[strap_force] * count, *np.maximum(borne, 1e-3 * strap_force)])
+    return bear_on_pads(add_friction(held, (*tips, *pads), limits), at, radius)
+
+
+def add_friction(held: ElasticHold, patches: Sequence[LoadPatch], limits: Array) -> ElasticHold:
+    """Return the hold with friction on some level patches added, which bears loads along the plate.
+
+    Of all forces that do so, those are taken whose squares over ``limits`` (P,), in N, add up to the least:
+    each patch is then about as near to slipping as the others.
+    """
+    columns: list[PointForces] = []
+    weights: list[float] = []
+    for patch, limit in zip(patches, limits.tolist(), strict=True):
+        columns += [patch.press(np.array([1.0, 0.0, 0.0])), patch.press(np.array([0.0, 1.0, 0.0]))]
+        columns.append(patch.make_unit_moment())
+        weights += [limit, limit, limit * patch.compute_gyration()]
+    level = [0, 1, 5]
+    scale = np.array([1.0, 1.0, 1.0 / held.size])
+    roots = np.sqrt(np.array(weights))
+    wrenches = scale[:, None] * np.array([one.wrench[level] for one in columns]).T
+    shared = roots[:, None] * np.linalg.pinv(wrenches * roots) * scale
+    more = np.zeros((len(columns), 6))
+    more[:, level] = -shared
+    return evolve(
+        held,
+        columns=(*held.columns, *columns),
+        clamping=np.concatenate([held.clamping, np.zeros(len(columns))]),
+        answers=np.vstack([held.answers, more]),
+        gives=np.zeros((len(held.gives), len(held.columns) + len(columns))),
+    )
 
 
 def make_elastic_jaw_hold(

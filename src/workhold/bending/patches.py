@@ -15,7 +15,17 @@ from numpy.typing import NDArray
 
 from workhold.bending.elastic import PointForces
 
-__all__ = ["BESIDE", "PEG_WIDTH", "LoadPatch", "make_disc", "make_foot", "make_rectangle", "make_strip"]
+__all__ = [
+    "BESIDE",
+    "PEG_WIDTH",
+    "LoadPatch",
+    "RestingFaces",
+    "find_foot_corners",
+    "make_disc",
+    "make_foot",
+    "make_rectangle",
+    "make_strip",
+]
 
 Array = NDArray[np.float64]
 
@@ -28,6 +38,11 @@ BESIDE = 2.0
 ACROSS, ALONG = 4, 2.0
 # Points of a disc by rings, and of what is read around it.
 RINGS, AROUND = ((0.25, 4), (0.75, 12)), 12
+# Squares that the level faces a part lies on are cut into, about, where it is looked for which of them touch the plate;
+# and points across one of them, at least.
+CELLS, ACROSS_CELL = 48, 3
+# Ends of the rings that are cut into sectors under a tip, each as a share of the tip's radius and one of the height.
+UNDER_TIP, SECTORS = ((0.5, 0.0), (1.0, 0.0), (1.0, 0.7), (1.0, 2.0)), 6
 
 
 @frozen(eq=False)
@@ -49,17 +64,20 @@ class LoadPatch:
 
     @property
     def middle(self) -> Array:
-        """Mean (3,) of the points."""
-        return np.asarray(self.points.mean(axis=0))
+        """Centre of area (3,) of the points."""
+        return self.shares @ self.points
+
+    @property
+    def shares(self) -> Array:
+        """Fraction (M,) of the patch's area that each point stands for."""
+        return np.full(len(self.points), 1.0 / len(self.points)) if self.weights is None else self.weights
 
     def press(self, direction: Array, factors: Array | None = None) -> PointForces:
         """Return a force of 1 N in a direction (3,), spread evenly over the patch.
 
         With ``factors`` (M,), the force at each point is multiplied by its factor.
         """
-        shares = np.full(len(self.points), 1.0 / len(self.points)) if self.weights is None else self.weights
-        if factors is not None:
-            shares = shares * factors
+        shares = self.shares if factors is None else self.shares * factors
         return PointForces(self.points, shares[:, None] * direction, self.outward)
 
     def read(self, direction: Array) -> PointForces:
@@ -70,8 +88,15 @@ class LoadPatch:
     def make_unit_moment(self) -> PointForces:
         """Return forces with a moment of 1 N mm about the vertical axis (z) through the middle."""
         arms = self.points - self.middle
-        forces = np.column_stack([-arms[:, 1], arms[:, 0], np.zeros(len(arms))])
-        return PointForces(self.points, forces / (arms[:, :2] ** 2).sum(), self.outward)
+        forces = self.shares[:, None] * np.column_stack([-arms[:, 1], arms[:, 0], np.zeros(len(arms))])
+        return PointForces(self.points, forces / self.compute_gyration(), self.outward)
+
+    def compute_gyration(self) -> float:
+        """Return the mean square distance in mm² of the patch's area from the vertical axis (z) through its
+        middle.
+        """
+        arms = self.points - self.middle
+        return float(self.shares @ (arms[:, :2] ** 2).sum(axis=1))
 
 
 def compute_interval_middles(low: float, high: float, count: int) -> Array:
@@ -137,17 +162,115 @@ def make_rectangle(corner: Array, sides: tuple[Array, Array], spacing: float = A
     return points, np.full(len(points), lengths[0] * lengths[1] / len(points))
 
 
-def make_foot(nodes: Array, triangles: NDArray[np.int64], normals: Array, lowest: float) -> LoadPatch | None:
-    """Return the patch of the level faces on which a part lies, at the height ``lowest`` in mm; None where it
-    has none.
+def find_foot_corners(nodes: Array, triangles: NDArray[np.int64], normals: Array, lowest: float) -> Array:
+    """Return the corners (T, 3, 3) in mm of the triangles of the level faces on which a part lies.
 
-    Nodes (N, 3), triangles (T, 6) and outward normals (T, 3) are those of a mesh's surface.
+    These are at the height ``lowest`` in mm. Nodes (N, 3), triangles (K, 6) and outward normals (K, 3) are
+    those of a mesh's surface.
     """
     corners = nodes[triangles[:, :3]]
     is_foot = (normals[:, 2] < -0.999) & (np.abs(corners[:, :, 2] - lowest).max(axis=1) < 1e-3)
-    if not is_foot.any():
+    return np.asarray(corners[is_foot])
+
+
+def compute_areas(corners: Array) -> Array:
+    """Return the areas (T,) in mm² of triangles with the corners (T, 3, 3)."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.linalg.norm(across, axis=1) / 2)
+
+
+def make_foot(corners: Array) -> LoadPatch | None:
+    """Return the patch of the level faces on which a part lies, of triangles with the corners (T, 3, 3);
+    None without any.
+    """
+    if not len(corners):
         return None
-    own = corners[is_foot]
-    areas = np.linalg.norm(np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]), axis=1)
-    middles = own.mean(axis=1)
+    areas, middles = compute_areas(corners), corners.mean(axis=1)
     return LoadPatch(middles, middles, np.array([0.0, 0.0, -1.0]), areas / areas.sum())
+
+
+@frozen(eq=False)
+class RestingFaces:
+    """The level faces on which a part lies, cut into cells that a plate below may touch or not.
+
+    Parameters
+    ----------
+    corners : (T, 3, 3) corners of the faces' triangles in mm.
+    cells : cells that cover the faces, about :data:`CELLS` squares.
+    """
+
+    corners: Array
+    cells: tuple[LoadPatch, ...]
+
+    @classmethod
+    def from_corners(cls, corners: Array) -> RestingFaces:
+        """Return the faces with the corners (T, 3, 3) of their triangles, cut into squares."""
+        side = float(np.sqrt(compute_areas(corners).sum() / CELLS))
+        points, areas = sample_triangles(corners, side / ACROSS_CELL)
+        squares = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / side).astype(np.int64)
+        return cls(corners, split_cells(points, areas, squares))
+
+    def make_cells_under(
+        self, tip: tuple[float, float], radius: float, height: float
+    ) -> tuple[LoadPatch, ...]:
+        """Return small cells under a tip, on which most of its force is borne.
+
+        They are sectors of rings about the tip's axis, as far as the force spreads in the part.
+
+        Parameters
+        ----------
+        tip : (x, y) of the tip's middle in mm.
+        radius : of the tip in mm.
+        height : of the face under the tip in mm.
+        """
+        ends = np.array([share * radius + part * height for share, part in UNDER_TIP])
+        low, high = self.corners[:, :, :2].min(axis=1), self.corners[:, :, :2].max(axis=1)
+        beside = np.maximum(np.maximum(low - tip, tip - high), 0.0)
+        near = self.corners[np.hypot(*beside.T) < ends[-1]]
+        if not len(near):
+            return ()
+        points, areas = sample_triangles(near, float(np.diff(ends, prepend=0.0).min()) / ACROSS_CELL)
+        away = points[:, :2] - tip
+        ring = np.searchsorted(ends, np.hypot(*away.T))
+        sector = np.floor((np.arctan2(away[:, 1], away[:, 0]) / (2 * pi) + 0.5) * SECTORS).astype(np.int64)
+        sector = np.where(ring == 0, 0, sector % SECTORS)
+        inside = ring < len(ends)
+        return split_cells(points[inside], areas[inside], np.column_stack([ring, sector])[inside])
+
+
+def split_cells(points: Array, areas: Array, keys: NDArray[np.int64]) -> tuple[LoadPatch, ...]:
+    """Return a patch for each distinct row of ``keys`` (M, 2), of those of the points (M, 3) that have it.
+
+    ``areas`` (M,) is what each point stands for, in mm².
+    """
+    _, own = np.unique(keys, axis=0, return_inverse=True)
+    own = own.ravel()
+    patches = []
+    for number in range(int(own.max()) + 1):
+        some = own == number
+        weights = areas[some] / areas[some].sum()
+        patches.append(LoadPatch(points[some], points[some], np.array([0.0, 0.0, -1.0]), weights))
+    return tuple(patches)
+
+
+def sample_triangles(corners: Array, spacing: float) -> tuple[Array, Array]:
+    """Return points (M, 3) spread over triangles with the corners (T, 3, 3), and the area in mm² that each
+    stands for.
+
+    Each triangle is cut into alike ones with sides of at most ``spacing`` mm, whose middles these are.
+    """
+    points, areas = [], []
+    for corner, area in zip(corners, compute_areas(corners).tolist(), strict=True):
+        longest = np.linalg.norm(np.roll(corner, 1, axis=0) - corner, axis=1).max()
+        pieces = max(1, ceil(float(longest) / spacing))
+        rows = [
+            (i + shift, j + shift)
+            for shift, less in ((1 / 3, 0), (2 / 3, 1))
+            for i in range(pieces - less)
+            for j in range(pieces - less - i)
+        ]
+        first, second = np.array(rows).T / pieces
+        shares = np.column_stack([1.0 - first - second, first, second])
+        points.append(shares @ corner)
+        areas.append(np.full(len(rows), area / len(rows)))
+    return np.concatenate(points), np.concatenate(areas)

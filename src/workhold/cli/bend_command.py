@@ -23,6 +23,7 @@ from workhold.cli.values import (
     read_unit,
 )
 from workhold.errors import InputError
+from workhold.model.straps import StrappedHold
 
 if TYPE_CHECKING:
     from workhold.bending.asking import BendingQuestion
@@ -60,7 +61,8 @@ class BendWords:
     jaw_force: str | None = make_option(
         CLAMPING,
         "FORCE",
-        "Force of the jaws or clamps in N; that of the result if not given, else what its loads need, else 1000 N.",
+        "Force of the jaws, or of each clamp or strap, in N; that of the result if not given, else what its loads need, "
+        "else 1000 N.",
     )
     jaw: str = make_option(
         CLAMPING,
@@ -187,7 +189,8 @@ def read_figure(name: str | None) -> str | None:
 def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Result, list[int]]:
     """Return the result in a file, and the indices, from 0, of the fixtures to bend.
 
-    The fixture is that of ``rank`` where given, else the first ``best`` fixtures, or 20 for None.
+    The fixture is that of ``rank`` where given, else the first ``best`` fixtures, or 20 for None; seats for which
+    no straps were found are left out.
     """
     if rank is not None:
         return read_result_with_rank(result_file, rank), [rank - 1]
@@ -196,7 +199,18 @@ def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Res
     result = read_result(result_file)
     if not len(result):
         raise InputError(f"{result_file} lists no fixture: there is nothing to bend.")
-    return result, list(range(min(best or USUAL, len(result))))
+    rows = []
+    for row in range(len(result)):
+        hold = result[row].hold
+        if not isinstance(hold, StrappedHold) or hold.straps:
+            rows.append(row)
+        if len(rows) == (best or USUAL):
+            break
+    if not rows:
+        raise InputError(
+            f"no seat of {result_file} has straps, so that nothing bends its part: design it again with a load."
+        )
+    return result, rows
 
 
 def rank_bendings(found: list[tuple[int, Bending]], figure: str | None) -> list[tuple[int, Bending]]:
@@ -278,7 +292,7 @@ def tabulate(
             ]
         table.add_row(*cells)
     first = ranked[0][1]
-    stated = "You gave no jaw force, so every figure is for 1000 N.\n" if first.is_stated else ""
+    stated = f"You gave no {mover} force, so every figure is for 1000 N.\n" if first.is_stated else ""
     return [
         f"How far {result.workpiece.name} of {asked.material.words} is bent",
         "",
