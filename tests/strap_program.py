@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from math import cos, pi, sin
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import linprog
+
+from workhold import Program
 
 
 def force_by_other_program(fixture, loops, tips, forces, friction=0.1, sides=32, cell=2.5, thick=25.0):
@@ -80,3 +83,14 @@ def force_by_other_program(fixture, loops, tips, forces, friction=0.1, sides=32,
         costs, matrix, np.zeros(len(matrix)), np.array(columns).T, -load / size, bounds, method="highs-ipm"
     )
     return found.fun * size if found.status == 0 else None
+
+
+def read_slot_program(folder: Path) -> Program:
+    """Return a program that cuts a slot into the top of a block 25 mm high, written into ``folder``."""
+    (folder / "p.nc").write_text(
+        "G21 G90\nG0 X30. Y30. Z70.\nT1 M6\nZ5.\nG1 Z-3. F200\nX70. F600\nG0 Z70.\nM30\n"
+    )
+    (folder / "tools.toml").write_text(
+        "tool.1 = {diameter = 10, flute_length = 30, stickout = 40, cutting_force = 180}\n"
+    )
+    return Program.read(folder / "p.nc", folder / "tools.toml", thickness=25, start=(30, 30, 70))

@@ -36,6 +36,8 @@ VALUES: dict[str, tuple[Any, Any]] = {
     "least_grip": (4.0, "4"),
     "stop": ("left", "left"),
     "stop_offset": (-1.25, "-1.25"),
+    "parallel_thickness": (6.0, "6"),
+    "stop_width": (14.0, "14"),
     "max_force": (5200.0, "5200"),
     "screw_lead": (5.0, "5"),
     "straps": (3, "3"),

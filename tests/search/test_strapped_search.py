@@ -342,7 +342,6 @@ def test_a_disc_and_faces_that_are_avoided_leave_no_seat():
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        ({"jaw_force": 100}, "a jaw force is not looked at with straps"),
         ({"seating": 5}, "seating is not looked at with straps"),
         ({"loads": [LOAD], "thickness": None}, "how thick the part is decides what straps hold"),
         ({"rank_by": "closure-margin"}, "is no figure of straps to rank by"),

@@ -83,7 +83,7 @@ def test_reason_is_told_where_there_is_none(server: RunningServer) -> None:
 
 
 def test_what_is_not_done_is_refused_in_a_sentence(server: RunningServer) -> None:
-    answer = server.client.post("/api/jobs", json={**ASKED, "jaw_force": 500})
+    answer = server.client.post("/api/jobs", json={**ASKED, "seating": 5})
     assert answer.status_code == 400 and "is not looked at with straps" in answer.text
 
 

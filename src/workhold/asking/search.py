@@ -96,8 +96,9 @@ class SearchQuestion:
     jaw_force: float | None = declare(
         "force",
         "Force that closes the vise or tightens the clamp, in N or with its unit (3kN, 700lbf); "
-        "for two clamps the sum of both. With it the search warns of pegs that let go under the "
-        "loads.",
+        "for two clamps the sum of both, for straps that of each at its tip. With it the search warns of pegs that "
+        "let go under the loads; where friction holds the part it says how many times the loads are held.",
+        PageLabel("Your clamping force", "not known"),
         least="0",
         section=LOADS,
     )
@@ -112,6 +113,7 @@ class SearchQuestion:
     safety: float | None = declare(
         "number",
         "Safety factor on the loads where friction holds the part; 2 if not given.",
+        PageLabel("Safety factor", "2"),
         section=LOADS,
     )
     weight: float | None = declare(

@@ -92,6 +92,7 @@ def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
     """
     from workhold.model.hold_words import describe_coefficients, write_setup_sentences, write_warnings
     from workhold.model.jaw_hold import JawHold
+    from workhold.statics.jaw_clearance import list_vise_sentences
     from workhold.statics.jaw_program import describe_asked_force
 
     hold, query = fixture.hold, fixture.listing.result.query
@@ -103,10 +104,16 @@ def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
         tables.append(describe_coefficients(query))
     if hold.program_need is not None and query.program is not None:
         tables.append(describe_asked_force(hold.program_need, query.program, unit))
+    tables += list_vise_sentences(fixture, query, unit)
     if hold.clamp_needed_each:
         tables.append(
             tabulate_needs(
-                (load.name for load in query.loads), hold.clamp_needed_each, "jaw force needed", unit
+                (load.name for load in query.loads),
+                hold.clamp_needed_each,
+                "jaw force needed",
+                unit,
+                hold.safety_each[: len(query.loads)],
+                query.jaw_force,
             )
         )
     return (*tables, *write_warnings(hold))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from workhold.cli.need_table import tabulate_needs
+from workhold.cli.need_table import format_safety, tabulate_needs
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_rounded
 from workhold.units import Unit
@@ -26,7 +26,10 @@ def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Uni
     straps = result.toolkit.strap_set
     assert straps is not None
     short, has_loads = unit.abbreviation, result.query.is_loaded
-    needs = (f">each strap {unit.force}", "bolts in") if has_loads else ()
+    needs = [f">each strap {unit.force}", "bolts in"] if has_loads else []
+    given = result.query.jaw_force if has_loads else None
+    if given is not None:
+        needs.insert(1, f">times at {unit.format_force_alone(given)}")
     columns = (
         ">rank",
         "locators",
@@ -43,8 +46,9 @@ def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Uni
         assert isinstance(hold, StrappedHold)
         if hold.is_unfit or hold.holds_nothing:
             table.red.add(len(table.rows))
-        need = hold.clamp_needed
+        need, reached = hold.clamp_needed, hold.safety_reached
         force = "-" if need is None else format_rounded(need / unit.newtons, 0)
+        times = () if given is None else ("-" if reached is None else format_safety(reached),)
         bolts = " ".join(straps.bolts.name_place(*one.hole) for one in hold.straps) or "-"
         push = (
             "?" if not hold.is_looked_at else "none" if hold.push is None else f"{hold.push.direction_deg:g}°"
@@ -54,7 +58,7 @@ def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Uni
             str(index + 1),
             " ".join(peg.hole for peg in fixture.pegs),
             format_rounded(fixture.pose.written_deg, 3),
-            *((force, bolts) if has_loads else ()),
+            *((force, *times, bolts) if has_loads else ()),
             push,
             unit.format_number(quality["location_error"]),
             unit.format_number(quality["edge_distance"], 1),
@@ -89,6 +93,7 @@ def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Uni
     from workhold.supports.words_of_straps import (
         describe_assumptions,
         describe_program_need,
+        describe_program_safety,
         list_remarks,
         list_steps,
         list_warnings,
@@ -120,11 +125,17 @@ def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Uni
         tables += ["", straps]
     if hold.clamp_needed_each:
         needs = tabulate_needs(
-            (load.name for load in query.loads), hold.clamp_needed_each, "force of each strap", unit
+            (load.name for load in query.loads),
+            hold.clamp_needed_each,
+            "force of each strap",
+            unit,
+            hold.safety_each[: len(query.loads)],
+            query.jaw_force,
         )
         tables += ["", describe_assumptions(asked), needs]
     if hold.program_need is not None and query.program is not None:
         tables += ["", describe_program_need(hold.program_need, query.program, unit)]
+        tables += [words for words in [describe_program_safety(hold, asked, unit)] if words]
         tables += [] if hold.clamp_needed_each else [describe_assumptions(asked)]
     quality = fixture.quality
     error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))

@@ -64,6 +64,12 @@ class StrapOptions:
     )
     safety: str | None = make_option(LOADS, "NUMBER", "Safety factor on the loads; 2 if not given.")
     weight: str | None = make_option(LOADS, "FORCE", "Weight of the part; it helps where it is given.")
+    jaw_force: str | None = make_option(
+        LOADS,
+        "FORCE",
+        "Force with which you tighten each strap, at its tip: the report says how many times it holds the loads. "
+        "That of the result if not given.",
+    )
 
 
 @spread_option_groups
@@ -110,7 +116,7 @@ def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion
     from workhold.model.friction import SAFETY, to_coefficients
     from workhold.model.straps import StrapHardware
     from workhold.model.support_request import SpatialLoad
-    from workhold.supports.straps import NO_LOADS, StrapQuestion, make_usual_request
+    from workhold.supports.straps import NO_LOADS, StrapQuestion, find_given_force, make_usual_request
 
     count, tip = (
         read_optional_count("--count", words.count),
@@ -132,6 +138,7 @@ def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion
     )
     if not loads:
         raise InputError(NO_LOADS)
+    given = read_optional_force("--jaw-force", words.jaw_force)
     return StrapQuestion(
         hardware,
         make_usual_request(result.query, high, tip, zones),
@@ -139,6 +146,7 @@ def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion
         to_coefficients(None if words.friction is None else read_coefficients("--friction", words.friction)),
         SAFETY if words.safety is None else read_positive_number("--safety", words.safety),
         read_optional_force("--weight", words.weight) or 0.0,
+        given_force=find_given_force(result.query) if given is None else given,
     )
 
 
@@ -157,6 +165,7 @@ def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dic
         "friction": {name: find_friction_coefficient(asked.friction, name) for name in asked.counted},
         "safety": asked.safety,
         "weight": asked.weight,
+        **({} if asked.given_force is None else {"jaw_force": asked.given_force}),
     }
 
 
@@ -180,7 +189,12 @@ def tabulate(
         out += ["", table]
     if found.clamp_needed_each:
         needs = tabulate_needs(
-            (load.name for load in asked.loads), found.clamp_needed_each, "force of each strap", unit
+            (load.name for load in asked.loads),
+            found.clamp_needed_each,
+            "force of each strap",
+            unit,
+            found.safety_each[: len(asked.loads)],
+            asked.given_force,
         )
         out += ["", describe_assumptions(asked), needs]
     return out

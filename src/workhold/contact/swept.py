@@ -41,6 +41,7 @@ from workhold.kernels.base.feature import (
     X,
     Y,
 )
+from workhold.model.pose import Pose
 from workhold.model.program import PathVertex, Program, SweptPiece
 from workhold.model.query import Query
 
@@ -74,7 +75,7 @@ class SweptSpans:
     line, tool : (N,) numbers of the program's line and of the tool, -1 for rows that only fill leaves.
     boxes : (N, 4) box x0, y0, x1, y1 around each span.
     filled : (B, 4) boxes x0, y0, x1, y1 whose whole inside is swept.
-    filled_line : (B,) line of the program of each filled box.
+    filled_by : (B, 2) line of the program and tool of each filled box.
     """
 
     tree: SweptTree
@@ -82,7 +83,7 @@ class SweptSpans:
     tool: IntArray
     boxes: Array
     filled: Array
-    filled_line: IntArray
+    filled_by: IntArray
 
     def __len__(self) -> int:
         return int((self.line >= 0).sum())
@@ -91,7 +92,7 @@ class SweptSpans:
     def from_pieces(cls, pieces: Iterator[SweptPiece] | tuple[SweptPiece, ...]) -> SweptSpans:
         """Return the spans of swept pieces."""
         spans, numbers, filled = list[tuple[float, ...]](), list[tuple[int, int]](), list[tuple[float, ...]]()
-        filled_lines = []
+        filled_by = list[tuple[int, int]]()
         for piece in pieces:
             path = piece.path
             for (x, y, bulge), (to_x, to_y, _) in zip(path, path[1:] or path, strict=False):
@@ -100,11 +101,11 @@ class SweptSpans:
             if piece.filled:
                 xs, ys = [vertex[0] for vertex in path], [vertex[1] for vertex in path]
                 filled.append((min(xs), min(ys), max(xs), max(ys)))
-                filled_lines.append(piece.line)
+                filled_by.append((piece.line, piece.tool))
         rows = np.array(spans).reshape(-1, SPAN)
         named = np.array(numbers, np.int64).reshape(-1, 2)
         return cls.from_span_rows(
-            rows, named, np.array(filled).reshape(-1, 4), np.array(filled_lines, np.int64)
+            rows, named, np.array(filled).reshape(-1, 4), np.array(filled_by, np.int64).reshape(-1, 2)
         )
 
     @classmethod
@@ -120,16 +121,14 @@ class SweptSpans:
         one = program.make_arrays(*program.pair_moves_with_cylinders(), low, high)
         rows = np.column_stack([one.start, one.end, one.bulge, one.cylinder[:, 2]])
         named = np.column_stack([one.line, one.tool])
-        return cls.from_span_rows(rows, named, np.zeros((0, 4)), np.zeros(0, np.int64))
+        return cls.from_span_rows(rows, named, np.zeros((0, 4)), np.zeros((0, 2), np.int64))
 
     @classmethod
-    def from_span_rows(
-        cls, rows: Array, named: IntArray, inside: Array, filled_lines: IntArray
-    ) -> SweptSpans:
+    def from_span_rows(cls, rows: Array, named: IntArray, inside: Array, filled_by: IntArray) -> SweptSpans:
         """Return spans from rows (N, 6): both ends (x, y each), bulge, cylinder radius.
 
-        ``named`` (N, 2) has line and tool of each row, ``inside`` (B, 4) the filled boxes, ``filled_lines``
-        (B,) their lines.
+        ``named`` (N, 2) has line and tool of each row, ``inside`` (B, 4) the filled boxes, ``filled_by``
+        (B, 2) their lines and tools.
         """
         kept = drop_repeated_paths(rows)
         rows, named = rows[kept], named[kept]
@@ -145,7 +144,7 @@ class SweptSpans:
         around[~filling] = boxes[chosen]
         out.setflags(write=False)
         tree = SweptTree(out, radius, make_tree_nodes(around, radius))
-        return cls(tree, line, tool, around, inside, filled_lines)
+        return cls(tree, line, tool, around, inside, filled_by)
 
     def find_nearest_spans(self, starts: Array, ends: Array) -> tuple[Array, IntArray]:
         """Return (least reach (M,) in mm from each straight piece to the spans, number (M,) of the nearest
@@ -192,24 +191,61 @@ class SweptSpans:
         is_clockwise = (rows[:, IS_ARC] != 0.0) & (rows[:, SIGN] < 0.0)
         return np.asarray(find_row_ends(rows)[np.arange(len(rows)), is_clockwise.astype(np.int64)])
 
-    def find_reach_to_box(self, corners: Array) -> tuple[float, int]:
-        """Return (least reach in mm from a filled box to the spans, line of the program that comes nearest).
+    def find_reach_to_box(self, corners: Array) -> tuple[float, int, int]:
+        """Return (least reach in mm from a filled box to the spans, line of the program that comes nearest,
+        its tool).
 
         The reach is distance minus cylinder radius. ``corners`` (4, 2) of the box are counter-clockwise. The
         reach is -inf where the two overlap because a path begins inside the box or a filled box holds one of
-        its corners; it is inf, and the line -1, where nothing is swept.
+        its corners; it is inf, and line and tool are -1, where nothing is swept.
         """
         ahead = np.roll(corners, -1, axis=0)
         sides, off = ahead - corners, self.compute_start_points()[:, None] - corners
         inside = (sides[:, 0] * off[..., 1] - sides[:, 1] * off[..., 0] >= 0.0).all(axis=1) & (self.line >= 0)
         if inside.any():
-            return -inf, int(self.line[inside].min())
-        for (x0, y0, x1, y1), line in zip(self.filled, self.filled_line, strict=True):
+            first = int(np.where(inside, self.line, self.line.max() + 1).argmin())
+            return -inf, int(self.line[first]), int(self.tool[first])
+        for (x0, y0, x1, y1), (line, tool) in zip(self.filled, self.filled_by.tolist(), strict=True):
             if ((corners >= (x0, y0)) & (corners <= (x1, y1))).all(axis=1).any():
-                return -inf, int(line)
+                return -inf, line, tool
         reach, which = self.find_nearest_spans(corners, ahead)
         side = int(reach.argmin())
-        return float(reach[side]), int(self.line[which[side]]) if which[side] >= 0 else -1
+        span = int(which[side])
+        if span < 0:
+            return float(reach[side]), -1, -1
+        return float(reach[side]), int(self.line[span]), int(self.tool[span])
+
+    def bound_strip(self, pose: Pose, left: float, right: float, margin: float) -> tuple[Array, Array, Array]:
+        """Return (least y (N,), greatest y (N,), reach (N,)) in mm of what is swept beside an upright strip.
+
+        The strip lies between x = ``left`` and ``right`` in the frame of ``pose``, in which y is given, too.
+        The reach is a cylinder's radius plus ``margin``; spans and filled boxes farther from the strip than
+        this are left out. Straight spans are cut off at the strip, arcs are not.
+        """
+        rows = self.tree.rows[self.line >= 0]
+        radius = self.tree.radius[self.line >= 0] + margin
+        ends = find_row_ends(rows)
+        x, y = pose.apply(ends[..., 0], ends[..., 1])
+        turned = rows.copy()
+        turned[:, X], turned[:, Y] = pose.apply(rows[:, X], rows[:, Y])
+        turned[:, AXIS_X], turned[:, AXIS_Y] = pose.turn(rows[:, AXIS_X], rows[:, AXIS_Y])
+        boxes = bound_spans(turned)
+        near = (boxes[:, 2] > left - radius) & (boxes[:, 0] < right + radius)
+        reach = x[:, 1] - x[:, 0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares = np.sort([(left - radius - x[:, 0]) / reach, (right + radius - x[:, 0]) / reach], axis=0)
+        shares = np.where(reach == 0.0, np.array([[0.0], [1.0]]), np.clip(shares, 0.0, 1.0))
+        cut = np.sort(y[:, 0] + shares * (y[:, 1] - y[:, 0]), axis=0)
+        is_arc = rows[:, IS_ARC] != 0.0
+        low, high = np.where(is_arc, boxes[:, 1], cut[0]), np.where(is_arc, boxes[:, 3], cut[1])
+        inner = self.filled[:, [0, 1, 2, 1, 2, 3, 0, 3]].reshape(-1, 4, 2)
+        inner_x, inner_y = pose.apply(inner[..., 0], inner[..., 1])
+        beside = (inner_x.max(axis=1) > left) & (inner_x.min(axis=1) < right)
+        return (
+            np.concatenate([low[near], inner_y.min(axis=1)[beside]]),
+            np.concatenate([high[near], inner_y.max(axis=1)[beside]]),
+            np.concatenate([radius[near], np.full(int(beside.sum()), margin)]),
+        )
 
 
 @lru_cache(maxsize=16)

@@ -110,7 +110,7 @@ def find_covered_parts(segment: Segment, swept: SweptSpans, beyond: float) -> tu
     lines = swept.line[near][piece]
     if len(swept.filled):
         inside, box = find_parts_inside_boxes(own, swept.filled)
-        ranges, lines = np.concatenate([ranges, inside]), np.concatenate([lines, swept.filled_line[box]])
+        ranges, lines = np.concatenate([ranges, inside]), np.concatenate([lines, swept.filled_by[box, 0]])
     return ranges, lines
 
 

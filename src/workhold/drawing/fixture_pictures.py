@@ -285,6 +285,9 @@ def draw_cell(
         kind = (
             f"on {lengths.format_short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
         )
+    if isinstance(fixture.hold, StrappedHold):
+        count = len(fixture.hold.straps)
+        kind = "" if not count else "1 strap" if count == 1 else f"{count} straps"
     name = shorten_text(title, 15, width - measure_text(kind, 13, bold=True) - 10, bold=True)
     group.add_text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.add_text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)

@@ -13,6 +13,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.hold_words import (
     describe_coefficients,
+    describe_parallel_places,
     describe_touched_faces,
     describe_work_stop,
     format_set_force,
@@ -25,6 +26,7 @@ from workhold.model.jaw_hold import JawHold
 from workhold.model.query import Query
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
+from workhold.statics.jaw_clearance import list_vise_sentences
 from workhold.statics.jaw_program import describe_asked_force
 
 __all__ = ["draw_hold_panel", "list_hold_blocks"]
@@ -50,6 +52,10 @@ def draw_hold_panel(
     column.write_fact(
         "Parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed"
     )
+    if hold.has_moved_parallels:
+        column.write_paragraph(
+            f"{describe_parallel_places(hold, lengths.unit).capitalize()}.", 11.5, fill=GREY
+        )
     column.write_fact("Fixed jaw on", describe_touched_faces(hold.fixed))
     column.write_fact("Moving jaw on", describe_touched_faces(hold.moving))
     column.write_fact("Work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none")
@@ -127,6 +133,12 @@ def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
         20,
         bold=True,
     )
+    if hold.has_moved_parallels:
+        column.write_paragraph(
+            f"{describe_parallel_places(hold, lengths.unit).capitalize()}, clear of what comes through the part.",
+            BODY,
+            bold=True,
+        )
     column.write_fact("opening S", lengths.format_length(hold.opening), 20, bold=True)
     column.write_fact("on the fixed jaw", describe_touched_faces(hold.fixed), bold=True)
     column.write_fact("the moving jaw presses", describe_touched_faces(hold.moving), bold=True)
@@ -155,6 +167,8 @@ def write_side(column: TextColumn, sheet: SetupSheet) -> None:
         column.write_paragraph(
             free if hold.above else "Nothing stands above the jaws: a tool beside them runs into one.", NOTE
         )
+    for sentence in list_vise_sentences(sheet.fixture, query, sheet.lengths.unit):
+        column.write_paragraph(sentence, NOTE)
 
 
 def write_force(column: TextColumn, sheet: SetupSheet) -> None:

@@ -12,6 +12,7 @@ from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View
 from workhold.fixels.jaw_pair import JawPair
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
+from workhold.model.vise_bodies import list_parallel_boxes
 
 __all__ = ["draw_jaw_side"]
 
@@ -19,8 +20,8 @@ __all__ = ["draw_jaw_side"]
 BESIDE, BELOW, HIGHEST = 74.0, 30.0, 190.0
 # From the words of one height to those of the next, page units.
 LABEL_ROOM = 24.0
-# Of the opening: how wide jaws and parallels are drawn.
-JAW_SHARE, PARALLEL_SHARE, WIDEST_PARALLEL = 0.28, 0.2, 8.0
+# Of the opening: how wide jaws are drawn.
+JAW_SHARE = 0.28
 
 
 def draw_jaw_side(
@@ -46,7 +47,7 @@ def draw_jaw_side(
     view = View(view.scale, left - (x - room.x0), view.top - (y - room.y0))
     foot = view((0.0, extent.y0))[1]
     scene = column.scene.group("side-view")
-    draw_bodies(scene, view, hold.parallels, opening, top, thick, bed, low)
+    draw_bodies(scene, view, jaws, hold, top, thick, bed)
     draw_part_side(scene, view, fixture, height)
     draw_heights(scene, view, fixture, top, height, lengths)
     start, end = view((0.0, extent.y0)), view((opening, extent.y0))
@@ -68,26 +69,23 @@ def draw_jaw_side(
 def draw_bodies(
     scene: Scene,
     view: View,
-    parallels: float,
-    opening: float,
+    jaws: JawPair,
+    hold: JawHold,
     top: float,
     thick: float,
     bed: float,
-    low: float,
 ) -> None:
     """Draw the bed, both jaws and the parallels; all lengths are in mm, heights from the part's lower side.
 
-    ``parallels`` is their height, ``opening`` the distance between the jaws, ``top`` the height of the jaws'
-    upper side and ``thick`` their drawn thickness. ``low`` is the height of the bed's upper side and ``bed``
-    its drawn thickness.
+    ``top`` is the height of the jaws' upper side, ``thick`` their drawn thickness, and ``bed`` that of the
+    bed.
     """
+    opening, low = hold.opening, 0.0 - hold.parallels
     scene.add_rectangle(view.map_box(Box(-thick, low - bed, opening + thick, low)), "#dfe3e8", GREY, 1.0)
     draw_jaw(scene, view.map_box(Box(-thick, low, 0.0, top)), "right")
     draw_jaw(scene, view.map_box(Box(opening, low, opening + thick, top)), "left")
-    if parallels:
-        wide = min(PARALLEL_SHARE * opening, WIDEST_PARALLEL)
-        for y in (0.0, opening - wide):
-            scene.add_rectangle(view.map_box(Box(y, low, y + wide, 0.0)), "#eef0f3", GREY, 1.0)
+    for box in list_parallel_boxes(jaws, hold):
+        scene.add_rectangle(view.map_box(Box(box.y0, low, box.y1, 0.0)), "#eef0f3", GREY, 1.0)
 
 
 def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) -> None:

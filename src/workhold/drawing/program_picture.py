@@ -230,7 +230,7 @@ def describe_clearance(path: PlannedPath, lengths: LengthUnit) -> str:
     near = path.passing
     if path.peg_height is None:
         # That all tools keep clear of what friction holds with is asked of each set-up.
-        held_by = "locators and straps" if path.fixture.pegs else "both jaws"
+        held_by = "locators and straps" if path.fixture.pegs else "jaws, work stop, parallels and bed"
         return f"All tools keep {lengths.format_length(path.program.clearance)} or more from {held_by}."
     if near is None or near.distance == inf:
         return "No tool comes down to where anything holds the part."

@@ -12,6 +12,8 @@ from workhold.supports.straps import StrapQuestion, make_question
 from workhold.supports.words_of_straps import (
     describe_assumptions,
     describe_program_need,
+    describe_program_safety,
+    format_times,
     list_remarks,
     list_steps,
     list_warnings,
@@ -33,7 +35,7 @@ def get_hold(fixture: Fixture) -> tuple[StrappedHold, StrapQuestion]:
 def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
     """Write the settings and figures of a part under straps into a column, for a picture."""
     hold, asked = get_hold(fixture)
-    write_force_needed(column, hold, lengths, 30)
+    write_force_needed(column, fixture, lengths, 30)
     column.write_fact("Locators in", ", ".join(peg.hole for peg in fixture.pegs), bold=True)
     column.write_fact("on faces", ", ".join(str(peg.face) for peg in fixture.pegs))
     column.write_fact("Part turned by θ", format_degrees(fixture.pose.written_deg, 3))
@@ -48,11 +50,11 @@ def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) 
     column.draw_rule()
 
 
-def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUnit, size: float) -> None:
-    """Write the force that each strap needs, in large type, and how it compares with the rated force, as far
-    as known.
+def write_force_needed(column: TextColumn, fixture: Fixture, lengths: LengthUnit, size: float) -> None:
+    """Write the force that each strap needs, in large type, and how it compares with the rated and the given
+    force, as far as known.
     """
-    unit = lengths.unit
+    (hold, asked), unit = get_hold(fixture), lengths.unit
     if hold.clamp_needed is not None:
         column.write_line("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
         words = f"{unit.format_force(round_force_up(hold.clamp_needed))} or more"
@@ -64,14 +66,21 @@ def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUn
             "A strap is rated for",
             f"{unit.format_force(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that",
         )
+    given = asked.given_force
+    if given is not None and hold.safety_reached is not None:
+        column.write_fact(
+            f"With {unit.format_force(given)} at each tip", f"{format_times(hold.safety_reached)} the loads"
+        )
 
 
 def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit, size: float) -> None:
     """Write the force that the program's tools ask of each strap; nothing where they ask none."""
-    hold, _ = get_hold(fixture)
+    hold, asked = get_hold(fixture)
     program = fixture.listing.result.query.program
     if hold.program_need is not None and program is not None:
-        column.write_paragraph(describe_program_need(hold.program_need, program, lengths.unit), size)
+        words = describe_program_need(hold.program_need, program, lengths.unit)
+        often = describe_program_safety(hold, asked, lengths.unit)
+        column.write_paragraph(f"{words} {often}".rstrip(), size)
 
 
 def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
@@ -134,7 +143,7 @@ def write_strap_force(column: TextColumn, sheet: SetupSheet) -> None:
     if not hold.needs:
         return
     write_heading(column, "Force")
-    write_force_needed(column, hold, sheet.lengths, 20)
+    write_force_needed(column, sheet.fixture, sheet.lengths, 20)
     write_program_need(column, sheet.fixture, sheet.lengths, NOTE)
     column.write_paragraph("The bolt carries more than the tip: the heel takes its share.", NOTE)
     column.write_paragraph(describe_assumptions(asked), NOTE)
@@ -153,8 +162,11 @@ def write_strap_steps(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the table of loads with the force of each strap that each load needs."""
-    hold, _ = get_hold(sheet.fixture)
+    """Write the table of loads with the force of each strap that each load needs.
+
+    Where a force of the straps is given, it also has how many times each load that force holds.
+    """
+    hold, asked = get_hold(sheet.fixture)
     query, unit = sheet.fixture.listing.result.query, sheet.lengths.unit
     if not hold.clamp_needed_each:
         return
@@ -164,8 +176,13 @@ def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
     for number, (load, need) in pairs[:MOST_LOADS]:
         size = f": {unit.format_force(load.force)}" if load.force else ""
         name = f"{load.name or f'load {number}'}{size}"
-        column.write_fact(
-            name, "none holds it" if need is None else unit.format_force_number(need, 0), bold=True
+        words = "none holds it" if need is None else unit.format_force_number(need, 0)
+        if need is not None and hold.safety_each:
+            words += f", held {format_times(hold.safety_each[number - 1])}"
+        column.write_fact(name, words, bold=True)
+    if asked.given_force is not None and hold.safety_each:
+        column.write_paragraph(
+            f"How often each is held: with {unit.format_force(asked.given_force)} at each tip.", NOTE
         )
     if len(pairs) > MOST_LOADS:
         column.write_paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)

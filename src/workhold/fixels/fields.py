@@ -316,6 +316,17 @@ PARALLELS = ToolkitField(
     least="0",
     belongs_to="bed",
 )
+PARALLEL_THICKNESS = ToolkitField(
+    "parallel_thickness",
+    "length",
+    "How thick the parallels are, for drills and cutters that come through the part; 8 mm if not given.",
+    (PageLabel("Thickness of the parallels", "8 mm"),),
+    figure="thickness of the parallels",
+    unset="taken to be 8 mm",
+    least="above 0",
+    belongs_to="bed",
+    is_optional_key=True,
+)
 LEAST_GRIP = ToolkitField(
     "least_grip",
     "length",
@@ -336,6 +347,7 @@ STOP = ToolkitField(
             "none",
             is_usual=True,
             choices=(
+                Choice(None, "none"),
                 Choice("left", "at the left end"),
                 Choice("right", "at the right end"),
                 Choice("both", "left and right, each a set-up"),
@@ -357,6 +369,17 @@ STOP_OFFSET = ToolkitField(
     figure="stop from the jaws' end",
     least="any",
     belongs_to="work stop",
+)
+STOP_WIDTH = ToolkitField(
+    "stop_width",
+    "length",
+    "How wide the work stop is, across the jaws, for the tools of a program; 7 % of the jaws' width if not given.",
+    (PageLabel("Width of the work stop", "7 % of the jaws"),),
+    figure="width of the work stop",
+    unset="7 % of the jaws' width",
+    least="above 0",
+    belongs_to="work stop",
+    is_optional_key=True,
 )
 MAX_FORCE = ToolkitField(
     "max_force",
@@ -490,9 +513,11 @@ OPTIONS = (
     JAW_HEIGHT,
     JAW_THICKNESS,
     PARALLELS,
+    PARALLEL_THICKNESS,
     LEAST_GRIP,
     STOP,
     STOP_OFFSET,
+    STOP_WIDTH,
     MAX_FORCE,
     SCREW_LEAD,
     STRAPS,

@@ -15,6 +15,8 @@ __all__ = ["JawPair"]
 # Part of the torque on a vise's screw that moves the jaw; the rest is friction in the thread. Oiled
 # trapezoidal threads have 0.2 to 0.4 (K.-H. Decker, Maschinenelemente, on screws that move under load).
 SCREW_SHARE = 0.3
+# How thick parallels are taken to be where nobody says: so many mm, and at most this part of the opening.
+USUAL_PARALLEL, PARALLEL_SHARE = 8.0, 0.2
 
 
 @frozen
@@ -34,6 +36,8 @@ class JawPair:
     stop_offset : how far inward from the end of the jaws the stop touches the part.
     max_force : rated force in N; None where not known.
     screw_lead : travel of the jaw per turn of the screw; None where not known.
+    parallel_thickness : of each parallel; None where not known.
+    stop_width : of the work stop, across the jaws.
     """
 
     width: float
@@ -46,6 +50,8 @@ class JawPair:
     stop_offset: float
     max_force: float | None
     screw_lead: float | None
+    parallel_thickness: float | None
+    stop_width: float
 
     def compute_top(self, parallels: float) -> float:
         """Return the height in mm of the jaws' top above the lower side of a part on parallels of this height
@@ -60,6 +66,16 @@ class JawPair:
         this height in mm.
         """
         return f"jaws up to {round(self.compute_top(parallels), 6):g} mm"
+
+    def compute_parallel_thickness(self, opening: float) -> float:
+        """Return how thick each parallel is between jaws that stand ``opening`` mm apart, in mm.
+
+        Where it is not known it is taken to be 8 mm, and at most a fifth of the opening. Two parallels are
+        never thicker than the opening.
+        """
+        if self.parallel_thickness is None:
+            return min(USUAL_PARALLEL, PARALLEL_SHARE * opening)
+        return min(self.parallel_thickness, opening / 2)
 
     def compute_torque(self, force: float) -> float | None:
         """Return the torque in N m on the screw for a clamping force in N; None where the screw's lead is not

@@ -21,7 +21,7 @@ from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import PITCH
 from workhold.fixels.pegs import convert_flat, resolve_flat
 from workhold.fixels.support_hardware import HARDWARE, convert_hardware
-from workhold.fixels.table import SILENT, ToolkitField
+from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit, ToolkitChange
 from workhold.limits import MOST_BLOCKED, MOST_HOLES, MOST_LENGTHS, convert_real, refuse_long, refuse_strong
 
@@ -151,9 +151,9 @@ def make_class_from_table(kind: Kind) -> Kind:
 def make_field_attribute(row: ToolkitField, *, inherits: bool) -> Any:
     """Return the attrs attribute of a field.
 
-    It is keyword-only for a class that inherits fields (``inherits``), and for the forms in ``SILENT``.
+    It is keyword-only for a class that inherits fields (``inherits``), and for fields that files leave out.
     """
-    by_name = row.form in SILENT or inherits
+    by_name = row.is_silent or inherits
     default = NOTHING if row.is_required else row.default
     return field(default=default, converter=choose_converter(row), kw_only=by_name)
 

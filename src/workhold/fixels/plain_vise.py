@@ -19,6 +19,11 @@ from workhold.units import Unit
 
 __all__ = ["PlainVise"]
 
+# Of the jaws' width: how wide a work stop is taken to be where nobody says.
+STOP_SHARE = 0.07
+# mm. Thin parallels, which are in fewer tools' way.
+THIN_PARALLEL = 3.0
+
 
 @make_class_from_table
 class PlainVise(Toolkit):
@@ -40,6 +45,9 @@ class PlainVise(Toolkit):
     max_force : rated clamping force in N; None where not known.
     jaw_thickness : how thick the jaws are, for the tools of a program, in mm; None for any thickness.
     screw_lead : how far a turn of the screw moves the jaw, in mm; None where not known.
+    parallel_thickness : of each parallel in mm, for the tools of a program; None for 8 mm.
+    stop_width : of the work stop across the jaws in mm, for the tools of a program; None for 7 % of the jaws'
+        width.
     supports, top_clamp, pins, tolerance : fields of every toolkit, which flat jaws do not need.
 
     Raises
@@ -78,6 +86,8 @@ class PlainVise(Toolkit):
             fields.MAX_FORCE,
             fields.JAW_THICKNESS,
             fields.SCREW_LEAD,
+            fields.PARALLEL_THICKNESS,
+            fields.STOP_WIDTH,
         ),
     )
     noun = "plain vise"
@@ -93,7 +103,7 @@ class PlainVise(Toolkit):
         backwards="the jaws are pressed apart, not when they close",
         holes="holes that the jaws do not have",
         sets="sides of the part, parallels and stops",
-        clear="jaws clear of the program",
+        clear="vise clear of the program",
         reasons=(
             "The part cannot lie flush against the fixed jaw: no straight piece of its convex hull is there to lie "
             "on it, or none at an angle and on faces that are allowed.",
@@ -131,6 +141,8 @@ class PlainVise(Toolkit):
     max_force: float | None
     jaw_thickness: float | None
     screw_lead: float | None
+    parallel_thickness: float | None
+    stop_width: float | None
 
     if TYPE_CHECKING:
         # As the table makes it, for editors and mypy; a test compares the two.
@@ -147,6 +159,8 @@ class PlainVise(Toolkit):
             jaw_thickness: float | None = None,
             screw_lead: float | None = None,
             *,
+            parallel_thickness: float | None = None,
+            stop_width: float | None = None,
             supports: Any = None,
             top_clamp: Any = None,
             pins: Any = None,
@@ -176,6 +190,8 @@ class PlainVise(Toolkit):
             stop_offset=self.stop_offset,
             max_force=self.max_force,
             screw_lead=self.screw_lead,
+            parallel_thickness=self.parallel_thickness,
+            stop_width=STOP_SHARE * self.jaw_width if self.stop_width is None else self.stop_width,
         )
 
     @cached_property
@@ -223,8 +239,10 @@ class PlainVise(Toolkit):
         return abs(eighths - round(eighths)) < 1e-9 < abs(halves - round(halves))
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield two changes where the vise has parallels: no parallels, and parallels half as high as the
-        lowest.
+        """Yield changes of the parallels and of the work stop that a workshop can make at once.
+
+        With parallels: none, half as high as the lowest, as high as the jaws allow, and thin ones. With a
+        work stop: at the other end, and none.
         """
         if self.parallels:
             yield ToolkitChange("without parallels, on the bed", {fields.PARALLELS.name: ()})
@@ -232,3 +250,16 @@ class PlainVise(Toolkit):
             yield ToolkitChange(
                 f"on parallels of {unit.format_length(lower)}", {fields.PARALLELS.name: (lower,)}
             )
+            thin = {fields.PARALLEL_THICKNESS.name: THIN_PARALLEL}
+            if self.parallel_thickness is None or self.parallel_thickness > THIN_PARALLEL:
+                yield ToolkitChange(f"with parallels {unit.format_length(THIN_PARALLEL)} thick", thin)
+        highest = 0.0 if self.jaw_height is None else self.jaw_height - self.least_grip
+        if highest > max(self.parallels, default=0.0):
+            yield ToolkitChange(
+                f"on parallels of {unit.format_length(highest)}", {fields.PARALLELS.name: (highest,)}
+            )
+        if self.stop in ("left", "right"):
+            other = "right" if self.stop == "left" else "left"
+            yield ToolkitChange(f"with the work stop at the {other} end", {fields.STOP.name: other})
+        if self.stop is not None:
+            yield ToolkitChange("without a work stop", {fields.STOP.name: None})

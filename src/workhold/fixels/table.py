@@ -71,6 +71,8 @@ class ToolkitField(Declaration):
     lifted : the limit that the field sets, which its default lifts; None where it sets no limit.
     carriers, carrier_noun : for a field of holes, the names of the carriers that have them, and the word for
         such a carrier.
+    is_optional_key : whether files leave the field out where its value is None, although its form is none of
+        ``SILENT``.
     """
 
     entry: str = field(default="", kw_only=True)
@@ -87,6 +89,12 @@ class ToolkitField(Declaration):
     carriers: tuple[str, ...] = field(default=(), kw_only=True)
     carrier_noun: str = field(default="", kw_only=True)
     section: str | None = field(default=TOOLKIT_SECTION, kw_only=True)
+    is_optional_key: bool = field(default=False, kw_only=True)
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether files say nothing of the field where its value is None."""
+        return self.form in SILENT or self.is_optional_key
 
     def relabel(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
         """Return a copy of the field with other labels on the page, and with the attributes in ``changes``

@@ -716,6 +716,7 @@ class Fixture:
         safety: float | None = None,
         weight: float = 0.0,
         top_zones: Sequence[Zone] = (),
+        jaw_force: float | None = None,
     ) -> StrappedHold:
         """Return the places of straps that hold the part down
         against the three locators with the least force.
@@ -737,6 +738,8 @@ class Fixture:
         safety : factor on the loads; 2 if None.
         weight : weight of the part in N, which the safety factor does not multiply.
         top_zones : zones where no tip may stand, as in ``Restrictions``.
+        jaw_force : force in N with which each strap presses at its tip, for the number of times that it holds
+            the loads; that of the query if None.
 
         Raises
         ------
@@ -766,6 +769,7 @@ class Fixture:
             safety=safety,
             weight=weight,
             zones=top_zones,
+            jaw_force=jaw_force,
         )
 
     def bending(

@@ -12,6 +12,7 @@ from workhold.units import Unit
 
 __all__ = [
     "describe_coefficients",
+    "describe_parallel_places",
     "describe_touched_faces",
     "format_set_force",
     "list_jaw_cautions",
@@ -48,6 +49,24 @@ def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
     return f"{hold.stop} end of the jaws{inward}"
 
 
+def describe_parallel_places(hold: JawHold, unit: Unit) -> str:
+    """Return a phrase on where the parallels stand: beside the jaws, or how far from them.
+
+    >>> from workhold.units import MILLIMETRE
+    >>> patch = JawPatch(((0, 5, 0, 9),), (3,))
+    >>> hold = JawHold(20, None, patch, patch, 60, 5, True, parallel_offsets=(12, 0))
+    >>> describe_parallel_places(hold, MILLIMETRE)
+    'one 12 mm from the fixed jaw and one beside the moving jaw'
+    """
+    if not hold.has_moved_parallels:
+        return "one beside each jaw"
+    places = [
+        f"one {f'{format_short_length(away, unit)} from' if away else 'beside'} the {jaw} jaw"
+        for jaw, away in zip(("fixed", "moving"), hold.parallel_offsets, strict=True)
+    ]
+    return " and ".join(places)
+
+
 def format_short_length(length: float, unit: Unit) -> str:
     """Return a length in mm as text with the unit's abbreviation, rounded to 4 decimals without trailing
     zeros.
@@ -81,7 +100,9 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
     hold, jaws = fixture.hold, query.toolkit.flat_jaws
     assert isinstance(hold, JawHold) and jaws is not None
     if hold.parallels:
-        yield f"Take the parallels of {format_short_length(hold.parallels, unit)}, one beside each jaw"
+        yield (
+            f"Take the parallels of {format_short_length(hold.parallels, unit)}, {describe_parallel_places(hold, unit)}"
+        )
     else:
         yield "No parallels: the part lies on the bed of the vise"
     yield f"Open the jaws a little more than {unit.format_length(hold.opening)}"

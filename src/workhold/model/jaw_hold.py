@@ -159,6 +159,8 @@ class JawHold:
     max_force : rated force of the vise in N; None where nobody says.
     unit_force : given jaw force times the safety factor of the loads, in N; None where no jaw force is given.
     warnings : warnings as sentences.
+    parallel_offsets : how far the parallels stand from the fixed and from the moving jaw, in mm; (0, 0) for
+        one beside each jaw.
     """
 
     parallels: float
@@ -174,11 +176,23 @@ class JawHold:
     max_force: float | None = None
     unit_force: float | None = None
     warnings: tuple[str, ...] = field(default=())
+    parallel_offsets: tuple[float, float] = (0.0, 0.0)
 
     @property
     def is_unfit(self) -> bool:
         """Whether a jaw touches corners only."""
         return self.fixed.is_corner or self.moving.is_corner
+
+    @property
+    def has_moved_parallels(self) -> bool:
+        """Whether a parallel stands away from its jaw, as tools come through the part beside the jaw."""
+        return self.parallel_offsets != (0.0, 0.0)
+
+    @property
+    def parallels_across(self) -> tuple[float, float]:
+        """Places y in mm of the parallels' outer sides, at which they bear the part."""
+        near, far = self.parallel_offsets
+        return near, self.opening - far
 
     @property
     def grip(self) -> float:
@@ -230,6 +244,18 @@ class JawHold:
         if self.unit_force is None or self.clamp_needed is None:
             return None
         return self.unit_force / self.clamp_needed if self.clamp_needed > 0 else inf
+
+    @property
+    def safety_each(self) -> tuple[float, ...]:
+        """How many times the given jaw force holds each load, then the program; 0 where no force is enough,
+        inf where none is needed. Empty without a given jaw force.
+        """
+        given = self.unit_force
+        if given is None:
+            return ()
+        return tuple(
+            0.0 if need is None else given / need if need > 0 else inf for need in self.forces_needed
+        )
 
     @property
     def is_beyond_rating(self) -> bool:

@@ -97,8 +97,8 @@ class Query(SearchQuestion):
         faces.
     loads : loads that the fixture must resist.
     best : number of fixtures to search for and list, the best ones; None for all.
-    jaw_force : force in N with which the vise is closed, for warnings of pegs that let go; None where it is
-        not decided.
+    jaw_force : force in N with which the vise is closed, for warnings of pegs that let go, or with which each
+        strap presses at its tip; None where it is not decided.
     listing : with two clamps, "best" lists one fixture for each seat and pair of directions with the number
         of pairs of clamps there, "all" lists every one. None stands for "best"; other toolkits take only
         None.
@@ -238,8 +238,8 @@ class Query(SearchQuestion):
     def refuse_beside_straps(self) -> None:
         """Raise InputError for a weight or a number of strapped seats without straps.
 
-        With straps, raise it for loads where the part's thickness is not known, and for a program, a jaw
-        force or seating.
+        With straps, raise it for loads or a program where the part's thickness is not known, and for
+        seating.
         """
         only_of_straps = {"a weight": self.weight, "a number of strapped seats": self.strapped}
         if self.toolkit.strap_set is None:
@@ -255,16 +255,11 @@ class Query(SearchQuestion):
             raise InputError(
                 "how thick the part is decides at which heights tools pass the straps: give its thickness."
             )
-        not_done = {
-            "a jaw force": (self.jaw_force is not None, "the force that each strap needs is told for loads"),
-            "seating": (
-                self.seating is not None,
-                "a hand's push that seats the part is told for the best seats",
-            ),
-        }
-        for asked, (is_given, help) in not_done.items():
-            if is_given:
-                raise InputError(f"{asked} is not looked at with straps: leave it out; {help}.")
+        if self.seating is not None:
+            raise InputError(
+                "seating is not looked at with straps: leave it out; a hand's push that seats the part is told for "
+                "the best seats."
+            )
 
     @property
     def part_height(self) -> float | None:

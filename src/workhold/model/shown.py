@@ -30,7 +30,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.segment import Arc, Box, Point, Segment
+from workhold.geometry.segment import Arc, Box, Point
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.limits import MOST_STEPS
 from workhold.model.clamps import ShownClamp, find_clamping_direction, list_shown_clamps
@@ -39,6 +39,7 @@ from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 from workhold.model.setup import LengthSetting, list_length_settings
 from workhold.model.straps import StrappedHold
+from workhold.model.vise_bodies import find_stop_level, list_parallel_boxes
 from workhold.model.wall_ends import measure_standouts
 from workhold.model.workpiece import Workpiece
 
@@ -188,8 +189,8 @@ NEAR = 3
 # Of the pitch: how thick a wall is drawn, whose own thickness nobody knows.
 BAR = 0.4
 # In mm, what stands for a pitch where there are no holes; how thick jaws are drawn whose thickness nobody knows, of
-# their width; how wide parallels are drawn, of the opening and at most; and the size of a work stop, of the width.
-USUAL_PITCH, JAW, PARALLEL, WIDEST_PARALLEL, STOP = 10.0, 0.16, 0.2, 8.0, 0.07
+# their width; and half the length of a work stop, of the width.
+USUAL_PITCH, JAW, STOP = 10.0, 0.16, 0.07
 
 
 @frozen
@@ -415,42 +416,22 @@ def find_shown_between_jaws(workpiece: Workpiece, fixture: Fixture, toolkit: Too
     assert jaws is not None and isinstance(hold, JawHold)
     width, opening = jaws.width, hold.opening
     thick = JAW * width if jaws.thickness is None else jaws.thickness
-    wide = min(PARALLEL * opening, WIDEST_PARALLEL)
-    rows = [(0.0, wide), (opening - wide, opening)] if hold.parallels else []
     stop, size = None, STOP * width
     if hold.stop is not None:
         is_left = hold.stop == "left"
-        x = part.x0 if is_left else part.x1
-        points = (
-            point
-            for segment in workpiece.segments[: workpiece.outer_count]
-            for point in find_far_points(segment, fixture.pose)
-        )
-        there = [y for at, y in points if abs(at - x) < 1e-6] or [opening / 2]
-        y = (min(there) + max(there)) / 2
+        x = jaws.stop_offset if is_left else width - jaws.stop_offset
+        y, half = find_stop_level(workpiece, jaws, hold, fixture.pose), jaws.stop_width / 2
         low, high = (x - 2 * size, x) if is_left else (x, x + 2 * size)
-        stop = Box(low, y - size / 2, high, y + size / 2)
+        stop = Box(low, y - half, high, y + half)
     seen = ShownJaws(
         Box(0.0, -thick, width, 0.0),
         Box(0.0, opening, width, opening + thick),
-        tuple(Box(0.0, low, width, high) for low, high in rows),
+        tuple(list_parallel_boxes(jaws, hold)),
         stop,
     )
     faces = ((0.0, 0.0), (width, 0.0)), ((0.0, opening), (width, opening))
     measured = tuple(ShownLength(setting, faces, True) for setting in list_length_settings(fixture, toolkit))
     return ShownSetUp((), (), measured, part, jaws=seen)
-
-
-def find_far_points(segment: Segment, pose: Pose) -> list[Point]:
-    """Return the ends of a segment in a pose,
-    and for an arc its points farthest left and right where it has them.
-    """
-    placed = pose.carry(segment)
-    points = [placed.start, placed.end]
-    if isinstance(placed, Arc):
-        ways = [(placed.center[0] + way * placed.radius, placed.center[1]) for way in (-1, 1)]
-        points += [point for point in ways if abs(placed.find_parameter(point)) <= placed.half_sweep]
-    return points
 
 
 def bound_placed_part(workpiece: Workpiece, pose: Pose) -> Box:

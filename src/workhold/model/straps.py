@@ -30,10 +30,14 @@ __all__ = [
     "Strap",
     "StrapHardware",
     "StrappedHold",
+    "bound_safety",
     "choose_strap_ranking",
+    "write_times",
 ]
 
 MOST_STRAPS = 4
+# What a force holds more times than this needs no force but for rounding.
+MOST_TIMES = 1e6
 # For so many of the best seats straps are sought where nobody says.
 USUAL_SEATS = 20
 # The figures of straps, in the order in which they are shown.
@@ -46,6 +50,7 @@ STRAP_FIGURES = (
         0,
     ),
     Figure("slip_reserve", "", True, "What a strap is rated for, over the force needed.", 2),
+    Figure("safety_reached", "", True, "How many times the loads the force given for each strap holds.", 2),
 )
 # What seats are ranked by, those that no hand's push seats last.
 STRAP_RANKING = ("square", "clamp_needed", "location_error", "edge_distance")
@@ -72,6 +77,44 @@ def choose_strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
     if len(set(keys)) < len(keys):
         raise InputError(f"the figures to rank by, {', '.join(names or ())}, name one twice: name each once.")
     return tuple(keys)
+
+
+def write_times(times: float) -> float | None:
+    """Return a number of times for a file, rounded to twelve digits; None for inf."""
+    return None if times == inf else float(f"{times:.12g}")
+
+
+def bound_safety(
+    force: float, safety: float, need: float | None, bare: float | None, still: float | None
+) -> float:
+    """Return how many times a load may act on a part that straps hold with a given force.
+
+    Without a weight it is exact. Beside a weight, which does not grow with the load, it is never more than
+    the true number: the force needed is convex in the number of times.
+
+    Parameters
+    ----------
+    force : given force of each strap, in N.
+    safety : number of times for which ``need`` is known.
+    need : force in N of each strap that so many times the load needs, beside the weight; None where no force
+        is enough.
+    bare : force in N that so many times the load needs without the weight; None where no force is enough.
+    still : force in N that the weight alone needs; None where no force is enough.
+
+    Examples
+    --------
+    >>> bound_safety(3000, 2, 1500, 1500, 0), bound_safety(3000, 2, 1500, 1600, 0), bound_safety(600, 2, 1500, 1500, 0)
+    (4.0, 3.875, 0.8)
+    """
+    if need is None or still is None:
+        return 0.0
+    if force < need:
+        return safety * max(force - still, 0.0) / (need - still)
+    if bare is None:
+        return safety
+    # More times the load needs at most as much more force as the load alone does.
+    times = inf if bare <= 0.0 else safety * (1.0 + (force - need) / bare)
+    return times if times <= MOST_TIMES else inf
 
 
 @frozen
@@ -174,6 +217,8 @@ class StrappedHold:
     is_looked_at : whether a push, and with loads the straps, were sought; only the best seats are looked at.
     supports : (column, row) of the three supports under the part; empty where it lies on the plate.
     program_need : force of each strap that the program's tools need; None without their forces.
+    safety_each : how many times the strap force that the query gives holds each load, then the program; 0 where
+        no force holds, inf where none is needed. Empty where no force is given.
     """
 
     straps: tuple[Strap, ...]
@@ -184,6 +229,7 @@ class StrappedHold:
     is_looked_at: bool = True
     supports: tuple[tuple[int, int], ...] = ()
     program_need: ProgramJawForce | None = None
+    safety_each: tuple[float, ...] = ()
 
     @property
     def needs(self) -> tuple[float | None, ...]:
@@ -213,6 +259,14 @@ class StrappedHold:
         if self.max_force is None or self.clamp_needed is None:
             return None
         return self.max_force / self.clamp_needed if self.clamp_needed > 0 else inf
+
+    @property
+    def safety_reached(self) -> float | None:
+        """How many times the given force holds the loads and the program, the least of ``safety_each``.
+
+        It is inf where no force is needed, and None without a given force, and where no force is enough.
+        """
+        return min(self.safety_each) if self.safety_each and self.clamp_needed is not None else None
 
     @property
     def holds_nothing(self) -> bool:
@@ -249,5 +303,17 @@ class StrappedHold:
                 "full_contact": bool(self.straps),
                 "clamp_needed": self.clamp_needed,
                 "clamp_needed_each": list(self.clamp_needed_each),
+                **self.describe_safety(),
             },
         }
+
+    def describe_safety(self) -> dict[str, Any]:
+        """Return as plain data how many times the given force holds the loads; {} without a given force.
+
+        Null stands for any number of times.
+        """
+        if not self.safety_each:
+            return {}
+        least, count = self.safety_reached, len(self.clamp_needed_each)
+        known = {} if least is None else {"safety_reached": write_times(least)}
+        return {**known, "safety_reached_each": [write_times(one) for one in self.safety_each[:count]]}

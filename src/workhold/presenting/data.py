@@ -160,7 +160,16 @@ def describe_hold(fixture: Fixture) -> dict[str, Any]:
     if isinstance(fixture.hold, StrappedHold):
         kept = ("straps", "supports", "push", "places", "looked_at", "program_force", "quality")
         return {name: entry[name] for name in kept if name in entry}
-    names = ("parallels", "stop", "fixed", "moving", "jaw_separation", "warnings", "program_force")
+    names = (
+        "parallels",
+        "parallel_offsets",
+        "stop",
+        "fixed",
+        "moving",
+        "jaw_separation",
+        "warnings",
+        "program_force",
+    )
     return {"pegs": [], **{name: entry[name] for name in names if name in entry}, "quality": entry["quality"]}
 
 

@@ -14,7 +14,6 @@ examined hold : a combination of hull edge, parallels and stop, with the first r
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import product
@@ -26,7 +25,6 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
-from workhold.contact.swept import find_swept_below
 from workhold.conventions import PARALLEL, READING, SQUARE_TILT, TOUCHING
 from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.hull import HullEdge, HullTouch, find_hull_edges, find_touches_along
@@ -36,18 +34,28 @@ from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.friction import find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, JawPatch, ProgramJawForce, find_largest_force
 from workhold.model.notes import NoFixture, Note, Remark, Stage
+from workhold.model.pose import Pose
 from workhold.model.program import Program
 from workhold.model.quality import round_number_coarsely
 from workhold.model.query import Query
 from workhold.model.requirements import Load, lie_in_angle_ranges
 from workhold.model.result import Result
 from workhold.model.solid import Band
+from workhold.model.vise_bodies import find_stop_level, list_vise_bodies
 from workhold.model.workpiece import Workpiece
 from workhold.statics.friction import (
     FrictionHold,
     find_least_peak_pressure,
     is_pressed_all_over,
     list_load_corners,
+)
+from workhold.statics.jaw_clearance import (
+    ToolNearVise,
+    describe_left_out,
+    describe_tools_in_the_way,
+    find_tool_in_the_way,
+    join_advice,
+    place_parallels,
 )
 from workhold.statics.jaw_program import CuttingPieces, find_worst_move
 from workhold.statics.patches import PressedPatch, hulls_meet
@@ -63,7 +71,7 @@ RULES = {
     "push": "jaws that press opposite each other",
     "avoid": "faces to avoid",
     "touch": "faces to touch",
-    "program": "jaws clear of the program",
+    "program": "vise clear of the program",
 }
 # The stage, as notes name it, of a rule that took the last way.
 STAGE_OF: dict[str, Stage] = {"angles": "shape", "grip": "pair", "push": "set"}
@@ -72,8 +80,6 @@ STAGE_OF: dict[str, Stage] = {"angles": "shape", "grip": "pair", "push": "set"}
 NEARLY_PARALLEL = 1e-6
 # Heights in mm that stand for a part's where its thickness is not given.
 UNKNOWN_BAND = (0.0, 1.0)
-# mm. Depth of jaws whose thickness is not given.
-JAW_DEPTH = 1e4
 # mm. The patches on both jaws may miss each other by this much, for rounding.
 PUSH_SLACK = 1e-7
 
@@ -350,14 +356,19 @@ class ExaminedHold:
     position : place of the drawing's origin in the frame of the jaws, in mm.
     hold : how the jaws hold the part; None where a rule is broken before both jaws touch it.
     rule : key in :data:`RULES` of the first rule that is broken; None for a fixture.
-    line : line of the program whose tool comes too near a jaw; None where no tool does.
+    near : where a tool of the program comes too near the vise; None where no tool does.
     """
 
     theta: float
     position: tuple[float, float]
     hold: JawHold | None
     rule: str | None
-    line: int | None = None
+    near: ToolNearVise | None = None
+
+    @property
+    def pose(self) -> Pose:
+        """Pose of the part between the jaws."""
+        return Pose(degrees(self.theta), *self.position)
 
 
 @frozen(eq=False)
@@ -441,8 +452,7 @@ class JawSearch:
         found = ExaminedHold(lying.theta, (shift, 0.0 - lying.level), hold, None)
         rule = self.find_broken_rule(hold, lying)
         if rule is None and query.program is not None:
-            line = self.find_line_near_jaws(query.program, found, hold)
-            return found if line is None else evolve(found, rule="program", line=line)
+            return self.keep_clear(query.program, found)
         return evolve(found, rule=rule)
 
     def find_broken_rule(self, hold: JawHold, lying: PartOnJaw) -> str | None:
@@ -465,25 +475,19 @@ class JawSearch:
             return "touch"
         return None
 
-    def find_line_near_jaws(self, program: Program, one: ExaminedHold, hold: JawHold) -> int | None:
-        """Return the line of a program whose tool comes too near a jaw; None where no tool does.
-
-        Each jaw is a box from its face outward, as deep as the jaw is thick. ``one`` gives the pose, ``hold``
-        the opening.
+    def keep_clear(self, program: Program, one: ExaminedHold) -> ExaminedHold:
+        """Return an examined hold whose parallels stand clear of a program's tools, or with the rule
+        "program" broken where a tool comes too near the vise all the same.
         """
-        swept = find_swept_below(program, self.jaws.compute_top(hold.parallels))
-        if not len(swept):
-            return None
-        depth = JAW_DEPTH if self.jaws.thickness is None else self.jaws.thickness
-        c, s = cos(one.theta), sin(one.theta)
-        # Rotation from the toolkit's frame back to the drawing's.
-        back, place = np.array([[c, -s], [s, c]]), np.array(one.position)
-        for low, high in ((-depth, 0.0), (hold.opening, hold.opening + depth)):
-            box = np.array([[0.0, low], [self.jaws.width, low], [self.jaws.width, high], [0.0, high]])
-            reach, line = swept.find_reach_to_box((box - place) @ back)
-            if reach < program.clearance:
-                return line
-        return None
+        hold, pose = one.hold, one.pose
+        assert hold is not None
+        query, jaws = self.query, self.jaws
+        hold = place_parallels(program, jaws, hold, pose) or hold
+        level = find_stop_level(query.workpiece, jaws, hold, pose)
+        near = find_tool_in_the_way(program, list_vise_bodies(jaws, hold, query.part_height, level), pose)
+        if near is None:
+            return evolve(one, hold=hold)
+        return evolve(one, rule="program", near=near)
 
     def list_faces_in_outlines(self, faces: Sequence[int]) -> set[int]:
         """Return the numbers of faces, and the numbers that the same
@@ -510,6 +514,7 @@ class JawSearch:
             find_friction_coefficient(self.query.friction, "jaw"),
             points,
             way,
+            hold.parallels_across,
         )
 
     @property
@@ -657,6 +662,7 @@ def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
                 value = getattr(hold, name)
                 key.append(inf if value is None else -round(value, 6))
     stops = ("left", "right")
+    key.append(hold.has_moved_parallels)
     return (*key, round(one.theta, 9), hold.parallels, stops.index(hold.stop) if hold.stop else -1)
 
 
@@ -665,7 +671,7 @@ def find_fixtures_between_jaws(
 ) -> Result:
     """Return every way, or only the best ways, to hold a part between the flat jaws of a query's toolkit."""
     search, found, whole = JawSearch(query), list[ExaminedHold](), True
-    size, rules, lines = search.size, dict.fromkeys(RULES, 0), Counter[int]()
+    size, rules, near = search.size, dict.fromkeys(RULES, 0), list[ToolNearVise]()
     for number, one in enumerate(search.examine_all(), 1):
         if cancel is not None and cancel.is_set():
             whole = False
@@ -674,14 +680,16 @@ def find_fixtures_between_jaws(
             found.append(search.apply_loads(one))
         else:
             rules[one.rule] += 1
-            lines.update([] if one.line is None else [one.line])
+            near += [] if one.near is None else [one.near]
         if progress is not None:
             progress(number / size, len(found))
     found.sort(key=lambda one: make_order_key(one, query))
     listed = found[: query.best]
     notes = list[Note]()
     if whole and not found:
-        notes.append(explain_no_fixture(rules, lines, query))
+        notes.append(explain_no_fixture(rules, near, query))
+    elif near and query.program is not None:
+        notes.append(Remark(describe_left_out(near, query.program)))
     count = {query.toolkit.arrangements[0].name: len(found)}
     return Result(
         query=query,
@@ -722,18 +730,18 @@ def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
     return len(seen)
 
 
-def explain_no_fixture(rules: dict[str, int], lines: Counter[int], query: Query) -> Note:
+def explain_no_fixture(rules: dict[str, int], near: Sequence[ToolNearVise], query: Query) -> Note:
     """Return the note why there is no fixture between flat jaws.
 
-    Two cases: (a) a program stands in the way: the note names its worst line; (b) otherwise it names the last
-    rule, in the order of :data:`RULES`, that a combination broke. ``rules`` counts combinations by the first
-    rule they break, ``lines`` by the line of the program.
+    Two cases: (a) a program stands in the way: the note names what its tools run into, and the worst line;
+    (b) otherwise it names the last rule, in the order of :data:`RULES`, that a combination broke. ``rules``
+    counts combinations by the first rule they break, ``near`` are the places where tools come too near.
     """
-    wording = query.toolkit.wording
-    if lines:
-        line = min(lines, key=lambda line: (-lines[line], line))
+    jaws, program = query.toolkit.flat_jaws, query.program
+    if near and jaws is not None and program is not None:
         return Remark(
-            f"Both jaws would press the part, but line {line} of the program brings a tool too near a jaw."
+            f"Both jaws would press the part, but {describe_tools_in_the_way(near, program)}. "
+            f"{join_advice(near, jaws, program)}"
         )
     last = next((rule for rule in reversed(RULES) if rules[rule]), "grip")
-    return NoFixture(STAGE_OF.get(last, "hold"), wording)
+    return NoFixture(STAGE_OF.get(last, "hold"), query.toolkit.wording)

@@ -77,6 +77,7 @@ class FrictionHold:
     friction : the coefficient between jaws and part.
     stop_points : (K, 3) points in mm at which the work stop may push; empty without one.
     stop_way : 1 where the stop pushes toward +x, -1 toward -x.
+    parallels : places y in mm at which the two parallels bear the part; None for one at each jaw.
     """
 
     fixed: PressedPatch
@@ -85,6 +86,7 @@ class FrictionHold:
     friction: float
     stop_points: Array
     stop_way: float = 1.0
+    parallels: tuple[float, float] | None = None
 
     @classmethod
     def from_patches(
@@ -95,12 +97,15 @@ class FrictionHold:
         friction: float,
         stop_points: Sequence[tuple[float, float, float]] = (),
         stop_way: float = 1.0,
+        parallels: tuple[float, float] | None = None,
     ) -> FrictionHold:
         """Return the hold by two patches; ``stop_points`` are points (x, y,
         z) in mm on the work stop, if there is one.
+
+        ``parallels`` are the places y in mm at which parallels bear the part; None for one at each jaw.
         """
         points = np.array(stop_points, np.float64).reshape(-1, 3)
-        return cls(PressedPatch(fixed), PressedPatch(moving), opening, friction, points, stop_way)
+        return cls(PressedPatch(fixed), PressedPatch(moving), opening, friction, points, stop_way, parallels)
 
     @cached_property
     def centre(self) -> Array:
@@ -141,10 +146,9 @@ class FrictionHold:
         """Wrenches (K, 6) of K unit forces without friction: first of
         the parallels upward, then of the work stop.
         """
+        near, far = (0.0, self.opening) if self.parallels is None else self.parallels
         points = [
-            (x, y, 0.0)
-            for patch, y in ((self.fixed, 0.0), (self.moving, self.opening))
-            for x in patch.patch.ends
+            (x, y, 0.0) for patch, y in ((self.fixed, near), (self.moving, far)) for x in patch.patch.ends
         ]
         upward = self.compute_wrenches(np.array(points), np.tile([0.0, 0.0, 1.0], (len(points), 1)))
         ways = np.tile([self.stop_way, 0.0, 0.0], (len(self.stop_points), 1))

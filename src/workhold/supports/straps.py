@@ -41,7 +41,7 @@ from workhold.model.jaw_hold import ProgramJawForce, find_largest_force
 from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone
-from workhold.model.straps import Strap, StrapHardware, StrappedHold
+from workhold.model.straps import Strap, StrapHardware, StrappedHold, bound_safety
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.statics.friction import MotionProgram, enclose_directions
 from workhold.statics.jaw_program import CuttingPieces, PressedPart, find_worst_move
@@ -57,6 +57,7 @@ __all__ = [
     "StrapQuestion",
     "StrapSearch",
     "ask_for_straps",
+    "find_given_force",
     "find_straps",
     "make_question",
     "make_usual_request",
@@ -91,6 +92,8 @@ class StrapQuestion:
     is_over_supports : whether the part lies on three supports, and each tip presses over one of them.
     program : program whose tools must pass the straps, and press on the part where their forces are known;
         None for none.
+    given_force : force in N with which each strap presses at its tip, for the number of times that it holds the
+        loads; None where nobody says.
     """
 
     straps: StrapHardware
@@ -101,6 +104,7 @@ class StrapQuestion:
     weight: float = 0.0
     is_over_supports: bool = False
     program: Program | None = None
+    given_force: float | None = None
 
     @property
     def below(self) -> str:
@@ -187,7 +191,16 @@ def make_question(query: Query) -> StrapQuestion:
         query.weight or 0.0,
         straps.is_over_supports,
         query.program,
+        query.jaw_force,
     )
+
+
+def find_given_force(query: Query) -> float | None:
+    """Return the force in N with which a query says that each strap presses; None where it says nothing.
+
+    Without straps in its toolkit the query's jaw force is that of a clamp, and says nothing of straps.
+    """
+    return query.jaw_force if query.toolkit.strap_set is not None else None
 
 
 def find_straps(
@@ -217,6 +230,7 @@ def ask_for_straps(
     safety: float | None = None,
     weight: float = 0.0,
     zones: Sequence[Zone] = (),
+    jaw_force: float | None = None,
 ) -> StrappedHold:
     """Return the straps of a fixture; see :meth:`workhold.model.fixture.Fixture.straps`.
 
@@ -236,7 +250,12 @@ def ask_for_straps(
         raise InputError(f"safety factor {factor:g} cannot be used: give a number above 0, such as 2.")
     if not (isfinite(weight) and weight >= 0):
         raise InputError(f"weight {weight:g} cannot be used: give it in N, 0 or more.")
-    asked = StrapQuestion(straps, request, spatial, to_coefficients(friction), factor, weight)
+    if jaw_force is not None and not (isfinite(jaw_force) and jaw_force >= 0):
+        raise InputError(f"force {jaw_force:g} of each strap cannot be used: give it in N, 0 or more.")
+    force = find_given_force(query) if jaw_force is None else jaw_force
+    asked = StrapQuestion(
+        straps, request, spatial, to_coefficients(friction), factor, weight, given_force=force
+    )
     return find_straps(fixture, query, asked)
 
 
@@ -356,15 +375,41 @@ class StrapSearch:
         cuts = CuttingPieces.from_program(program, self.asked.request.thickness)
         return cuts if len(cuts) else None
 
-    def find_program_need(self, grip: StrapsOnPart) -> ProgramJawForce | None:
+    def find_program_need(self, grip: StrapsOnPart, is_weighed: bool = True) -> ProgramJawForce | None:
         """Return the largest strap force that the program's tools need,
         and at which move; None without their forces.
+
+        ``is_weighed`` is whether the part's weight acts besides.
         """
         cuts, program, pose = self.cuts, self.asked.program, self.fixture.pose
         if cuts is None or program is None:
             return None
-        theta = radians(pose.theta_deg)
-        return find_worst_move(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, self.weight)
+        theta, weight = radians(pose.theta_deg), self.weight if is_weighed else None
+        return find_worst_move(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, weight)
+
+    def add_forces(self, hold: StrappedHold, grip: StrapsOnPart) -> StrappedHold:
+        """Return a hold with the forces that loads and program need of its straps.
+
+        Where a force of the straps is given, it also says how many times that force holds each of them.
+        """
+        asked = self.asked
+        out = evolve(
+            hold, clamp_needed_each=self.compute_needs_of(grip), program_need=self.find_program_need(grip)
+        )
+        if asked.given_force is None:
+            return out
+        bare, still = (
+            out.needs,
+            0.0 if not asked.weight else MotionProgram(grip).find_least_force(self.weight),
+        )
+        if asked.weight:
+            alone = self.find_program_need(grip, is_weighed=False)
+            bare = (*self.compute_needs_of(grip, self.weight), *(() if alone is None else (alone.force,)))
+        times = (
+            bound_safety(asked.given_force, asked.safety, need, without, still)
+            for need, without in zip(out.needs, bare, strict=True)
+        )
+        return evolve(out, safety_each=tuple(times))
 
     def compute_force(self, grip: StrapsOnPart, keep: Callable[[Array, float], None], enough: float) -> float:
         """Return the force in N of each strap that loads and program need,
@@ -416,14 +461,16 @@ class StrapSearch:
         """
         return self.compute_needs_of(self.tips.press(chosen))
 
-    def compute_needs_of(self, grip: StrapsOnPart) -> tuple[float | None, ...]:
+    def compute_needs_of(self, grip: StrapsOnPart, less: Array | float = 0.0) -> tuple[float | None, ...]:
         """Return, for each load, the force in N that each strap on a part
         needs; None where no force holds the load.
+
+        ``less`` is a wrench (6,) that is taken from every load, such as the weight's.
         """
         program = MotionProgram(grip)
         out = []
         for rows in self.loads:
-            out.append(find_largest_force([program.find_least_force(row) for row in rows]))
+            out.append(find_largest_force([program.find_least_force(row - less) for row in rows]))
         return tuple(out)
 
     def find_compatible_pairs(self) -> BoolArray:
@@ -447,7 +494,6 @@ class StrapSearch:
         chosen = SetSearch(self).find_least(self.asked.straps.count, cancel)
         if chosen is None:
             return hold
-        each = self.compute_needs(chosen)
         straps = tuple(
             Strap(
                 (int(self.places.hole[k, 0]), int(self.places.hole[k, 1])),
@@ -456,12 +502,7 @@ class StrapSearch:
             )
             for k in chosen
         )
-        return evolve(
-            hold,
-            straps=straps,
-            clamp_needed_each=each,
-            program_need=self.find_program_need(self.tips.press(chosen)),
-        )
+        return self.add_forces(evolve(hold, straps=straps), self.tips.press(chosen))
 
     def find_best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
         """Return the supports, and the straps over them, that need the least force.
@@ -486,13 +527,8 @@ class StrapSearch:
             )
             for k, bolt in zip(chosen.strapped, bolts, strict=True)
         )
-        return evolve(
-            hold,
-            straps=straps,
-            clamp_needed_each=found.compute_needs(chosen),
-            program_need=self.find_program_need(found.place_straps(chosen)),
-            supports=tuple(holes[k] for k in chosen.pads),
-        )
+        supports = tuple(holes[k] for k in chosen.pads)
+        return self.add_forces(evolve(hold, straps=straps, supports=supports), found.place_straps(chosen))
 
     def find_unloaded_hold(self) -> StrappedHold:
         """Return a hold with the push by hand alone, without any straps."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import floor, inf
+
 import numpy as np
 
 from workhold.model.fixture import Fixture
@@ -17,6 +19,8 @@ from workhold.units import Unit
 __all__ = [
     "describe_missing_places",
     "describe_program_need",
+    "describe_program_safety",
+    "format_times",
     "list_remarks",
     "list_steps",
     "list_warnings",
@@ -58,7 +62,21 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
         steps.append(
             f"Each strap presses with {found.clamp_needed / unit.newtons:.0f} {unit.force} or more at its tip"
         )
+    if asked.given_force is not None and found.safety_reached is not None:
+        steps.append(
+            f"With {unit.format_force(asked.given_force)} at each tip, {name_acting(found)} may be "
+            f"{format_times(found.safety_reached)} as large as given"
+        )
     return steps
+
+
+def format_times(times: float) -> str:
+    """Return a number of times as words; a number is rounded down to two decimals.
+
+    >>> format_times(2.349), format_times(inf)
+    ('2.34 times', 'any number of times')
+    """
+    return "any number of times" if times == inf else f"{floor(times * 100.0 + 1e-9) / 100.0:.2f} times"
 
 
 def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> str:
@@ -105,6 +123,14 @@ def describe_program_need(need: ProgramJawForce, program: Program, unit: Unit) -
     if need.force is None:
         return f"No force of the straps holds the part in {where}."
     return f"The program asks for {round_force_up(need.force, unit)} of each strap at its tip, in {where}."
+
+
+def describe_program_safety(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> str:
+    """Return a sentence on how many times the given force holds the program's tools; "" where it is not known."""
+    if found.program_need is None or not found.safety_each or asked.given_force is None:
+        return ""
+    times = format_times(found.safety_each[-1])
+    return f"With {unit.format_force(asked.given_force)} at each tip its forces may be {times} as large."
 
 
 def find_place(need: ProgramJawForce, program: Program, unit: Unit) -> str:
@@ -154,6 +180,16 @@ def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, u
     most, need = found.max_force, found.clamp_needed
     if most is not None and need is not None and need > most:
         out.append(f"{name_acting(found)} ask for {need:.0f} N, and a strap is rated for {most:g} N.")
+    given, reached = asked.given_force, found.safety_reached
+    if most is not None and given is not None and given > most:
+        out.append(
+            f"{unit.format_force(given)} are to be at each tip, and a strap is rated for {unit.format_force(most)}."
+        )
+    if given is not None and reached is not None and reached < asked.safety:
+        out.append(
+            f"{unit.format_force(given)} at each tip hold {name_acting(found)} {format_times(reached)}, and "
+            f"{asked.safety:g} times are asked for."
+        )
     return out
 
 

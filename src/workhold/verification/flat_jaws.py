@@ -48,6 +48,8 @@ DIRECTIONS = 64
 UNKNOWN_HEIGHT = 1.0
 # mm. How far outward jaws reach whose thickness nobody gives.
 ENDLESS = 1e4
+# mm, and of the opening: how thick parallels are at most where nobody says.
+USUAL_PARALLEL, USUAL_SHARE = 8.0, 0.2
 
 
 @frozen
@@ -168,32 +170,71 @@ class JawJudge:
             (theta - low + 1e-6) % 360 <= high - low + 2e-6 for low, high in asked.angles
         ):
             yield f"the part is turned by {theta:g} degrees, which is not asked for"
-        yield from self.find_program_faults(fixture, hold)
+        yield from self.find_program_faults(fixture, hold, segments)
         yield from self.find_grip_faults(fixture, hold, derived[0], derived[1], segments)
 
-    def find_program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
-        """Yield one sentence where a tool of the program comes too near to a jaw's sides, or runs into a jaw.
+    def list_obstacles(
+        self, hold: JawHold, segments: Sequence[Segment]
+    ) -> Iterator[tuple[str, tuple[float, float, float, float], float]]:
+        """Yield (name, x0, y0, x1, y1 of its box in mm, height of its top in mm) of what tools keep clear of.
 
-        Stops after the first fault.
+        These are both jaws, a work stop, two parallels and the bed. ``segments`` are the part's outline in the
+        jaws' frame.
         """
-        program, jaws = self.query.program, self.jaws
+        jaws, opening, bed = self.jaws, hold.opening, 0.0 - hold.parallels
+        deep, top = ENDLESS if jaws.thickness is None else jaws.thickness, jaws.compute_top(hold.parallels)
+        yield "the fixed jaw", (0.0, -deep, jaws.width, 0.0), top
+        yield "the moving jaw", (0.0, opening, jaws.width, opening + deep), top
+        if hold.stop is not None:
+            way = 1.0 if hold.stop == "left" else -1.0
+            at = jaws.stop_offset if hold.stop == "left" else jaws.width - jaws.stop_offset
+            y, far = find_stop_middle(segments, way), at - way * ENDLESS
+            box = (min(at, far), y - jaws.stop_width / 2, max(at, far), y + jaws.stop_width / 2)
+            known = self.query.part_height
+            yield "the work stop", box, top if known is None else min(top, known)
+        if hold.parallels:
+            usual = min(USUAL_PARALLEL, opening * USUAL_SHARE)
+            own = jaws.parallel_thickness
+            thick = usual if own is None else min(own, opening / 2)
+            near, far = hold.parallel_offsets
+            for low in (near, opening - far - thick):
+                yield "a parallel", (0.0, low, jaws.width, low + thick), 0.0
+        yield "the bed of the vise", (0.0, 0.0, jaws.width, opening), bed
+
+    def find_program_faults(
+        self, fixture: Fixture, hold: JawHold, segments: Sequence[Segment]
+    ) -> Iterator[str]:
+        """Yield one sentence where a tool of the program comes too near to the sides of a jaw, the work stop,
+        a parallel or the bed, or runs into it.
+
+        Stops after the first fault. Also yields one where parallels stand where they cannot.
+        """
+        thick = [
+            box[3] - box[1] for name, box, _ in self.list_obstacles(hold, segments) if name == "a parallel"
+        ]
+        for offset in hold.parallel_offsets:
+            if not -AGREEMENT <= offset <= hold.opening / 2 - max(thick, default=0.0) + AGREEMENT:
+                yield f"a parallel stands {offset:.6g} mm from its jaw, and not in that half of the opening"
+        program = self.query.program
         if program is None:
+            if hold.parallel_offsets != (0.0, 0.0):
+                yield "its parallels stand away from the jaws, and there is no program"
             return
-        walk, top, turn = (
-            make_walk(program),
-            jaws.compute_top(hold.parallels),
-            radians(-fixture.pose.theta_deg),
-        )
-        deep = ENDLESS if jaws.thickness is None else jaws.thickness
-        at = fixture.pose.apply(0.0, 0.0)
+        walk, turn = make_walk(program), radians(-fixture.pose.theta_deg)
+        at, moves = fixture.pose.apply(0.0, 0.0), program.moves
+        under = {number: min(one.low for one in tool.cylinders) for number, tool in program.tools.items()}
+        # Both ends of all moves, with the height of the tool's lowest cylinder.
+        ends = np.concatenate([moves.start, moves.end])
+        ends[:, 2] += np.tile([under[number] for number in moves.tool.tolist()], 2)
+        ends[:, :2] = fixture.pose.apply(ends[:, :2])
 
         def drawn(x: float, y: float) -> tuple[float, float]:
             """Return a point of the jaws' frame in the part's frame, in mm."""
             off = complex(x - float(at[0]), y - float(at[1])) * complex(cos(turn), sin(turn))
             return off.real, off.imag
 
-        for name, low, high in (("fixed", -deep, 0.0), ("moving", hold.opening, hold.opening + deep)):
-            ring = [drawn(*place) for place in ((0, low), (jaws.width, low), (jaws.width, high), (0, high))]
+        for name, (x0, y0, x1, y1), top in self.list_obstacles(hold, segments):
+            ring = [drawn(*place) for place in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
             near = [
                 walk.find_nearest(HoldingElement(name, name, start, end, 0.0, top))
                 for start, end in zip(ring, [*ring[1:], ring[0]], strict=True)
@@ -201,20 +242,16 @@ class JawJudge:
             for one in near:
                 if one.high < program.clearance - AGREEMENT:
                     yield (
-                        f"line {one.line} of the program brings a tool within {max(one.high, 0.0):.6g} mm of the "
-                        f"{name} jaw, and {program.clearance:g} mm are to be kept"
+                        f"line {one.line} of the program brings a tool within {max(one.high, 0.0):.6g} mm of "
+                        f"{name}, and {program.clearance:g} mm are to be kept"
                     )
                     return
-            for move in range(len(program.moves)):
-                low_end = min(
-                    (one.low for one in program.tools[int(program.moves.tool[move])].cylinders), default=inf
-                )
-                for x, y, z in (program.moves.start[move], program.moves.end[move]):
-                    seen = fixture.pose.apply(float(x), float(y))
-                    inside = 0 < seen[0] < jaws.width and low < seen[1] < high
-                    if inside and z + low_end <= top:
-                        yield f"line {int(program.moves.line[move])} of the program is in the {name} jaw"
-                        return
+            inside = (ends[:, 0] > x0) & (ends[:, 0] < x1) & (ends[:, 1] > y0) & (ends[:, 1] < y1)
+            inside &= ends[:, 2] <= top
+            if inside.any():
+                move = int(inside.argmax()) % len(program.moves)
+                yield f"line {int(program.moves.line[move])} of the program is in {name}"
+                return
 
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
         """Return whether the convex hull of an outline has a straight edge.
@@ -323,7 +360,9 @@ class JawJudge:
             return
         points, way = self.stop_points(hold, segments)
         friction = find_friction_coefficient(self.query.friction, "jaw")
-        held = HeldBetweenJaws.from_patches(fixed, moving, hold.opening, friction, points, way)
+        held = HeldBetweenJaws.from_patches(
+            fixed, moving, hold.opening, friction, points, way, hold.parallels_across
+        )
         for number, (load, need) in enumerate(zip(loads, hold.clamp_needed_each, strict=True), 1):
             yield from self.find_force_faults(number, load, need, fixture, held)
         program, height = self.query.program, self.query.part_height
@@ -555,3 +594,22 @@ def measure_distance_to_origin(p: tuple[float, float], q: tuple[float, float]) -
     square = dx * dx + dy * dy
     share = 0.0 if square == 0 else min(max(-(p[0] * dx + p[1] * dy) / square, 0.0), 1.0)
     return hypot(p[0] + share * dx, p[1] + share * dy)
+
+
+def find_stop_middle(segments: Sequence[Segment], way: float) -> float:
+    """Return y in mm at which a work stop touches an outline: the middle of its longest upright line farthest
+    out, of two as long the lower one, else the lowest point there.
+
+    ``way`` is 1.0 for a stop at the left, -1.0 at the right.
+    """
+    reached = [(way * x, x, y) for one in segments for x, y in find_extreme_points(one)]
+    least = min(one[0] for one in reached)
+    best: tuple[float, float] | None = None
+    for one in segments:
+        if isinstance(one, Line) and all(way * x <= least + ON_JAW for x, _ in (one.start, one.end)):
+            low, high = sorted((one.start[1], one.end[1]))
+            if best is None or (round(low - high, 6), low) < (round(best[0] - best[1], 6), best[0]):
+                best = low, high
+    if best is not None:
+        return (best[0] + best[1]) / 2
+    return min(y for along, _, y in reached if along <= least + ON_JAW)

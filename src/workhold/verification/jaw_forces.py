@@ -225,16 +225,20 @@ class HeldBetweenJaws:
         friction: float,
         stop: Sequence[tuple[float, float, float]],
         stop_way: float,
+        parallels: tuple[float, float] | None = None,
     ) -> HeldBetweenJaws:
         """Return the part held between two patches, the fixed one at y = 0 and the moving one at y =
         ``opening`` mm.
 
         ``friction`` is the coefficient of friction. ``stop`` holds the points where a work stop pushes, along
-        +x (``stop_way`` 1) or -x (-1).
+        +x (``stop_way`` 1) or -x (-1). ``parallels`` are the places y in mm at which parallels bear the part; None
+        for one at each jaw.
         """
         feet = [
             (end, y, 0.0)
-            for patch, y in ((fixed, 0.0), (moving, opening))
+            for patch, y in zip(
+                (fixed, moving), (0.0, opening) if parallels is None else parallels, strict=True
+            )
             for end in (min(one[0] for one in patch.rectangles), max(one[1] for one in patch.rectangles))
         ]
         free = compute_wrenches(np.array(feet), (0.0, 0.0, 1.0))

@@ -23,7 +23,7 @@ from workhold.model.program import Program
 from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, UnsettledError, compute_wrenches
 from workhold.verification.tool_walk import make_walk
 
-__all__ = ["find_program_force_faults"]
+__all__ = ["find_program_force", "find_program_force_faults"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -180,6 +180,22 @@ class PressingPath:
             for number in range(TRIED):
                 turn = float(self.against[place]) + self.spread * (2.0 * number / TRIED - 1.0)
                 yield self.compute_wrench(place, turn, float(self.axial[place, 0]), float(self.torque[place]))
+
+
+def find_program_force(
+    program: Program,
+    fixture: Fixture,
+    held: HeldBetweenJaws,
+    height: float,
+    safety: float,
+    frame: tuple[Array, Array],
+) -> float | None:
+    """Return the largest force in N that ascents along a program find that its tools need; None where none holds.
+
+    Parameters are as in :func:`find_program_force_faults`.
+    """
+    path = PressingPath.from_program(program, fixture, height, safety, *frame)
+    return path.find_hardest_force(held, [*np.eye(6), *-np.eye(6)])
 
 
 def find_program_force_faults(

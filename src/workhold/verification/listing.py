@@ -30,7 +30,6 @@ from workhold.files.result.notes import find_note_faults, read_notes
 from workhold.files.result.parts import HEAD, check_head, describe_columns_from_head, parse_head, read_parts
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.support_hardware import HARDWARE
-from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import compute_force_ratios
 from workhold.model.fixture import ClampPair, Fixture, Peg
@@ -392,7 +391,7 @@ def find_missing_keys(head: Head) -> list[str]:
     # An older file has the sentences alone.
     spared |= {"note_data"}
     # A toolkit without flats, or heights of its own, says nothing of them.
-    silent = [row.name for row in OPTIONS if row.form in SILENT] + list(HARDWARE)
+    silent = [row.name for row in OPTIONS if row.is_silent] + list(HARDWARE)
     spared |= {f"{key}.{name}" for key in ("vise", "toolkit") for name in silent}
     # A prism has no solid, and where the bands are there, nothing rests on the numbers of the solid's faces.
     roles = () if head.outlines is None else tuple(head.outlines)

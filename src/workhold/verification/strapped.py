@@ -40,7 +40,7 @@ from workhold.verification.jaw_forces import (
     UnsettledError,
     compute_wrenches,
 )
-from workhold.verification.jaw_program import find_program_force_faults
+from workhold.verification.jaw_program import find_program_force, find_program_force_faults
 from workhold.verification.placing import enclose_written_pose, find_avoided_faces, judge_gaps, prove_pose
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.support_listing import SupportPlaces
@@ -59,6 +59,8 @@ SUPPORTS = 3
 FORCE_PART, FORCE_HAIR, ARC_PART, RANGE_PART = 1e-3, 1e-3, 5e-3, 0.012
 # Directions of a range that are looked at, and of friction at a tip.
 DIRECTIONS, WAYS = 64, 16
+# Parts of a number of times by which it may differ, and how many times mean any number.
+SAME_TIMES, MOST_TIMES = 1e-9, 1e6
 # Degrees. How far from square to the outline a hand pushes, with rounding, and of direction and place.
 MOST_ASLANT, ON_OUTLINE = 60.0 + 1e-6, 1e-6
 # mm. How far beside the kern the middle of the tips may be by rounding.
@@ -432,6 +434,51 @@ class StrapJudge:
                 continue
             elif abs(found - written) > FORCE_HAIR + part * max(found, written):
                 yield f"load {number} asks for {found:.6g} N of each strap, not {written:.6g} N"
+        if self.query.jaw_force is not None:
+            yield from self.find_safety_faults(fixture, hold, held, centre, weight)
+
+    def find_safety_faults(
+        self, fixture: Fixture, hold: StrappedHold, held: HeldBetweenJaws, centre: Array, weight: Array
+    ) -> Iterator[str]:
+        """Yield a fault for each load, and for the program, that the given force does not hold as often as
+        written.
+
+        Without a weight the number of times follows from the force needed. Beside a weight the force needed
+        at that number is derived, and may be smaller than the given force.
+        """
+        force, safety, program = self.query.jaw_force, self.query.safety_factor, self.query.program
+        assert force is not None
+        if len(hold.safety_each) != len(hold.needs):
+            yield f"it says of {len(hold.safety_each)} of {len(hold.needs)} loads how often the given force holds them"
+            return
+        names = [f"load {number}" for number in range(1, len(self.query.loads) + 1)]
+        for place, (need, times) in enumerate(zip(hold.needs, hold.safety_each, strict=True)):
+            name = names[place] if place < len(names) else "the program"
+            if need is None:
+                if times > 0.0:
+                    yield f"the given force is said to hold {name} {times:.6g} times, and none does"
+                continue
+            if not weight.any():
+                derived = safety * force / need if need > 0.0 else inf
+                if min(derived, MOST_TIMES) * (1 - SAME_TIMES) > times or times > derived * (1 + SAME_TIMES):
+                    yield f"the given force holds {name} {derived:.6g} times, not {times:.6g} times"
+                continue
+            if (times < safety) != (force < need):
+                yield f"the given force holds {name} less than {safety:g} times, or no less, other than written"
+            if times > MOST_TIMES:
+                continue
+            try:
+                if place < len(names):
+                    load = self.query.loads[place]
+                    found = self.find_needed_force(held, load, fixture.pose, centre, weight, times)
+                else:
+                    assert program is not None
+                    frame = (centre, weight)
+                    found = find_program_force(program, fixture, held, self.request.thickness, times, frame)
+            except UnsettledError:
+                continue
+            if found is None or found > force * (1 + RANGE_PART) + FORCE_HAIR:
+                yield f"the given force holds {name} less than {times:.6g} times"
 
     def make_held_part(
         self, fixture: Fixture, hold: StrappedHold, foot: Foot
@@ -483,15 +530,21 @@ class StrapJudge:
         return np.asarray((self.query.weight or 0.0) * down)
 
     def find_needed_force(
-        self, held: HeldBetweenJaws, load: Load, pose: Pose, centre: Array, weight: Array
+        self,
+        held: HeldBetweenJaws,
+        load: Load,
+        pose: Pose,
+        centre: Array,
+        weight: Array,
+        times: float | None = None,
     ) -> float | None:
         """Return the least force in N of each strap that holds a load; None where no force suffices.
 
         ``centre`` (3,) is the point that moments are taken about, ``weight`` (6,) the wrench of the part's
-        weight.
+        weight. The load acts ``times`` times, the query's safety factor if None.
         """
         height = self.query.part_height if load.height is None else load.height
-        turn, factor = radians(pose.theta_deg), self.query.safety_factor
+        turn, factor = radians(pose.theta_deg), self.query.safety_factor if times is None else times
         low, high = (radians(one) for one in load.directions)
         count = DIRECTIONS if high > low and load.force else 0
         ways = [low + (high - low) * k / max(count, 1) for k in range(count + 1)]

@@ -19,7 +19,8 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
-from workhold.model.jaw_hold import JawHold
+from workhold.model.hold_words import write_setup_sentences
+from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
 from workhold.model.moved_setup import find_move_to_middle, find_overhangs, move_fixture_by_holes
 from workhold.model.quality import FIGURES
 from workhold.model.search_report import Explanation, ProofReport
@@ -140,9 +141,17 @@ def describe_face(number: int, segment: Segment) -> dict[str, Any]:
 
 
 def describe_figures() -> list[dict[str, Any]]:
-    """Return all figures of quality as plain data."""
+    """Return all figures of quality as plain data, those of parts that friction holds last.
+
+    "sorts" is whether a list can be sorted by the figure; a list held by friction stands in its own order.
+    """
     names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
-    return [{name: getattr(figure, name) for name in names} for figure in FIGURES]
+    known = {figure.key for figure in FIGURES}
+    of_friction = [figure for figure in HOLD_FIGURES if figure.key not in known]
+    return [
+        {**{name: getattr(figure, name) for name in names}, "sorts": figure.key in known}
+        for figure in (*FIGURES, *of_friction)
+    ]
 
 
 def describe_rows(
@@ -197,14 +206,20 @@ def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longe
 def describe_hold(fixture: Fixture) -> dict[str, Any]:
     """Return how flat jaws or straps hold a part, as plain data in the form of result files, with warnings in
     words.
+
+    A listed fixture also has the steps to set it up.
     """
     hold = fixture.hold
     if not isinstance(hold, JawHold):
         return describe_straps(fixture)
-    entry = make_hold_entry(fixture)
-    names = ("parallels", "stop", "fixed", "moving", "warnings")
+    entry, steps = make_hold_entry(fixture), dict[str, list[str]]()
+    if fixture.listed is not None:
+        query = fixture.listed.result.query
+        steps = {"steps": [f"{step}." for step in write_setup_sentences(fixture, query, MILLIMETRE)]}
+    names = ("parallels", "parallel_offsets", "stop", "fixed", "moving", "warnings")
     return {
-        **{name: entry[name] for name in names},
+        **{name: entry[name] for name in names if name in entry},
+        **steps,
         "full_contact": hold.full_contact,
         "unfit": hold.is_unfit,
         "clamp_needed_each": list(hold.clamp_needed_each),
@@ -239,13 +254,28 @@ def describe_straps(fixture: Fixture) -> dict[str, Any]:
 
 def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
     """Return the heading of a fixture in a list:
-    its arrangement or, between flat jaws, parallels and stop.
+    its arrangement or, between flat jaws, parallels and stop; under straps the holes of their bolts.
     """
     hold = fixture.hold
+    if isinstance(hold, StrappedHold):
+        return make_strapped_title(hold, toolkit)
     if not isinstance(hold, JawHold):
         return toolkit.find_arrangement(fixture.type, fixture.direction).heading
     on = f"On {hold.parallels:g} mm parallels" if hold.parallels else "On the bed"
     return f"{on}, stop {hold.stop}" if hold.stop else on
+
+
+def make_strapped_title(hold: StrappedHold, toolkit: Toolkit) -> str:
+    """Return the heading of a seat under straps in a list: the holes of the bolts, or why there are none."""
+    straps = toolkit.strap_set
+    assert straps is not None
+    if hold.is_unfit:
+        return "No push seats it"
+    if hold.straps and not hold.holds_nothing:
+        return f"Straps in {' '.join(straps.bolts.name_place(*one.hole) for one in hold.straps)}"
+    if not hold.is_looked_at:
+        return "Seat, not looked at"
+    return "Seat" if hold.places is None else "No straps hold it"
 
 
 def describe_fixture(

@@ -36,7 +36,7 @@ from workhold.web.fixture_tasks import (
 )
 from workhold.web.forms import LoadsForm, read_loads_in_address
 from workhold.web.job_routes import find_job, get_job_result, make_attachment_header
-from workhold.web.program_forms import describe_clearance, describe_forces
+from workhold.web.program_forms import describe_clearance, describe_forces, describe_vise_clearance
 from workhold.web.request_forms import (
     AddressForm,
     ChosenSupportsForm,
@@ -178,7 +178,8 @@ async def fixture(
     and a picture of the size asked for.
 
     With a program, ``passing`` is the move that comes nearest to what holds the part, with line, tool and
-    distance in mm; its path is that of the tool's axis, in the part's coordinates. With cutting forces,
+    distance in mm; its path is that of the tool's axis, in the part's coordinates. Between flat jaws
+    ``vise_clearance`` says in sentences what tools come nearest to. With cutting forces,
     ``program_forces`` has the force that they ask for and the line that asks for most.
     """
     result = get_job_result(find_job(request, name), revision)
@@ -187,7 +188,13 @@ async def fixture(
         describe_fixture, result[index], result.workpiece, result.toolkit, (width, height)
     )
     passing, forces = describe_clearance(result, index), describe_forces(result, index)
-    return {"rank": rank, **told, "passing": passing, "program_forces": forces}
+    return {
+        "rank": rank,
+        **told,
+        "passing": passing,
+        "vise_clearance": describe_vise_clearance(result, index),
+        "program_forces": forces,
+    }
 
 
 CHANGED: dict[int | str, dict[str, Any]] = {204: {"description": "The list has changed meanwhile"}}

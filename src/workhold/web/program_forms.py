@@ -250,6 +250,15 @@ def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
     return None if near is None or not isfinite(near.distance) else asdict(near)
 
 
+def describe_vise_clearance(result: Any, index: int) -> list[str]:
+    """Return sentences on how far tools come through a part between flat jaws, and what they come nearest to;
+    [] for other fixtures.
+    """
+    from workhold.statics.jaw_clearance import list_vise_sentences
+
+    return list_vise_sentences(result[index], result.query, MILLIMETRE)
+
+
 def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
     """Return which forces the tools of a result's program need of a fixture, in N and in sentences; None
     without forces.

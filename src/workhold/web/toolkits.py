@@ -117,6 +117,7 @@ class DescribedToolkit:
             "mover": toolkit.moving.noun,
             "locked": toolkit.locked,
             "closes": self.words.closes,
+            "by_friction": toolkit.holds_by_friction,
             "said": dict(self.said),
             "start": dict(self.words.start),
             "types": [{"name": name, "words": words} for name, words in types.items()],

@@ -338,7 +338,7 @@ def write_hold_csv(result: Result) -> Iterator[str]:
 
     lines = io.StringIO()
     table = csv.writer(lines, lineterminator="\n")
-    table.writerow(list_hold_columns(result.toolkit))
+    table.writerow(list_hold_columns(result.query))
     table.writerows(["" if value is None else value for value in row] for row in list_hold_rows(result))
     yield lines.getvalue()
 

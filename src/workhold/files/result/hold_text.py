@@ -19,9 +19,9 @@ from workhold.files.result.strapped_text import (
     make_need_entry,
     make_strapped_entry,
 )
-from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, JawPatch
+from workhold.model.query import Query
 from workhold.model.result import Result
 
 __all__ = [
@@ -61,11 +61,13 @@ def make_hold_entry(fixture: Fixture) -> dict[str, Any]:
         rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
 
-    need = hold.program_need
+    need, offsets = hold.program_need, hold.parallel_offsets
+    moved = {"parallel_offsets": [round_length_for_file(one) for one in offsets]}
     of_program = {} if need is None else {"program_force": make_need_entry(need)}
     return {
         "type": fixture.type,
         "parallels": round_length_for_file(hold.parallels),
+        **(moved if hold.has_moved_parallels else {}),
         "stop": hold.stop,
         "fixed": patch_entry(hold.fixed),
         "moving": patch_entry(hold.moving),
@@ -97,10 +99,11 @@ BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "pa
 AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
 
 
-def list_hold_columns(toolkit: Toolkit) -> list[str]:
-    """Return the column names of :func:`list_hold_rows` for a toolkit."""
-    if toolkit.strap_set is not None:
-        return list_strapped_columns(toolkit.strap_set.count)
+def list_hold_columns(query: Query) -> list[str]:
+    """Return the column names of :func:`list_hold_rows` for a result of a query."""
+    straps = query.toolkit.strap_set
+    if straps is not None:
+        return list_strapped_columns(query, straps.count)
     return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
 
 

@@ -79,6 +79,10 @@ class HoldPart(FormPart):
 
     type: str
     parallels: Number
+    parallel_offsets: Annotated[list[Number], Field(min_length=2, max_length=2)] = Field(
+        default=[0.0, 0.0],
+        description="how far the parallels stand from the fixed and the moving jaw; beside them if not given",
+    )
     stop: Literal["left", "right"] | None
     fixed: PatchPart
     moving: PatchPart
@@ -121,6 +125,7 @@ class HoldPart(FormPart):
             max_force=toolkit.flat_jaws.max_force,
             unit_force=unit_force,
             warnings=tuple(self.warnings),
+            parallel_offsets=(self.parallel_offsets[0], self.parallel_offsets[1]),
         )
 
 

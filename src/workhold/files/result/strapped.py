@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, radians
+from math import hypot, inf, radians
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -30,6 +30,8 @@ Hole = Annotated[int, Field(ge=0, le=MOST_HOLES)]
 HolePair = Annotated[list[Hole], Field(min_length=2, max_length=2)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+# Of what quality says, what is no figure.
+NOT_FIGURES = {"full_contact", "clamp_needed_each", "safety_reached_each"}
 
 
 class StrappedPegPart(FormPart):
@@ -85,6 +87,11 @@ class StrappedQualityPart(FormPart):
     clamp_needed_each: list[Number | None] = Field(
         default=[], description="for each load in its order; null where no force of the straps holds it"
     )
+    safety_reached: Number | None = None
+    safety_reached_each: list[Number | None] = Field(
+        default=[],
+        description="with a given force of the straps: how many times it holds each load; null for any number",
+    )
 
 
 class ProgramForcePart(FormPart):
@@ -96,6 +103,10 @@ class ProgramForcePart(FormPart):
     line: int
     tool: int
     move: Whole = Field(description="number of the program's move, from 0")
+    safety_reached: Number | None = Field(
+        default=None,
+        description="how many times the given force of the straps holds the part; null for any number",
+    )
 
     def to_need(self) -> ProgramJawForce:
         """Return the force as an object of the model."""
@@ -125,20 +136,20 @@ class StrappedSeatPart(FormPart):
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """Return the seat as a fixture, with the figures that are written in the file.
 
-        ``unit_force`` is not used.
+        ``unit_force`` is passed on by :meth:`to_hold`.
         """
         plate = toolkit.plates[0]
         pegs = tuple(
             Peg(plate.name, one.column, one.row, one.x, one.y, one.segment, 0.0) for one in self.pegs
         )
         pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
-        written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
+        written = self.quality.model_dump(exclude=NOT_FIGURES, exclude_none=True)
         return Fixture(self.type, pegs, pose, 0.0, written, hold=self.to_hold(toolkit, unit_force))
 
     def to_hold(self, toolkit: Toolkit, unit_force: float | None = None) -> StrappedHold:
         """Return how straps hold the part; raise InputError for a toolkit without straps.
 
-        ``unit_force`` is not used.
+        ``unit_force`` is None where the query gives no force of the straps; its value is not used.
         """
         if toolkit.strap_set is None:
             raise InputError(f"straps hold it, which a {toolkit.noun} does not have.")
@@ -164,7 +175,13 @@ class StrappedSeatPart(FormPart):
             self.looked_at,
             tuple((a, b) for a, b in self.supports),
             None if self.program_force is None else self.program_force.to_need(),
+            self.list_safety() if unit_force is not None and self.straps else (),
         )
+
+    def list_safety(self) -> tuple[float, ...]:
+        """Return how many times the given force of the straps holds each load, then the program."""
+        of_program = () if self.program_force is None else (self.program_force.safety_reached,)
+        return tuple(inf if one is None else one for one in (*self.quality.safety_reached_each, *of_program))
 
 
 def check_strapped(parts: Sequence[StrappedSeatPart], query: Query, path: Path) -> None:

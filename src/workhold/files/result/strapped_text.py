@@ -11,9 +11,18 @@ from typing import Any
 
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import ProgramJawForce
-from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, FIGURES, LOCATION_ERROR, SMALLEST_FACE, TILT
+from workhold.model.quality import (
+    EDGE_DISTANCE,
+    END_DISTANCE,
+    FIGURES,
+    LOCATION_ERROR,
+    SMALLEST_FACE,
+    TILT,
+    Figure,
+)
+from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.model.straps import STRAP_FIGURES, StrappedHold
+from workhold.model.straps import STRAP_FIGURES, StrappedHold, write_times
 
 __all__ = [
     "SEAT_FIGURES",
@@ -60,6 +69,7 @@ def make_strapped_entry(fixture: Fixture) -> dict[str, Any]:
             "full_contact": bool(hold.straps),
             "clamp_needed": round_figure(hold.clamp_needed),
             "clamp_needed_each": [round_figure(one) for one in hold.clamp_needed_each],
+            **hold.describe_safety(),
         }
     return {
         "type": fixture.type,
@@ -99,7 +109,7 @@ def make_strapped_entry(fixture: Fixture) -> dict[str, Any]:
             "shares": [round_figure(one) for one in push.shares],
         },
         "quality": {**seat, **needs},
-        **({} if hold.program_need is None else {"program_force": make_need_entry(hold.program_need)}),
+        **({} if hold.program_need is None else {"program_force": make_strap_need_entry(hold)}),
     }
 
 
@@ -110,13 +120,31 @@ def make_need_entry(need: ProgramJawForce) -> dict[str, Any]:
     return {"force": round_figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
 
 
-def list_strapped_columns(straps: int) -> list[str]:
+def make_strap_need_entry(hold: StrappedHold) -> dict[str, Any]:
+    """Return the JSON object of the strap force that the program's tools need.
+
+    Where a force of the straps is given, it also has how many times that force holds the part against them; null
+    stands for any number.
+    """
+    assert hold.program_need is not None
+    entry = make_need_entry(hold.program_need)
+    return entry if not hold.safety_each else {**entry, "safety_reached": write_times(hold.safety_each[-1])}
+
+
+def list_row_figures(query: Query) -> tuple[Figure, ...]:
+    """Return the figures that a row of a spreadsheet has; the safety only where a force of the straps is given."""
+    given = query.jaw_force is not None
+    of_straps = (one for one in STRAP_FIGURES if given or one.key != "safety_reached")
+    return (*of_straps, *SEAT_FIGURES)
+
+
+def list_strapped_columns(query: Query, straps: int) -> list[str]:
     """Return the column names of :func:`iterate_strapped_rows` for up to ``straps`` straps in a seat."""
     pegs = [f"{name}_{k}" for k in range(1, 4) for name in ("column", "row", "face")]
     of_straps = [
         f"strap_{name}_{k}" for k in range(1, straps + 1) for name in ("column", "row", "x", "y", "heel")
     ]
-    keys = [one.key for one in (*STRAP_FIGURES, *SEAT_FIGURES)]
+    keys = [one.key for one in list_row_figures(query)]
     return ["number", "type", "theta_deg", "x", "y", *keys, *pegs, *of_straps, "push_x", "push_y", "push_deg"]
 
 
@@ -129,7 +157,7 @@ def iterate_strapped_rows(result: Result, straps: int) -> Iterator[list[Any]]:
     for number, fixture in enumerate(result, 1):
         entry = make_strapped_entry(fixture)
         pose, figures = entry["pose"], fixture.quality
-        known = [figures.get(one.key) for one in (*STRAP_FIGURES, *SEAT_FIGURES)]
+        known = [figures.get(one.key) for one in list_row_figures(result.query)]
         row = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], *map(round_figure, known)]
         for peg in entry["pegs"]:
             row += [peg["column"], peg["row"], peg["segment"]]

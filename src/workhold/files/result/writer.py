@@ -28,7 +28,6 @@ from workhold.fixels.carrier import HoleSelection
 from workhold.fixels.kinds import USUAL
 from workhold.fixels.pegs import PegFlat
 from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, TopClamp
-from workhold.fixels.table import SILENT
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import Note
@@ -306,7 +305,7 @@ def make_toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
     # The tolerance stands among what was asked.
     values = asdict(toolkit, recurse=False, filter=lambda one, _: one.name != "tolerance")  # type: ignore[arg-type]
     fields = {name: convert_to_json_value(value) for name, value in values.items()}
-    silent = {row.name for row in toolkit.table.fields if row.form in SILENT} | set(HARDWARE)
+    silent = {row.name for row in toolkit.table.fields if row.is_silent} | set(HARDWARE)
     fields = {name: value for name, value in fields.items() if name not in silent or value is not None}
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 

@@ -1,7 +1,7 @@
 /**
  * Below the drawing: the table of pegs, which says in words what the drawing shows, and the figures of quality.
  */
-import { byId, make } from "./dom.js";
+import { byId, make, show } from "./dom.js";
 import { forceOf, writtenTurn } from "./pose.js";
 import { on, state } from "./state.js";
 import { pressedBy } from "./toolkits.js";
@@ -34,6 +34,9 @@ function write() {
 
 /** The table of pegs. */
 function writePegs(row) {
+  // Between flat jaws there are none.
+  show(byId("pegs").parentElement, row.holes.length > 0);
+  byId("pegs-title").textContent = row.hold ? "Set up" : "Pegs";
   byId("force-title").textContent = loaded ? `Force ${forceWord()}` : "Force";
   byId("force-title").title = loaded ? "Under the load" : `For each newton of ${forceOf(row)}`;
   byId("pegs").replaceChildren(
@@ -48,8 +51,8 @@ function writePegs(row) {
   const settings = settingWords(row).map(capital).join(", ");
   byId("pose-words").textContent =
     `${settings ? `${settings}. ` : ""}${row.order ? `${row.order} ` : ""}Part turned by ${number(writtenTurn(row), 3)}°, its zero at ` +
-    `${bareLength(row.x + row.placed[0])}, ${length(row.y + row.placed[1])} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + overhangWords(row) +
-    (row.hold?.steps ? [...row.hold.steps, ...row.hold.warnings.map(sentence)].join(" ") : row.hold || loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
+    `${bareLength(row.x + row.placed[0])}, ${length(row.y + row.placed[1])} from ${row.flush.length || !row.holes.length ? "" : "hole "}${row.origin}. ` + overhangWords(row) +
+    (row.hold?.steps ? [...row.hold.steps, ...(row.hold.straps ? row.hold.warnings : []).map(sentence)].join(" ") : row.hold || loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
 }
 
 /** Words that begin with a small letter, as a sentence of their own. @param {string} words */

@@ -158,7 +158,7 @@ export class FixtureDrawing {
     this.kept = all(".kept").map((group) => ({ group, at: numbers(group.dataset.at ?? ""), axes: group.dataset.axes ?? "", number: Number(group.dataset.number), step: Number(group.dataset.step ?? 0) }));
     this.movers = all(".moves").map(moverOf);
     this.most = Math.min(...all("[data-most]").map(({ dataset }) => Number(dataset.most)));
-    this.travels = all(".travel").map(travelOf);
+    this.travels = all(".travel").filter((group) => group.querySelector(".moves")).map(travelOf);
     const focused = this.pegs.findIndex((peg) => peg === document.activeElement);
     this.pegs = all("[data-peg]");
     for (const peg of this.pegs) this.listen(peg, Number(peg.dataset.peg));

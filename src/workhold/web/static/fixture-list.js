@@ -16,6 +16,9 @@ const SPARE = 4;
 /** Browsers end at about 33 million pixels; beyond this many the scroll bar is scaled. */
 const HIGHEST = 12_000_000;
 
+/** What is shown of a row that friction holds, what tells most first. */
+const OF_FRICTION = ["clamp_needed", "safety_reached", "grip", "location_error", "edge_distance"];
+
 /** A scrolling list over rows that come in pages. */
 export class FixtureList {
   /**
@@ -139,7 +142,7 @@ export class FixtureList {
     const opening = caught && (caught.opening === null ? "always" : length(caught.opening, 2));
     cell.figures.replaceChildren(
       ...(caught ? [make("span.row-figure", { title: "how far open the jaws may stand" }, make("i", {}, "caught "), opening)] : []),
-      ...this.shownFigures().slice(0, caught ? 2 : 3).map((figure) =>
+      ...this.shownFigures(row).slice(0, caught ? 2 : 3).map((figure) =>
         make(`span.row-figure${figure.key === state.list.sort ? ".sorted" : ""}`, { title: figure.words },
           make("i", {}, `${figure.short} `), figureText(figure, shownFigures(row)[figure.key])),
       ),
@@ -167,11 +170,14 @@ export class FixtureList {
     cell.picture.replaceChildren(...pictureOf(row.small).groups);
   }
 
-  /** Three figures at most: the one sorted by first, then warnings and what tells most. */
-  shownFigures() {
+  /** Three figures of a row at most: the one sorted by first, then warnings and what tells most. */
+  shownFigures(row) {
     const first = this.figures.filter((figure) => figure.key === state.list.sort);
     const strong = state.loads.length ? "load_reaction" : "clamp_amplification";
-    const usual = ["warnings", "location_error", strong, "closure_margin"];
+    // Where friction holds the part, only figures that the row has.
+    const usual = row.hold
+      ? OF_FRICTION.filter((key) => typeof row.quality?.[key] === "number")
+      : ["warnings", "location_error", strong, "closure_margin"];
     const rest = usual.map((key) => this.figures.find((figure) => figure.key === key)).filter((f) => f && f !== first[0]);
     return [...first, ...rest].slice(0, 3);
   }

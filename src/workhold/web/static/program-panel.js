@@ -220,7 +220,7 @@ function tellPassing() {
   const { passing = null, program_forces: asksFor = null } = (program && selected) || {};
   fixtureDrawing.showPassing(passing);
   byId("passing").textContent = selected?.hold && program
-    ? `The tools keep ${length(program.clearance, 2)} or more from ${selected.hold.straps ? "locators and straps" : "both jaws"}.`
+    ? [`The tools keep ${length(program.clearance, 2)} or more from ${selected.hold.straps ? "locators and straps" : "jaws, work stop, parallels and bed"}.`, ...(selected.vise_clearance ?? [])].join(" ")
     : passing
     ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${length(program.clearance, 2)} is asked for.`
     : "No tool comes down to where anything holds the part.";

@@ -3,7 +3,7 @@
  */
 import { ask } from "./api.js";
 import { field as input, quiet } from "./dom.js";
-import { same } from "./toolkits.js";
+import { kindOf, same } from "./toolkits.js";
 import { idOf, makeFields, readField, writeField } from "./toolkit-fields.js";
 import { change, on, state } from "./state.js";
 
@@ -51,9 +51,16 @@ export function askIn(place, key, fields) {
   write();
 }
 
-/** What is asked of a search, without what needs something that is not asked. */
+/** Whether flat jaws or straps hold the part, and not pegs. */
+export function holdsByFriction() {
+  return Boolean(state.toolkit && kindOf(state.toolkit)?.by_friction);
+}
+
+/** What is asked of a search, without what needs something that is not asked, and what is of friction, or of pegs, alone. */
 export function askedOfSearch() {
   const { asked } = state;
-  const kept = askedOf("search").filter(({ name, needs }) => name in asked && (!needs || needs in asked));
+  const suits = ({ section }) => (section === "Loads" ? holdsByFriction() : section !== "Seating" || !holdsByFriction());
+  const isAsked = (question) => question.name in asked && (!question.needs || question.needs in asked) && suits(question);
+  const kept = askedOf("search").filter(isAsked);
   return Object.fromEntries(kept.map(({ name }) => [name, asked[name]]));
 }

@@ -16,6 +16,7 @@ const SHORT = {
   closure_margin: "margin", clamp_amplification: "clamp", wrench_radius: "wrench", location_error: "error",
   end_distance: "to end", load_reaction: "load", edge_distance: "to edge", jaw_force_needed: "needs", smallest_face: "face",
   pin_deflection: "pins bend", pin_stress: "pin stress", pin_movement: "pins move",
+  clamp_needed: "needs", safety_reached: "holds times", slip_reserve: "rated times",
 };
 
 /** The part of a search after which what it found is put in order. */
@@ -39,7 +40,7 @@ export function resultsPanel(figures) {
   });
   list.figures = known;
   choice("sort").append(
-    make("option", { value: "rank" }, "rank"), ...known.map((figure) => make("option", { value: figure.key }, figure.words)),
+    make("option", { value: "rank" }, "rank"), ...known.filter(({ sorts }) => sorts).map((figure) => make("option", { value: figure.key }, figure.words)),
   );
   for (const id of ["search", "search-here"]) byId(id).addEventListener("click", start);
   byId("cancel").addEventListener("click", cancel);

@@ -4,7 +4,7 @@
 import { byId, field, make, quiet, show } from "./dom.js";
 import { bandWords, isNever, toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
-import { askIn, askedOf } from "./questions.js";
+import { askIn, askedOf, holdsByFriction } from "./questions.js";
 import { kindOf, kinds } from "./toolkits.js";
 import { forceText, length, number, readLength, readNumber } from "./units.js";
 import { circleLoop, ZoneTool } from "./zone-tool.js";
@@ -31,6 +31,10 @@ export function rulesPanel(drawing, showPart) {
   on(["zones", "unit"], writeZones);
   on(["angles", "unit"], write);
   on(["toolkit", "types"], writeTypes);
+  on(["toolkit"], () => {
+    show(byId("friction-box"), holdsByFriction());
+    show(byId("seating-box"), !holdsByFriction());
+  });
   field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
   field("every-fixture").addEventListener("change", () => change({ every: field("every-fixture").checked }));
   on(["toolkit", "listing", "every"], writeListing);
@@ -41,8 +45,10 @@ export function rulesPanel(drawing, showPart) {
 /** Draw what else is asked, once the server has told what that is. */
 export function askInRules() {
   const isSeating = ({ section }) => section === "Seating";
+  const isOfLoads = ({ section }) => section === "Loads";
   askIn(byId("search-fields"), "ruledOut", askedOf("restrictions"));
-  askIn(byId("search-fields"), "asked", askedOf("search").filter((field) => !isSeating(field)));
+  askIn(byId("search-fields"), "asked", askedOf("search").filter((field) => !isSeating(field) && !isOfLoads(field)));
+  askIn(byId("friction-fields"), "asked", askedOf("search").filter(isOfLoads));
   askIn(byId("seating-fields"), "asked", askedOf("search").filter(isSeating));
 }
 

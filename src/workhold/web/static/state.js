@@ -4,7 +4,7 @@
  * Settings are what a search depends on; when one of them changes, what was found before is stale.
  */
 
-import { askedOfSearch } from "./questions.js";
+import { askedOfSearch, holdsByFriction } from "./questions.js";
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
@@ -129,7 +129,7 @@ export function request() {
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
-    ...((state.toolkit?.parallels !== undefined || state.toolkit?.straps !== undefined) && !state.part?.solid ? { thickness: state.supports?.thickness ?? state.sheet?.thickness ?? null } : {}),
+    ...(holdsByFriction() && !state.part?.solid ? { thickness: state.supports?.thickness ?? state.sheet?.thickness ?? null } : {}),
     ...(state.program ? { program: programRequest(state.program) } : {}),
   };
 }

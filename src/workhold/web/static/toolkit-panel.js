@@ -96,7 +96,7 @@ function read() {
   TOLERANCES.forEach((id, k) => field(id).setAttribute("aria-invalid", String(!(off[k] >= 0))));
   let words = "";
   if (bad) words = `${bad} is not a number that can be used.`;
-  else if (2 * toolkit.peg_radius > Math.min(...toolkit.pitch)) words = "Pegs would overlap in neighbouring holes: take a smaller peg or a larger pitch.";
+  else if (toolkit.pitch && 2 * toolkit.peg_radius > Math.min(...toolkit.pitch)) words = "Pegs would overlap in neighbouring holes: take a smaller peg or a larger pitch.";
   byId("toolkit-trouble").textContent = words;
   show(byId("toolkit-trouble"), words !== "");
   if (words || !off.every((value) => value >= 0)) return;

@@ -5,7 +5,7 @@ import { ask } from "./api.js";
 
 /** @typedef {{name: string, label: string, form: string, hint: string|null, is_usual: boolean, least: string, choices: {value: any, words: string}[], when: Object<string, any>, table: string|null}} Field */
 /** @typedef {{name: string, title: string, fields: Field[]}} Hardware */
-/** @typedef {{name: string, kind: string, title: string, noun: string, mover: string, locked: string, closes: string, said: Object<string, any>, start: Object<string, any>, types: {name: string, words: string}[], fields: Field[], hardware: Hardware[], roles: Object<string, string>}} Kind */
+/** @typedef {{name: string, kind: string, title: string, noun: string, mover: string, locked: string, closes: string, by_friction: boolean, said: Object<string, any>, start: Object<string, any>, types: {name: string, words: string}[], fields: Field[], hardware: Hardware[], roles: Object<string, string>}} Kind */
 
 /** What a toolkit is that does not say. */
 const USUAL = "vise";

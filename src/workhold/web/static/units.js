@@ -126,6 +126,7 @@ export function figureText(figure, value) {
   if (figure.unit === "deg") return `${number(value, figure.decimals)}°`;
   if (figure.unit === "MPa") return stressText(value);
   if (figure.unit === "N") return forceText(value);
+  if (figure.unit === "mm²") return state.unit === "inch" ? `${number(value / 25.4 ** 2, 2)} in²` : `${number(value, 0)} mm²`;
   return number(value, figure.key === "clamp_amplification" ? 2 : figure.decimals);
 }
 
