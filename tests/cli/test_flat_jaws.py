@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from math import floor
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+import workhold
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RECTANGLE, BRACKET = (str(EXAMPLES / name) for name in ("rectangle.dxf", "bracket.dxf"))
@@ -65,3 +68,12 @@ def test_a_program_s_forces_are_told_with_their_line(run: Any, tmp_path: Path) -
     assert "The program asks for a jaw force of" in shown.stdout
     assert "in line 5, T1 (milling from" in shown.stdout
     assert run("sheet", path, "1", "-o", tmp_path / "sheet.pdf").exit_code == 0
+    # A force of one's own, and how often it holds the load and the tools.
+    own = ("--jaw-force", "9kN", "--load", "name=end force=500 at=40,20", "--force")
+    made = run("design", RECTANGLE, "--toolkit", "plain-vise-6-inch", *words, *own, "--out", path)
+    assert made.exit_code == 0, made.stderr
+    hold = workhold.open(path)[0].hold
+    shown = run("show", path, "1").stdout
+    times = [f"{floor(2 * 9000 / need * 100) / 100:.2f}" for need in hold.forces_needed]
+    assert "times at 9000 N" in shown and times[0] in shown
+    assert f"Closed with 9000 N, its tools may press {times[1]} times as hard." in shown

@@ -27,12 +27,12 @@ def test_words_of_command_and_sheet(run, tmp_path):
     shown = " ".join(run("show", path, "1").stdout.split())
     times = result[0].hold.safety_reached
     assert "times at 1000 N" in shown
-    assert f"the loads and the tools may be {int(times * 100) / 100:.2f} times as large as given" in shown
+    assert f"the loads and the tools may press {int(times * 100) / 100:.2f} times as hard as given" in shown
     assert (
         f"at each tip hold the loads and the tools {int(times * 100) / 100:.2f} times, and 2 times" in shown
     )
     of_program = int(result[0].hold.safety_each[-1] * 100) / 100
-    assert f"its forces may be {of_program:.2f} times as large" in shown
+    assert f"its tools may press {of_program:.2f} times as hard" in shown
     sheet = tmp_path / "sheet.svg"
     assert run("sheet", path, "1", "-o", str(sheet)).exit_code == 0
     text = sheet.read_text()

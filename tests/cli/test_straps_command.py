@@ -63,3 +63,66 @@ def test_what_cannot_be_is_refused_in_a_sentence(
     outcome = run("straps", result_file, "1", *words)
     assert outcome.exit_code != 0
     assert said in " ".join(outcome.stderr.split())
+
+
+SLOT = "G21 G90\nG0 X{x}. Y{y}. Z70.\nT1 M6\nZ5.\nG1 Z-{deep}. F200\nX70. F600\nG0 Z70.\nM30\n"
+TOOLS = "tool.1 = {diameter = 10, flute_length = 30, stickout = 40, cutting_force = 180}\n"
+
+
+def write_program(folder: Any, x: int = 30, deep: int = 3, y: int = 30) -> tuple[str, ...]:
+    (folder / "p.nc").write_text(SLOT.format(x=x, deep=deep, y=y))
+    (folder / "tools.toml").write_text(TOOLS)
+    files = ("--program", str(folder / "p.nc"), "--tools", str(folder / "tools.toml"))
+    return *files, "--start", f"{x},{y},70", "--thickness", "25"
+
+
+def test_a_program_alone_loads_the_part(run: Any, result_file: str, tmp_path: Any) -> None:
+    asked = ("straps", result_file, "1", *write_program(tmp_path))
+    outcome = run(*asked, "--jaw-force", "1kN")
+    words = " ".join(outcome.stdout.split())
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "The program asks for" in words and "in line" in words and "its tools may press" in words
+    assert "loads times 2" in words and "comes too near" not in outcome.stderr
+    said = json.loads(run(*asked, "--json").stdout)
+    assert said["program_force"]["force"] == pytest.approx(said["quality"]["clamp_needed"])
+
+
+def test_supports_are_named_with_their_height(run: Any, result_file: str, tmp_path: Any) -> None:
+    over = ("--over", "supports", "--support-height", "15", "--pad-radius", "5")
+    outcome = run("straps", result_file, "1", *write_program(tmp_path), *over)
+    words = " ".join(outcome.stdout.split())
+    assert "the part lies on supports 15.000 mm high in" in words and "Set the heels 40.000 mm high" in words
+    assert "between support and milled steel" in words
+    kept_off = (*over, "--keep-out-below", "circle=50,30,20")
+    fewer = run("straps", result_file, "1", *write_program(tmp_path), *kept_off)
+    assert "holes under the part" in fewer.stdout and fewer.stdout != outcome.stdout
+
+
+def test_a_locator_that_a_tool_hits_is_warned_of(run: Any, result_file: str, tmp_path: Any) -> None:
+    """Its slot runs out over the side that a locator is at, deeper than the locator is high or not."""
+    asked = ("straps", result_file, "1")
+    deep = run(*asked, *write_program(tmp_path, -10, 12, 18), "--peg-height", "20")
+    assert "a tool of the program comes too near to A2" in " ".join(deep.stderr.split())
+    low = run(*asked, *write_program(tmp_path, -10, 12, 18), "--peg-height", "10")
+    assert "comes too near" not in low.stderr
+
+
+def test_options_of_a_program_want_one(run: Any, result_file: str) -> None:
+    outcome = run("straps", result_file, "1", *LOADED, "--tools", "tools.toml")
+    assert outcome.exit_code != 0 and "belongs to a program" in " ".join(outcome.stderr.split())
+    outcome = run("straps", result_file, "1", *LOADED, "--over", "air")
+    assert outcome.exit_code != 0
+
+
+def test_heights_and_program_are_those_of_the_result(run: Any, tmp_path: Any) -> None:
+    """A fixture that was designed with them asks for no more words."""
+    from workhold import Program
+
+    write_program(tmp_path)
+    program = Program.read(tmp_path / "p.nc", tmp_path / "tools.toml", thickness=25, start=(30, 30, 70))
+    plate = Plate(pitch=20, peg_radius=3, columns=8, rows=6, clamps=2)
+    asked = {"program": program, "thickness": 25, "peg_height": 15, "best": 1}
+    write_result(workhold.design(BLOCK, plate, **asked), tmp_path / "cut.json")
+    outcome = run("straps", str(tmp_path / "cut.json"), "1")
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "The program asks for" in " ".join(outcome.stdout.split())

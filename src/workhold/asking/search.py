@@ -126,7 +126,7 @@ class SearchQuestion:
     strapped: int | None = declare(
         "count",
         "Of a plate with straps: for so many of the best seats the straps are sought; 20 if not given.",
-        section=SEARCH,
+        section=LOADS,
         most=1_000,
         metavar="M",
     )

@@ -21,7 +21,7 @@ from attrs import define, field, frozen
 from workhold.batch.durations import TaskDurations
 from workhold.batch.run import BatchState
 from workhold.batch.store import RecordStore
-from workhold.batch.tables import JobRow, Row, list_job_rows, write_tables
+from workhold.batch.tables import JobRow, Row, holds_by_friction, list_job_rows, write_tables
 from workhold.drawing.panel import format_count
 from workhold.errors import make_printable
 from workhold.files.atomic import explain_system_errors, write_bytes, write_text_file
@@ -38,6 +38,8 @@ FIGURES = (
     ("edge distance mm", "edge_distance", 1),
     ("warnings", "warnings", 0),
 )
+# Where some toolkit of the batch holds by friction.
+OF_FRICTION = (("clamp needed N", "clamp_needed", 0), ("safety reached", "safety_reached", 2))
 # That of a program, where some job has one.
 CLEARANCE = ("program clearance mm", "program_clearance", 1)
 # How a job may come out: said of one, and of some.
@@ -122,6 +124,7 @@ class Report:
     ----------
     folder : folder of the page; files in it are linked.
     store : store of the records.
+    by_friction : whether friction holds the part in some toolkit; then its figures have columns.
     rows : HTML of each row of the page's table.
     bad : failures: part and reason, with the toolkits that each holds for.
     states : number of jobs in each state.
@@ -130,11 +133,17 @@ class Report:
 
     folder: Path
     store: RecordStore
+    by_friction: bool = False
     rows: list[str] = field(factory=list, init=False)
     bad: dict[tuple[str, str], list[str]] = field(factory=dict, init=False)
     states: Counter[str] = field(factory=Counter, init=False)
     pictures: int = field(default=0, init=False)
     left_out: int = field(default=0, init=False)
+
+    @property
+    def figures(self) -> tuple[tuple[str, str, int], ...]:
+        """Figures that have columns: heading, column of the table of results, and decimals of each."""
+        return (*FIGURES, *(OF_FRICTION if self.by_friction else ()), CLEARANCE)
 
     def add(self, job: JobRow, sheet: Path | None = None) -> None:
         """Add a job's row to the page; ``sheet`` is the setup sheet of its first choice, None where there is
@@ -182,7 +191,7 @@ class Report:
                 bad=row["state"] in BAD,
             ),
             format_figure(row["fixtures"], 0),
-            *(format_figure(row[key], decimals) for _, key, decimals in (*FIGURES, CLEARANCE)),
+            *(format_figure(row.get(key), decimals) for _, key, decimals in self.figures),
             format_figure(row["seconds"], 2),
             format_figure(row["estimated_seconds"], 2),
         ]
@@ -220,7 +229,7 @@ class Report:
             "toolkit",
             "state",
             "fixtures",
-            *(words for words, _, _ in (*FIGURES, CLEARANCE)),
+            *(words for words, _, _ in self.figures),
         ]
         headings += ["seconds", "predicted s"]
         with write_text_file(path) as stream:
@@ -310,8 +319,9 @@ def write_results(
     """
     with explain_system_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    report = Report(folder, store)
-    for row in write_tables(list_job_rows(batch.jobs, store, measured), folder):
+    by_friction = holds_by_friction(batch.jobs)
+    report = Report(folder, store, by_friction)
+    for row in write_tables(list_job_rows(batch.jobs, store, measured), folder, by_friction):
         report.add(row, None if sheets is None else write_first_sheet(row, store, sheets))
     report.write(folder / report_name, summary)
     return report

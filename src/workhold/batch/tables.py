@@ -7,7 +7,7 @@ known a cell is empty. Lengths are in mm, angles in degrees, forces in N.
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
@@ -21,6 +21,7 @@ from workhold.batch.store import RecordStore, parse_record
 from workhold.errors import make_encodable
 from workhold.files.atomic import write_binary_file, write_text_file
 from workhold.files.result.strapped_text import is_strapped
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.notes import Many, round_to_two_digits
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE, SEATING_FIGURES
 from workhold.model.query import Query
@@ -35,6 +36,7 @@ __all__ = [
     "has_parquet",
     "list_job_rows",
     "list_table_names",
+    "holds_by_friction",
     "write_tables",
 ]
 
@@ -64,6 +66,16 @@ BEST: Mapping[str, type] = {
     **FIGURE_COLUMNS,
     **PASSING_COLUMNS,
     "record": str,
+}
+# What parts that friction holds have besides, where some toolkit of a batch holds so.
+FRICTION_FIGURES: Mapping[str, type] = dict.fromkeys(
+    ("clamp_needed", "slip_reserve", "safety_reached"), float
+)
+# How they are set up: holes of the straps' bolts and of supports, height of the parallels, and side of the work stop.
+FRICTION_SETTINGS: Mapping[str, type] = {
+    **dict.fromkeys(("bolts", "supports"), str),
+    "parallels": float,
+    "stop": str,
 }
 # Rows written together.
 BLOCK = 8192
@@ -140,7 +152,11 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob) 
         for rank, fixture in enumerate(record["fixtures"], 1)
     ]
     if best:
-        row |= {key: best[0][key] for key in (*FIGURE_COLUMNS, *PASSING_COLUMNS)}
+        row |= {
+            key: best[0][key]
+            for key in (*FIGURE_COLUMNS, *PASSING_COLUMNS, *FRICTION_FIGURES)
+            if key in best[0]
+        }
         if "closure_margin" not in record["fixtures"][0]["quality"]:
             row["fit"] = is_held_by_friction(record["fixtures"][0])
             return best
@@ -166,6 +182,24 @@ def is_held_by_friction(fixture: Mapping[str, Any]) -> bool | None:
     return touched and bool(fixture["quality"]["full_contact"])
 
 
+def make_friction_row(fixture: Mapping[str, Any], toolkit: Toolkit) -> Row:
+    """Return the figures and settings of a fixture that friction holds, from its entry in a result file."""
+    row: Row = dict.fromkeys(FRICTION_SETTINGS) | {
+        key: fixture["quality"].get(key) for key in FRICTION_FIGURES
+    }
+    if not is_strapped(fixture):
+        return row | {"parallels": fixture["parallels"], "stop": fixture["stop"]}
+    straps, plate = toolkit.strap_set, toolkit.plates[0]
+    assert straps is not None
+    # Tables have a slip reserve of what a file leaves to be reckoned.
+    need = row["clamp_needed"]
+    if straps.max_force is not None and need:
+        row["slip_reserve"] = straps.max_force / need
+    bolts = (straps.bolts.name_place(*one["hole"]) for one in fixture["straps"])
+    supports = (plate.name_place(*one) for one in fixture.get("supports", ()))
+    return row | {"bolts": " ".join(bolts) or None, "supports": " ".join(supports) or None}
+
+
 def make_jaws_row(fixture: Mapping[str, Any]) -> Row:
     """Return the row of a fixture between flat jaws, from its entry in a result file;
     it has no holes and no peg figures.
@@ -188,7 +222,7 @@ def make_fixture_row(fixture: Mapping[str, Any], job: BatchJob) -> Row:
 
     assert isinstance(job.held_in.query, Query)
     if "pegs" not in fixture:
-        return make_jaws_row(fixture)
+        return make_jaws_row(fixture) | make_friction_row(fixture, job.held_in.query.toolkit)
     carriers = {carrier.name: carrier for carrier in job.held_in.query.toolkit.carriers}
     directions = fixture.get("directions")
     direction = fixture.get("direction") if directions is None else " ".join(directions)
@@ -205,6 +239,8 @@ def make_fixture_row(fixture: Mapping[str, Any], job: BatchJob) -> Row:
         "faces": " ".join(str(peg["segment"]) for peg in fixture["pegs"]),
         **{key: value for key, value in fixture["quality"].items() if key in BEST},
     }
+    if is_strapped(fixture):
+        row |= make_friction_row(fixture, job.held_in.query.toolkit)
     if (seating := fixture.get("seating")) is not None:
         row |= collect_seating_figures(seating)
     if (passing := fixture.get("program_clearance")) is not None:
@@ -224,16 +260,26 @@ def list_table_names() -> tuple[str, str]:
     return f"results.{ending}", f"best.{ending}"
 
 
-def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
+def holds_by_friction(jobs: Iterable[BatchJob]) -> bool:
+    """Return whether friction holds the part in the toolkit of some job."""
+    queries = (job.held_in.query for job in jobs)
+    return any(isinstance(query, Query) and query.toolkit.holds_by_friction for query in queries)
+
+
+def write_tables(rows: Iterator[JobRow], folder: Path, by_friction: bool = False) -> Iterator[JobRow]:
     """Yield the rows unchanged while writing them to both tables in a folder.
 
-    The files appear once all rows are taken.
+    The files appear once all rows are taken. ``by_friction`` is whether there are columns for parts that
+    friction holds.
     """
+    further = {**FRICTION_FIGURES, **FRICTION_SETTINGS} if by_friction else {}
+    own = {**RESULTS, **(FRICTION_FIGURES if by_friction else {})}
+    columns = own, {**BEST, **further}
     table = write_parquet_table if has_parquet() else write_csv_table
     with ExitStack() as files:
         add_results, add_best = (
-            files.enter_context(table(folder / name, columns))
-            for name, columns in zip(list_table_names(), (RESULTS, BEST), strict=True)
+            files.enter_context(table(folder / name, some))
+            for name, some in zip(list_table_names(), columns, strict=True)
         )
         waiting: list[JobRow] = []
 

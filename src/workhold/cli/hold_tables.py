@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from workhold.cli.need_table import tabulate_needs
+from workhold.cli.need_table import format_safety, tabulate_needs
 from workhold.cli.strap_tables import describe_completeness, tabulate_strapped_fixture, tabulate_straps
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_figure_number, format_rounded, make_short_heading
@@ -104,6 +104,10 @@ def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
         tables.append(describe_coefficients(query))
     if hold.program_need is not None and query.program is not None:
         tables.append(describe_asked_force(hold.program_need, query.program, unit))
+        if hold.safety_each and query.jaw_force is not None:
+            often = format_safety(hold.safety_each[-1])
+            closed = unit.format_force(query.jaw_force)
+            tables.append(f"Closed with {closed}, its tools may press {often} times as hard.")
     tables += list_vise_sentences(fixture, query, unit)
     if hold.clamp_needed_each:
         tables.append(

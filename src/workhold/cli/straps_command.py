@@ -12,11 +12,13 @@ from workhold.cli.declared import read_coefficients, read_separated_lengths, rea
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import JSON, print_json
+from workhold.cli.program_options import ProgramOptions
 from workhold.cli.support_words import read_spatial_load
 from workhold.cli.supports_command import read_asked_thickness
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
     choose_printed_unit,
+    read_choice,
     read_optional_count,
     read_optional_force,
     read_optional_length,
@@ -49,8 +51,31 @@ class StrapOptions:
     keep_out_above: list[str] | None = make_option(
         STRAPS, "ZONE", "A place on which no tip may stand, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
     )
-    thickness: str | None = make_option(
-        PART, "LENGTH", "Thickness of the part; that of its solid if not given."
+    strap_height: str | None = make_option(
+        STRAPS,
+        "LENGTH",
+        "How high a strap stands above the face that it presses on, with nut and stud, for the tools of a program; six "
+        "radii of its tip if not given.",
+    )
+    over: str = make_option(
+        STRAPS, "plate|supports", "What the part lies on: the plate, or three supports.", default="plate"
+    )
+    pad_radius: str | None = make_option(
+        STRAPS, "LENGTH", "Radius of the supports' pads; the toolkit's, or a usual one, if not given."
+    )
+    pad_margin: str | None = make_option(
+        STRAPS, "LENGTH", "Smallest distance of a pad from the border of the face that it supports."
+    )
+    support_height: str | None = make_option(
+        STRAPS, "LENGTH", "How high the supports carry the part above the plate."
+    )
+    keep_out_below: list[str] | None = make_option(
+        STRAPS, "ZONE", "A place that no pad may stand under, given as for --keep-out-above."
+    )
+    peg_height: str | None = make_option(
+        PART,
+        "LENGTH",
+        "Height of the locators, which a tool of --program may hit; as high as the part if not given.",
     )
     load: list[str] | None = make_option(
         LOADS,
@@ -78,6 +103,7 @@ def straps(
     number: RankArgument,
     *,
     words: StrapOptions,
+    machined: ProgramOptions,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
@@ -85,7 +111,8 @@ def straps(
 
     The side clamps of the fixture are left out. A hand pushes the part against the locators until the straps are
     tight. Friction under the tips and on the plate holds it: the report has the force of each strap that the loads
-    ask for, with the coefficients and the safety factor. The straps are the best of a finite set of places.
+    ask for, with the coefficients and the safety factor. The straps are the best of a finite set of places. The tools of
+    the result's program, or of --program, pass them, and press on the part where their forces are known.
 
     Example: workhold straps part.json 1 --thickness 25 --count 2 --load "force=300 at=50,30"
     """
@@ -94,7 +121,7 @@ def straps(
 
     rank, shown = read_rank(number), read_unit(unit)
     result = read_result_with_rank(result_file, rank)
-    fixture, asked = result[rank - 1], read_question(words, result, shown)
+    fixture, asked = result[rank - 1], read_question(words, machined, result, shown)
     with ask_to_stop("the best straps so far are kept") as cancel:
         found = find_straps(fixture, result.query, asked, cancel)
     printed = choose_printed_unit(unit, result.toolkit)
@@ -108,15 +135,23 @@ def straps(
         raise typer.Exit(INTERRUPTED)
 
 
-def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion:
+def read_question(words: StrapOptions, machined: ProgramOptions, result: Any, unit: Unit) -> StrapQuestion:
     """Return the question of straps from the options as typed; lengths without a unit are in ``unit``.
 
-    Raises InputError where there are no loads, typed or in the result.
+    Raises InputError where nothing loads the part: no load, typed or in the result, and no program with forces.
     """
     from workhold.model.friction import SAFETY, to_coefficients
     from workhold.model.straps import StrapHardware
     from workhold.model.support_request import SpatialLoad
-    from workhold.supports.straps import NO_LOADS, StrapQuestion, find_given_force, make_usual_request
+    from workhold.supports.straps import (
+        NO_LOADS,
+        PadSizes,
+        StrapQuestion,
+        choose_support_height,
+        find_given_force,
+        make_pads_request,
+        make_usual_request,
+    )
 
     count, tip = (
         read_optional_count("--count", words.count),
@@ -126,32 +161,55 @@ def read_question(words: StrapOptions, result: Any, unit: Unit) -> StrapQuestion
     assert tip is not None
     least, most = read_separated_lengths("--reach", words.reach, ":", 2, unit)
     hardware = StrapHardware(
-        count, tip, (least, most), read_optional_force("--strap-force", words.strap_force)
+        count,
+        tip,
+        (least, most),
+        read_optional_force("--strap-force", words.strap_force),
+        read_optional_length("--strap-height", words.strap_height, unit),
     )
-    high = read_asked_thickness(True, words.thickness, result.workpiece, unit)
+    query = result.query
+    cut = machined.read_query_arguments(unit, words.peg_height, query.workpiece)
+    high = query.part_height if machined.thickness is None else None
+    high = high or read_asked_thickness(True, machined.thickness, query.workpiece, unit)
     assert high is not None
+    typed = cut.get("program")
+    program = query.program if typed is None else typed.keep_forces_on(query.workpiece.outer_loops)
     zones = [read_zone("--keep-out-above", text, unit) for text in words.keep_out_above or ()]
     loads = (
         [read_spatial_load(text, high, unit) for text in words.load]
         if words.load
-        else [SpatialLoad.from_planar_load(load) for load in result.query.loads]
+        else [SpatialLoad.from_planar_load(load) for load in query.loads]
     )
-    if not loads:
+    if not loads and (program is None or program.forces is None):
         raise InputError(NO_LOADS)
+    request, pads = make_usual_request(query, high, tip, zones), None
+    if read_choice("--over", words.over, ("plate", "supports")) == "supports":
+        sizes = (
+            read_optional_length(f"--{name.replace('_', '-')}", getattr(words, name), unit)
+            for name in ("pad_radius", "pad_margin", "support_height")
+        )
+        pads = PadSizes(*sizes)
+        below = [read_zone("--keep-out-below", text, unit) for text in words.keep_out_below or ()]
+        request = make_pads_request(query, request, below, pads)
     given = read_optional_force("--jaw-force", words.jaw_force)
     return StrapQuestion(
         hardware,
-        make_usual_request(result.query, high, tip, zones),
+        request,
         tuple(loads),
         to_coefficients(None if words.friction is None else read_coefficients("--friction", words.friction)),
         SAFETY if words.safety is None else read_positive_number("--safety", words.safety),
         read_optional_force("--weight", words.weight) or 0.0,
-        given_force=find_given_force(result.query) if given is None else given,
+        is_over_supports=pads is not None,
+        program=program,
+        given_force=find_given_force(query) if given is None else given,
+        support_height=choose_support_height(query, pads),
+        peg_height=None if typed is None else cut["peg_height"] or high,
     )
 
 
 def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dict[str, Any]:
     """Return the straps found as plain data for JSON: pegs, pose, straps, friction, safety factor and weight."""
+    from workhold.files.result.strapped_text import make_strap_need_entry
     from workhold.model.friction import find_friction_coefficient
 
     return {
@@ -166,6 +224,7 @@ def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dic
         "safety": asked.safety,
         "weight": asked.weight,
         **({} if asked.given_force is None else {"jaw_force": asked.given_force}),
+        **({} if found.program_need is None else {"program_force": make_strap_need_entry(found)}),
     }
 
 
@@ -174,7 +233,13 @@ def tabulate(
 ) -> list[Table | str]:
     """Return sentences and tables on how to set the straps up, and the force that each load needs."""
     from workhold.cli.need_table import tabulate_needs
-    from workhold.supports.words_of_straps import describe_assumptions, list_remarks, list_steps
+    from workhold.supports.words_of_straps import (
+        describe_assumptions,
+        describe_program_need,
+        describe_program_safety,
+        list_remarks,
+        list_steps,
+    )
 
     short = unit.abbreviation
     out: list[Table | str] = [f"Straps over the locators of fixture {rank}", ""]
@@ -197,4 +262,8 @@ def tabulate(
             asked.given_force,
         )
         out += ["", describe_assumptions(asked), needs]
+    if found.program_need is not None and asked.program is not None:
+        out += ["", describe_program_need(found.program_need, asked.program, unit)]
+        out += [words for words in [describe_program_safety(found, asked, unit)] if words]
+        out += [] if found.clamp_needed_each else [describe_assumptions(asked)]
     return out

@@ -6,7 +6,11 @@ from attrs import frozen
 
 from workhold.fixels.carrier import Carrier
 
-__all__ = ["StrapSet"]
+__all__ = ["USUAL_STANDOUT", "StrapSet"]
+
+# How high a strap with its nut and stud stands above the face that it presses on, in radii of its tip: a bar as thick as
+# the tip is wide, a washer, a nut as high as its bolt is thick, and some of the stud.
+USUAL_STANDOUT = 6.0
 
 
 @frozen

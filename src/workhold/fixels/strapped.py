@@ -17,7 +17,7 @@ from workhold.fixels import fields
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle, suggest_half_pitch
 from workhold.fixels.setup_words import PageWords, SetupWords
-from workhold.fixels.strap_set import StrapSet
+from workhold.fixels.strap_set import USUAL_STANDOUT, StrapSet
 from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Toolkit, ToolkitChange, ToolkitWording
 from workhold.units import Unit
@@ -28,9 +28,6 @@ __all__ = ["StrapPlate"]
 ROUNDING = 1e-9
 # A part lies on so many.
 SUPPORTS = 3
-# How high a strap with its nut and stud stands above the face that it presses on, in radii of its tip: a bar as thick as
-# the tip is wide, a washer, a nut as high as its bolt is thick, and some of the stud.
-USUAL_STANDOUT = 6.0
 
 
 @make_class_from_table

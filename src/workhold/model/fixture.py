@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from workhold.bending.figures import Bending
     from workhold.bending.materials import ElasticMaterial
     from workhold.fixels.toolkit import Toolkit
+    from workhold.model.program import Program
     from workhold.model.requirements import Load, Zone
     from workhold.model.result import Result
     from workhold.model.support_request import Faces, SpatialLoad
@@ -717,6 +718,13 @@ class Fixture:
         weight: float = 0.0,
         top_zones: Sequence[Zone] = (),
         jaw_force: float | None = None,
+        strap_height: float | None = None,
+        over: str = "plate",
+        pad_radius: float | None = None,
+        pad_margin: float | None = None,
+        support_height: float | None = None,
+        bottom_zones: Sequence[Zone] = (),
+        program: Program | None = None,
     ) -> StrappedHold:
         """Return the places of straps that hold the part down
         against the three locators with the least force.
@@ -740,6 +748,15 @@ class Fixture:
         top_zones : zones where no tip may stand, as in ``Restrictions``.
         jaw_force : force in N with which each strap presses at its tip, for the number of times that it holds
             the loads; that of the query if None.
+        strap_height : how high a strap stands above the face that it presses on, in mm; six radii of its tip if
+            None.
+        over : "plate" where the part lies on the plate, "supports" where it lies on three supports, each tip
+            over one of them.
+        pad_radius, pad_margin, support_height : of the supports, in mm; those of the toolkit, or else usual ones,
+            if None.
+        bottom_zones : zones where no pad may stand.
+        program : program whose tools must pass the straps and supports, and press on the part where their forces
+            are known; that of the query if None.
 
         Raises
         ------
@@ -758,18 +775,23 @@ class Fixture:
         >>> len(held.straps), round(held.clamp_needed, -1)
         (2, 1500.0)
         """
-        from workhold.supports.straps import ask_for_straps
+        from workhold.supports.straps import PadSizes, ask_for_straps
 
+        if over not in ("plate", "supports"):
+            raise InputError(f'straps cannot press over {over!r}: choose "plate" or "supports".')
         return ask_for_straps(
             self,
             thickness,
-            StrapHardware(count, tip_radius, reach, max_force),
+            StrapHardware(count, tip_radius, reach, max_force, strap_height),
             loads=loads,
             friction=friction,
             safety=safety,
             weight=weight,
             zones=top_zones,
             jaw_force=jaw_force,
+            pads=PadSizes(pad_radius, pad_margin, support_height) if over == "supports" else None,
+            zones_below=bottom_zones,
+            program=program,
         )
 
     def bending(

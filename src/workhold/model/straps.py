@@ -16,7 +16,7 @@ from typing import Any
 from attrs import field, frozen
 
 from workhold.errors import InputError
-from workhold.fixels.strap_set import StrapSet
+from workhold.fixels.strap_set import USUAL_STANDOUT, StrapSet
 from workhold.limits import convert_real, refuse_long
 from workhold.model.first_choice import has_house_order
 from workhold.model.jaw_hold import ProgramJawForce, find_largest_force
@@ -127,6 +127,8 @@ class StrapHardware:
     tip_radius : radius of a strap's round tip.
     reach : the least and the greatest distance of the tip from the middle of the bolt's hole.
     max_force : rated force of a strap in N; None where nobody says.
+    height : how high a strap stands above the face that it presses on, with nut and stud; None for six radii of
+        its tip.
 
     Raises
     ------
@@ -138,6 +140,7 @@ class StrapHardware:
     tip_radius: float = field(default=6.0, converter=convert_real)
     reach: tuple[float, float] = (20.0, 60.0)
     max_force: float | None = None
+    height: float | None = None
 
     def __attrs_post_init__(self) -> None:
         if not 1 <= self.count <= MOST_STRAPS:
@@ -153,13 +156,20 @@ class StrapHardware:
             )
         if self.max_force is not None and not (isfinite(self.max_force) and self.max_force > 0):
             raise InputError(f"straps rated for {self.max_force:g} N cannot be used: give a force above 0.")
+        if self.height is not None and not (isfinite(self.height) and self.height > 0):
+            raise InputError(f"straps {self.height:g} mm high cannot be used: give a length above 0.")
         refuse_long("the reach of a strap", most)
         refuse_long("the tip radius of a strap", self.tip_radius)
 
     @classmethod
     def from_straps(cls, straps: StrapSet) -> StrapHardware:
         """Return the hardware of a plate's straps."""
-        return cls(straps.count, straps.tip_radius, straps.reach, straps.max_force)
+        return cls(straps.count, straps.tip_radius, straps.reach, straps.max_force, straps.standout)
+
+    @property
+    def standout(self) -> float:
+        """How high a strap stands above the face that it presses on, in mm."""
+        return USUAL_STANDOUT * self.tip_radius if self.height is None else self.height
 
 
 @frozen

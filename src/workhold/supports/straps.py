@@ -54,10 +54,13 @@ from workhold.supports.straps_past_tools import are_clear
 
 __all__ = [
     "NO_LOADS",
+    "PadSizes",
     "StrapQuestion",
     "StrapSearch",
     "ask_for_straps",
+    "choose_support_height",
     "find_given_force",
+    "make_pads_request",
     "find_straps",
     "make_question",
     "make_usual_request",
@@ -74,6 +77,22 @@ LOCATORS = 3
 # What stands for the thickness in mm of a part that nothing loads, where nobody says.
 UNKNOWN_HEIGHT = 1.0
 NO_LOADS = "straps are chosen by the force that loads ask for: give one load or more."
+
+
+@frozen
+class PadSizes:
+    """Sizes of supports under straps, in mm; None for those of the toolkit, or else usual ones.
+
+    Parameters
+    ----------
+    radius : of the round pads.
+    margin : smallest distance of a pad from the border of the face that it supports.
+    height : how high the supports carry the part above the plate.
+    """
+
+    radius: float | None = None
+    margin: float | None = None
+    height: float | None = None
 
 
 @frozen
@@ -94,6 +113,9 @@ class StrapQuestion:
         None for none.
     given_force : force in N with which each strap presses at its tip, for the number of times that it holds the
         loads; None where nobody says.
+    support_height : how high the supports carry the part above the plate, in mm; None where nobody says.
+    peg_height : height of the locators in mm, to warn of those that a tool of the program would hit; None where
+        it is known that all are passed.
     """
 
     straps: StrapHardware
@@ -105,6 +127,8 @@ class StrapQuestion:
     is_over_supports: bool = False
     program: Program | None = None
     given_force: float | None = None
+    support_height: float | None = None
+    peg_height: float | None = None
 
     @property
     def below(self) -> str:
@@ -167,6 +191,23 @@ def make_usual_request(
     return evolve(usual, top_zones=tuple(zones))
 
 
+def make_pads_request(
+    query: Query, request: SupportRequest, zones: Sequence[Zone], sizes: PadSizes | None = None
+) -> SupportRequest:
+    """Return a request for the faces of a part with the pads of supports, which keep off zones below.
+
+    ``sizes`` are given sizes of the pads; those of the toolkit, or else usual ones, take the place of what is
+    not given. Raises InputError for pads that do not fit between holes.
+    """
+    given = sizes or PadSizes()
+    pads = SupportRequest.from_workpiece(
+        query.workpiece, request.thickness, pad_radius=given.radius, toolkit=query.toolkit
+    )
+    pads.refuse_fat_pads(query.toolkit)
+    margin = pads.pad_margin if given.margin is None else given.margin
+    return evolve(request, pad_radius=pads.pad_radius, pad_margin=margin, bottom_zones=tuple(zones))
+
+
 def make_question(query: Query) -> StrapQuestion:
     """Return the request for straps that a query makes whose toolkit has straps.
 
@@ -179,9 +220,7 @@ def make_question(query: Query) -> StrapQuestion:
     zones = query.restrictions.zones
     request = make_usual_request(query, height or query.thickness, straps.tip_radius, zones)
     if straps.is_over_supports:
-        pads = SupportRequest.from_workpiece(query.workpiece, request.thickness, toolkit=query.toolkit)
-        pads.refuse_fat_pads(query.toolkit)
-        request = evolve(request, pad_radius=pads.pad_radius, pad_margin=pads.pad_margin, bottom_zones=zones)
+        request = make_pads_request(query, request, zones)
     return StrapQuestion(
         StrapHardware.from_straps(straps),
         request,
@@ -192,6 +231,7 @@ def make_question(query: Query) -> StrapQuestion:
         straps.is_over_supports,
         query.program,
         query.jaw_force,
+        choose_support_height(query),
     )
 
 
@@ -201,6 +241,12 @@ def find_given_force(query: Query) -> float | None:
     Without straps in its toolkit the query's jaw force is that of a clamp, and says nothing of straps.
     """
     return query.jaw_force if query.toolkit.strap_set is not None else None
+
+
+def choose_support_height(query: Query, pads: PadSizes | None = None) -> float | None:
+    """Return how high supports carry the part, in mm: as given, else as the query's toolkit says, else None."""
+    own = (query.toolkit.supports or SupportPads()).height
+    return own if pads is None or pads.height is None else pads.height
 
 
 def find_straps(
@@ -231,6 +277,9 @@ def ask_for_straps(
     weight: float = 0.0,
     zones: Sequence[Zone] = (),
     jaw_force: float | None = None,
+    pads: PadSizes | None = None,
+    zones_below: Sequence[Zone] = (),
+    program: Program | None = None,
 ) -> StrappedHold:
     """Return the straps of a fixture; see :meth:`workhold.model.fixture.Fixture.straps`.
 
@@ -239,7 +288,8 @@ def ask_for_straps(
     """
     query = fixture.listing.result.query
     given = query.loads if loads is None else loads
-    if not given:
+    passed = query.program if program is None else program.keep_forces_on(query.workpiece.outer_loops)
+    if not given and (passed is None or passed.forces is None):
         raise InputError(NO_LOADS)
     spatial = tuple(
         load if isinstance(load, SpatialLoad) else SpatialLoad.from_planar_load(load) for load in given
@@ -253,8 +303,19 @@ def ask_for_straps(
     if jaw_force is not None and not (isfinite(jaw_force) and jaw_force >= 0):
         raise InputError(f"force {jaw_force:g} of each strap cannot be used: give it in N, 0 or more.")
     force = find_given_force(query) if jaw_force is None else jaw_force
+    if pads is not None:
+        request = make_pads_request(query, request, zones_below, pads)
     asked = StrapQuestion(
-        straps, request, spatial, to_coefficients(friction), factor, weight, given_force=force
+        straps,
+        request,
+        spatial,
+        to_coefficients(friction),
+        factor,
+        weight,
+        is_over_supports=pads is not None,
+        program=passed,
+        given_force=force,
+        support_height=choose_support_height(query, pads),
     )
     return find_straps(fixture, query, asked)
 
@@ -307,8 +368,7 @@ class StrapSearch:
         """Places for straps; without those at which a tool of the program would hit the strap."""
         query, asked = self.query, self.asked
         places = find_strap_places(self.fixture, query.workpiece, query.toolkit, asked.request, asked.straps)
-        straps = query.toolkit.strap_set
-        if asked.program is None or straps is None:
+        if asked.program is None:
             return places
         bolts = asked.get_bolt_holes(self.fixture)
         clear = are_clear(
@@ -317,7 +377,7 @@ class StrapSearch:
             places.at,
             np.column_stack(bolts.compute_hole_center(places.hole[:, 0], places.hole[:, 1])).reshape(-1, 2),
             self.measure_heights(places.at),
-            straps,
+            asked.straps,
         )
         return StrapPlaces(places.hole[clear], places.at[clear])
 
@@ -514,7 +574,7 @@ class StrapSearch:
         chosen = found.find_least(cancel)
         if chosen is None:
             return hold
-        raised = (self.query.toolkit.supports or SupportPads()).height or 0.0
+        raised = self.asked.support_height or 0.0
         bolts = found.find_bolts(chosen.strapped)
         assert bolts is not None
         holes = [(int(column), int(row)) for column, row in pads.hole]

@@ -127,11 +127,12 @@ def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int
     apart = np.hypot(*np.moveaxis(at[:, None] - points[None], 2, 0))
     least, most = asked.straps.reach
     within = (apart >= least - GAP_SLACK) & (apart <= most + GAP_SLACK) & tip[:, None]
-    straps = query.toolkit.strap_set
-    if asked.program is not None and straps is not None:
+    if asked.program is not None:
         one, other = np.nonzero(within)
         heights = search.measure_heights(at)[one]
-        within[one, other] = are_clear(asked.program, fixture.pose, at[one], points[other], heights, straps)
+        within[one, other] = are_clear(
+            asked.program, fixture.pose, at[one], points[other], heights, asked.straps
+        )
     out = []
     for number in range(len(at)):
         near = np.flatnonzero(within[number])

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from workhold.contact.swept import SweptSpans, find_swept_below, find_swept_between
 from workhold.conventions import GAP_SLACK
-from workhold.fixels.strap_set import StrapSet
 from workhold.model.pose import Pose
 from workhold.model.program import Program
+from workhold.model.straps import StrapHardware
 
 __all__ = ["are_clear", "keep_clear"]
 
@@ -36,7 +36,7 @@ def find_heels(tip: Array, bolt: Array, tip_radius: float) -> Array:
 
 
 def are_clear(
-    program: Program, pose: Pose, tip: Array, bolt: Array, heights: Array, straps: StrapSet
+    program: Program, pose: Pose, tip: Array, bolt: Array, heights: Array, straps: StrapHardware
 ) -> BoolArray:
     """Return a mask (N,): True for straps that all tools of a program pass without hitting them.
 

@@ -6,6 +6,7 @@ from math import floor, inf
 
 import numpy as np
 
+from workhold.contact.swept import find_swept_below
 from workhold.model.fixture import Fixture
 from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
 from workhold.model.jaw_hold import ProgramJawForce
@@ -14,6 +15,7 @@ from workhold.model.straps import StrappedHold
 from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
 from workhold.supports.straps import StrapQuestion
 from workhold.supports.straps_over_supports import contain_point, find_middle
+from workhold.supports.straps_past_tools import keep_clear
 from workhold.units import Unit
 
 __all__ = [
@@ -53,7 +55,7 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
         ]
         steps.append(f"Bolt the straps in {' and in '.join(where)}, in {unit.abbreviation} of the plate")
         heels = " and ".join(unit.format_length(one) for one in sorted({one.height for one in found.straps}))
-        above = " above the supports" if found.supports and find_support_height(fixture) is None else ""
+        above = " above the supports" if found.supports and asked.support_height is None else ""
         steps.append(
             f"Set the heels {heels} high{above}, as high as the face under each tip, and tighten the straps while the hand "
             "pushes"
@@ -64,8 +66,8 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
         )
     if asked.given_force is not None and found.safety_reached is not None:
         steps.append(
-            f"With {unit.format_force(asked.given_force)} at each tip, {name_acting(found)} may be "
-            f"{format_times(found.safety_reached)} as large as given"
+            f"With {unit.format_force(asked.given_force)} at each tip, {name_acting(found)} may press "
+            f"{format_times(found.safety_reached)} as hard as given"
         )
     return steps
 
@@ -85,15 +87,9 @@ def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion
         return "the part lies on the plate"
     if not found.supports:
         return "the part lies on three supports"
-    plate, height = asked.find_plate(fixture), find_support_height(fixture)
+    plate, height = asked.find_plate(fixture), asked.support_height
     high = "" if height is None else f" {unit.format_length(height)} high"
     return f"the part lies on supports{high} in {', '.join(plate.name_place(*one) for one in found.supports)}"
-
-
-def find_support_height(fixture: Fixture) -> float | None:
-    """Return the height of the supports on a fixture's plate, in mm; None where it is not given."""
-    pads = fixture.listing.result.toolkit.supports
-    return None if pads is None else pads.height
 
 
 def stands_on_supports(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> bool:
@@ -130,13 +126,32 @@ def describe_program_safety(found: StrappedHold, asked: StrapQuestion, unit: Uni
     if found.program_need is None or not found.safety_each or asked.given_force is None:
         return ""
     times = format_times(found.safety_each[-1])
-    return f"With {unit.format_force(asked.given_force)} at each tip its forces may be {times} as large."
+    return f"With {unit.format_force(asked.given_force)} at each tip its tools may press {times} as hard."
 
 
 def find_place(need: ProgramJawForce, program: Program, unit: Unit) -> str:
     """Return a phrase with the line, the tool and the cut at which a program requires the largest force."""
     cut = find_cut_of_move(program, need.move)
     return AskedForce(need.force or 0.0, need.line, need.tool, None, cut).describe_place(unit)
+
+
+def list_hit_locators(fixture: Fixture, asked: StrapQuestion) -> list[str]:
+    """Return the names of the holes whose locators a tool of the program comes too near to; [] where none is, or
+    where it is known that all are passed.
+    """
+    if asked.program is None or asked.peg_height is None:
+        return []
+    plate = asked.find_plate(fixture)
+    pegs = [peg for peg in asked.list_locators(fixture) if peg.carrier == plate.name]
+    at = np.array([(peg.x, peg.y) for peg in pegs], np.float64)
+    points = np.column_stack(fixture.pose.inverse.apply(at[:, 0], at[:, 1]))
+    swept = find_swept_below(asked.program, asked.peg_height)
+    clear = keep_clear(swept, asked.program, points, points, plate.body_radius)
+    return [
+        plate.name_place(peg.column, peg.row)
+        for peg, is_clear in zip(pegs, clear, strict=True)
+        if not is_clear
+    ]
 
 
 def name_acting(found: StrappedHold) -> str:
@@ -169,6 +184,9 @@ def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, u
         out.append(
             "the part does not stand on these supports by itself: hold it down until the straps are tight."
         )
+    hit = list_hit_locators(fixture, asked)
+    if hit:
+        out.append(f"a tool of the program comes too near to {', '.join(hit)}, where a locator stands.")
     if found.push is None:
         out.append("unfit: no push by hand presses the part against all three locators.")
     for number, need in enumerate(found.clamp_needed_each, 1):
