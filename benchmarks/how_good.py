@@ -142,7 +142,7 @@ def significant(value: float) -> float:
 
 def words_of(query: Query) -> str:
     """The kind of a toolkit, with two clamps said."""
-    return CALLED[query.toolkit.kind] + (", two clamps" if query.toolkit.tips > 1 else "")
+    return CALLED[query.toolkit.kind] + (", two clamps" if query.toolkit.tip_count > 1 else "")
 
 
 def by_rule(query: Query, table: FixtureTable) -> Array:

@@ -10,7 +10,7 @@ from workhold import Fixture, Query
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.search_report import UndecidedCandidate
 from workhold.verification.contacts import BallPose
-from workhold.verification.judging import Rank, rank
+from workhold.verification.judging import Rank, make_sort_key
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.undecided import find_undecided_faults
@@ -33,7 +33,7 @@ def known_in(toolkit: Toolkit) -> KnownFixtures:
 
 def place_in_order(fixture: Fixture, toolkit: Toolkit) -> Rank:
     """By what fixtures that are equally good are ordered."""
-    return rank(fixture, rules_in(toolkit))
+    return make_sort_key(fixture, rules_in(toolkit))
 
 
 def faults_of(entries: Sequence[UndecidedCandidate], query: Query) -> list[str]:

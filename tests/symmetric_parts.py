@@ -100,7 +100,7 @@ def as_the_part_sees(fixture: Fixture, kept: complex, query: Query) -> tuple[str
     """
     backwards = exp(-1j * radians(fixture.pose.theta_deg))
     at = complex(fixture.pose.x, fixture.pose.y)
-    stands_for_all = query.toolkit.travels > 1 and query.listing == "best"
+    stands_for_all = query.toolkit.travel_count > 1 and query.listing == "best"
     rows = []
     for peg in fixture.pegs:
         place = (complex(peg.x, peg.y) - at) * backwards - kept

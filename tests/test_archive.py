@@ -33,7 +33,7 @@ def written(path: Path, rows: int, together: int = 300) -> Path:
     with path.open("wb") as stream:
         writer = ArchiveWriter(stream, COLUMNS, rows)
         for start in range(0, rows, together):
-            writer.add([column[start : start + together] for column in columns_of(rows)])
+            writer.append_rows([column[start : start + together] for column in columns_of(rows)])
         writer.close("head.json", TEXT, "mark")
     return path
 
@@ -57,7 +57,7 @@ def test_fewer_rows_than_there_is_room_for(tmp_path: Path, rows: int, room: int)
     """The checksums are those of what is there."""
     with (tmp_path / "a.npz").open("wb") as stream:
         writer = ArchiveWriter(stream, COLUMNS, room)
-        writer.add(columns_of(rows))
+        writer.append_rows(columns_of(rows))
         writer.close("head.json", TEXT, "mark")
     assert zipfile.ZipFile(tmp_path / "a.npz").testzip() is None
     loaded = np.load(tmp_path / "a.npz", allow_pickle=False)

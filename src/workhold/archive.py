@@ -126,12 +126,12 @@ class ArchiveMember:
 
 @define(eq=False)
 class ArchiveWriter:
-    """Write an archive block by block: call :meth:`add` for each block, then :meth:`close` once.
+    """Write an archive block by block: call :meth:`append_rows` for each block, then :meth:`close` once.
 
     Parameters
     ----------
     stream : an empty file opened for writing that can seek.
-    columns : formats of the columns by name, in the order in which :meth:`add` takes them.
+    columns : formats of the columns by name, in the order in which :meth:`append_rows` takes them.
     rows : upper limit of the number of rows that will be added. Space for all of them is reserved in the
         file; unused space stays empty.
     """
@@ -148,16 +148,16 @@ class ArchiveWriter:
             header = column.make_header(self.rows)
             size = len(header) + self.rows * column.row_bytes
             member = ArchiveMember(f"{name}.npy".encode(), start, size, crc32(header))
-            self.put(member.content, header)
+            self.write_bytes_at(member.content, header)
             self.members.append(member)
             start = member.content + size
 
-    def put(self, place: int, content: Any) -> None:
+    def write_bytes_at(self, place: int, content: Any) -> None:
         """Write bytes at a byte position of the file."""
         self.stream.seek(place)
         self.stream.write(content)
 
-    def add(self, block: Sequence[NDArray[Any]]) -> None:
+    def append_rows(self, block: Sequence[NDArray[Any]]) -> None:
         """Append rows.
 
         Parameters
@@ -166,11 +166,13 @@ class ArchiveWriter:
         """
         for member, column, values in zip(self.members, self.columns.values(), block, strict=True):
             content = np.ascontiguousarray(values, column.kind).reshape(-1).view(np.uint8).data
-            self.put(member.content + member.size - (self.rows - self.done) * column.row_bytes, content)
+            self.write_bytes_at(
+                member.content + member.size - (self.rows - self.done) * column.row_bytes, content
+            )
             member.checksum = crc32(content, member.checksum)
         self.done += len(block[0])
 
-    def shorten(self) -> None:
+    def set_row_counts(self) -> None:
         """Set the row count of every column to the number of rows that were added, in the columns' headers
         and in the writer's own state.
 
@@ -179,7 +181,7 @@ class ArchiveWriter:
         for member, column in zip(self.members, self.columns.values(), strict=True):
             said, header = column.make_header(self.rows), column.make_header(self.done)
             size = self.done * column.row_bytes
-            self.put(member.content, header)
+            self.write_bytes_at(member.content, header)
             member.size = len(header) + size
             member.checksum ^= extend_checksum_difference(crc32(said) ^ crc32(header), size)
         self.rows = self.done
@@ -199,11 +201,11 @@ class ArchiveWriter:
         last = self.members[-1]
         member = ArchiveMember(name.encode(), last.content + last.size, len(content), crc32(content))
         if self.done < self.rows:
-            self.shorten()
-        self.put(member.content, content)
+            self.set_row_counts()
+        self.write_bytes_at(member.content, content)
         self.members.append(member)
         for one in self.members:
-            self.put(one.start, one.make_local_header())
+            self.write_bytes_at(one.start, one.make_local_header())
         place, count = member.content + member.size, len(self.members)
         directory = b"".join(one.make_central_header() for one in self.members)
         end = END_64.pack(
@@ -213,7 +215,7 @@ class ArchiveWriter:
         last_words = END.pack(
             b"PK\x05\x06", 0, 0, count, count, len(directory), min(place, IN_EXTRA), len(mark.encode())
         )
-        self.put(place, directory + end + locator + last_words + mark.encode())
+        self.write_bytes_at(place, directory + end + locator + last_words + mark.encode())
 
 
 def extend_checksum_difference(difference: int, size: int) -> int:
@@ -309,7 +311,7 @@ def map_archive(
                 everything = archive.infolist()
             content = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         texts = [info for info in everything if info.filename == name]
-        refuse_unlike({name}, texts, [])
+        refuse_inconsistent_members({name}, texts, [])
         first, end = find_member_span(texts[0], content)
         if end - first > MOST_TEXT:
             raise BadZipFile(f"its {name} is too large")
@@ -318,7 +320,7 @@ def map_archive(
         names = {f"{one}.npy" for one in columns} | {name}
         members = [info for info in everything if info.filename in names]
         spans = {info.filename: find_member_span(info, content) for info in members}
-        refuse_unlike(names, members, list(spans.values()))
+        refuse_inconsistent_members(names, members, list(spans.values()))
         for info in members:
             if (whole or info.filename == name) and compute_checksum(
                 content, *spans[info.filename]
@@ -335,7 +337,9 @@ def map_archive(
     return text, arrays
 
 
-def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]) -> None:
+def refuse_inconsistent_members(
+    names: set[str], members: Sequence[ZipInfo], spans: list[tuple[int, int]]
+) -> None:
     """Raise BadZipFile unless each name stands for exactly one of the members and no two spans overlap.
 
     Parameters

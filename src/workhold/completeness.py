@@ -178,7 +178,7 @@ def find_hold_differences(listing: WrittenListing, result: Result) -> Iterator[s
 
     Two such fixtures are the same when angle, parallels and stop agree.
     """
-    listed, found = count_fixture_keys(listing.fixtures), count_fixture_keys(result)
+    listed, found = index_fixtures_by_key(listing.fixtures), index_fixtures_by_key(result)
     surplus, missing = sorted(listed[key] for key in listed.keys() - found), found.keys() - listed.keys()
     if surplus:
         yield f"a search does not find {format_count(len(surplus))} of it, the first of them fixture {surplus[0] + 1}"
@@ -240,7 +240,7 @@ def make_seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, .
     return round(fixture.pose.theta_deg, 4) % 360, tuple(v for hole in holes for v in hole), *place
 
 
-def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
+def index_fixtures_by_key(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
     """Return the index of each flat-jaw fixture in ``fixtures`` by its key
     (angle in degrees, parallels in mm, stop).
 
@@ -318,14 +318,14 @@ def find_other_entries(written: ProofReport, derived: ProofReport) -> Iterator[s
     less than about ``SAME_ORIENTATION``.
     """
 
-    def key(entry: UndecidedCandidate) -> tuple[Any, ...]:
+    def make_key(entry: UndecidedCandidate) -> tuple[Any, ...]:
         """Return all fields of an entry except the last, with the orientation as a whole number of steps of
         ``SAME_ORIENTATION``.
         """
         *whole, theta, reason, _ = astuple(entry)
         return *whole, round(theta / SAME_ORIENTATION) % round(360 / SAME_ORIENTATION), reason
 
-    one, other = ({key(entry) for entry in proof.undecided} for proof in (written, derived))
+    one, other = ({make_key(entry) for entry in proof.undecided} for proof in (written, derived))
     if one != other:
         yield (
             f"the proof names {len(one - other)} undecided candidates that a search decides, and lacks "

@@ -74,7 +74,7 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     batch = run_in(tmp_path, shop / "p30.json", queue=InlineQueue(), store=store)
     run_in(tmp_path / "folder", shop / "p30.json", queue=InlineQueue())
     name = batch.jobs[0].name
-    assert store.place(name) == f"memory://workhold-test/batch/{name[:2]}/{name}.json"
+    assert store.get_location(name) == f"memory://workhold-test/batch/{name[:2]}/{name}.json"
     assert store.read(name) == records_in(tmp_path / "folder")[f"work/{name[:2]}/{name}.json"]
     with store.open_record(name) as path:
         assert path.read_bytes() == store.read(name)
@@ -83,7 +83,7 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
     reported(batch, tmp_path, tmp_path, sheets=tmp_path, store=store)
     text = (tmp_path / "r.html").read_text()
-    assert store.place(name) in text and text.count("<img") == 1 and "workhold sheet" not in text
+    assert store.get_location(name) in text and text.count("<img") == 1 and "workhold sheet" not in text
     assert len(list(tmp_path.glob("*.pdf"))) == 1
 
 

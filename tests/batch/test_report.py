@@ -75,7 +75,7 @@ def test_what_there_is_no_room_for_is_told(
     assert text.count("<tr>") == 3 and text.count("<img") == 1
     # The line that makes the sheet.
     assert (
-        f"workhold sheet {FolderStore(folder / 'work').place(batch.jobs[0].name)} 1 --part-name p30 -o p30.pdf"
+        f"workhold sheet {FolderStore(folder / 'work').get_location(batch.jobs[0].name)} 1 --part-name p30 -o p30.pdf"
         in text
     )
 

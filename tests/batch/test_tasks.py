@@ -23,7 +23,7 @@ from workhold.batch.store import (
     parse_record,
     read_workpiece_record,
 )
-from workhold.batch.tables import BEST, take_record
+from workhold.batch.tables import BEST, fill_job_row
 from workhold.batch.tasks import DrawingTask, QueryTask, identify_program, make_task_name, run_task
 from workhold.errors import InputError
 from workhold.files.result.writer import write_result_text
@@ -73,7 +73,7 @@ def test_of_very_many_fixtures_the_best_are_sought(
     rows = [dict[str, Any](), dict[str, Any]()]
     nobodys: Any = None
     for row, record in zip(rows, (all_counted, best), strict=True):
-        take_record(row, {}, record, BatchJob(nobodys, COARSE))
+        fill_job_row(row, {}, record, BatchJob(nobodys, COARSE))
     assert rows[0]["fixtures"] == sum(all_counted["found"].values()) and rows[0]["reason"] is None
     assert (rows[1]["fixtures"], rows[1]["distinct"]) == (4_200_000, None)
     assert "about 4,200,000 fixtures" in rows[1]["reason"]
@@ -207,8 +207,8 @@ def test_a_record_cut_short_anywhere_is_none(part: bytes, tmp_path: Path) -> Non
     assert store.read("abcd") is None and not store.has("abcd")
     store.write("abcd", part)
     assert store.has("abcd") and store.read("abcd") == part
-    assert Path(store.place("abcd")) == tmp_path / "ab" / "abcd.json"
+    assert Path(store.get_location("abcd")) == tmp_path / "ab" / "abcd.json"
     for length in range(len(part)):
         assert not is_whole("abcd", part[:length], make_checksum_line("abcd", part))
-    Path(store.place("abcd")).write_bytes(part[:-1])
+    Path(store.get_location("abcd")).write_bytes(part[:-1])
     assert store.read("abcd") is None and not store.has("abcd")

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import workhold
-from workhold.benchmark.catalogue import find_set, write_set_text
+from workhold.benchmark.catalogue import find_set, format_set_text
 from workhold.benchmark.making import make_list
 
 Content = dict[str, Any]
@@ -40,7 +40,7 @@ def set_texts() -> Callable[[str], str]:
         if name not in known:
             made = make_list(find_set(name), threads=1)
             assert made is not None
-            known[name] = write_set_text(*made)
+            known[name] = format_set_text(*made)
         return known[name]
 
     return text

@@ -17,9 +17,9 @@ from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
 from workhold.benchmark.catalogue import (
     compute_sha256,
     find_set,
+    format_holes_line,
+    format_set_text,
     load_manifest,
-    write_holes_line,
-    write_set_text,
 )
 
 Content = Callable[[str], dict[str, Any]]
@@ -53,7 +53,7 @@ def test_a_true_file_holds(
     The last digits are those of a machine's arithmetic; the holes are the same on all machines.
     """
     lines = [line.rstrip(",") for line in set_texts(name).splitlines() if line.startswith('{"type"')]
-    assert compute_sha256("\n".join(map(write_holes_line, lines))) == find_set(name).sums["holes"]
+    assert compute_sha256("\n".join(map(format_holes_line, lines))) == find_set(name).sums["holes"]
     said = checker.check(content(name), set_texts(name), load_manifest(), starts=200)
     assert [one for one in said if one not in OF_LAST_DIGITS] == []
 
@@ -83,7 +83,7 @@ def test_the_checksums_refuse_every_forgery(forgery: str, checker: ModuleType, c
     change(forged)
     lines = [json.dumps(one) for one in forged.get("fixtures", [])]
     head = {key: value for key, value in forged.items() if key != "fixtures"}
-    assert checker.check(forged, write_set_text(head, lines), load_manifest(), starts=0)
+    assert checker.check(forged, format_set_text(head, lines), load_manifest(), starts=0)
 
 
 def test_there_are_fifty_forgeries() -> None:

@@ -59,5 +59,5 @@ def test_what_stands_before_a_place_hides_it() -> None:
     bending = bent_at((30.0, 20.0, 0.0))
     nodes, triangles = bending.surface.nodes, bending.surface.triangles
     below, top = (int(np.linalg.norm(nodes - (30.0, 20.0, z), axis=1).argmin()) for z in (0.0, HIGH))
-    view = BentView.of(bending, 1.0, 30.0, 35.0)
+    view = BentView.from_bending(bending, 1.0, 30.0, 35.0)
     assert view.shows(top, triangles) and not view.shows(below, triangles)

@@ -56,7 +56,7 @@ def results() -> Iterator[Any]:
     flat = {"half_width": 2.0, "distance": 2.0}
     flats = [workhold.Plate(**plate, flat=flat), workhold.Fence(**plate, wall_offset=10, clamps=2, flat=flat)]
     for toolkit in (*clamped, *fences, *flats):
-        result = workhold.design(bar, toolkit, best=3, seating=2 if toolkit.travels > 1 else None)
+        result = workhold.design(bar, toolkit, best=3, seating=2 if toolkit.travel_count > 1 else None)
         assert len(result)
         yield json.loads("".join(write_result_text(result)))
     yield json.loads("".join(write_result_text(fake_result(3, proof=fake_proof(2)))))

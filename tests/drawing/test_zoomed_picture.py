@@ -13,7 +13,7 @@ from svg_reading import NAMESPACE, matrix, to_model
 
 from workhold.drawing.bench import make_bench
 from workhold.model.setup import list_length_settings
-from workhold.presenting.zoomed_picture import draw_small, draw_zoomed
+from workhold.presenting.zoomed_picture import draw_small_picture, draw_zoomable_picture
 
 SIZE = (640.0, 480.0)
 EVERY = pytest.mark.parametrize("held", HELD, ids=lambda held: held.made)
@@ -24,7 +24,7 @@ def picture_of(
     held: Held, size: tuple[float, float] = SIZE, placed: tuple[float, float] = (0, 0)
 ) -> ET.Element:
     bench = evolve(make_bench(held.fixture, held.workpiece, held.toolkit), is_exact=True)
-    return ET.fromstring(draw_zoomed(bench, "part", size, placed))
+    return ET.fromstring(draw_zoomable_picture(bench, "part", size, placed))
 
 
 def of_class(root: ET.Element, name: str) -> list[ET.Element]:
@@ -138,7 +138,7 @@ def test_pegs_are_as_thin_as_they_are() -> None:
 @EVERY
 def test_a_small_picture_has_the_part_and_the_pegs(held: Held) -> None:
     """As they lie, in few bytes."""
-    text = draw_small(held.fixture, held.workpiece, held.toolkit)
+    text = draw_small_picture(held.fixture, held.workpiece, held.toolkit)
     root = ET.fromstring(text)
     assert len(text) < 4_000
     circles = [(float(one.attrib["cx"]), float(one.attrib["cy"])) for one in root.iter(f"{NAMESPACE}circle")]

@@ -20,10 +20,10 @@ from workhold.family.covering import (
     bound_cover_size,
     compute_curve,
     convert_bits_to_sets,
-    cover,
     find_first_cover,
     find_greedy_cover,
     find_maximal_sets,
+    find_smallest_cover,
     list_curve_points,
 )
 from workhold.family.solver import load_solver
@@ -53,7 +53,7 @@ def test_covers_are_the_fewest_and_the_first(seed: int) -> None:
     random = Random(seed)
     sets = random_sets(random, random.randint(3, 11), random.randint(2, 9))
     every = all_covers(sets)
-    found = cover(sets)
+    found = find_smallest_cover(sets)
     assert found.is_least and found.at_least == len(every[0])
     assert found.sets in every
     assert find_first_cover(sets, len(found.sets), found.sets) == every[0]
@@ -64,14 +64,14 @@ def test_greedy_is_not_enough_where_the_largest_set_misleads() -> None:
     # Two halves of six, and a set of four across them that greed takes first.
     sets = np.array([[1, 1, 1, 1, 0, 0], [1, 0, 1, 0, 1, 0], [0, 1, 0, 1, 0, 1]], np.bool_)
     assert find_greedy_cover(sets) == (0, 1, 2)
-    assert cover(sets) == Cover((1, 2), 2)
+    assert find_smallest_cover(sets) == Cover((1, 2), 2)
 
 
 def test_without_time_it_is_told_what_is_known() -> None:
     sets = random_sets(Random(5), 40, 30)
-    found = cover(sets, deadline=0.0)
+    found = find_smallest_cover(sets, deadline=0.0)
     assert sets[list(found.sets)].any(axis=0).all()
-    least = cover(sets)
+    least = find_smallest_cover(sets)
     assert least.is_least
     assert 1 <= found.at_least <= len(least.sets) <= len(found.sets)
     assert find_first_cover(sets, len(found.sets), found.sets, deadline=0.0)
@@ -117,7 +117,7 @@ def test_a_bound_of_the_solver_is_rounded_up(monkeypatch: pytest.MonkeyPatch) ->
     )
     assert find_greedy_cover(sets) == (0, 1, 2, 3)
     monkeypatch.setattr("workhold.family.covering.bound_cover_size", lambda sets: 1)
-    assert cover(sets) == Cover((0, 1, 2, 3), 3)
+    assert find_smallest_cover(sets) == Cover((0, 1, 2, 3), 3)
 
 
 @pytest.mark.thorough
@@ -126,7 +126,7 @@ def test_larger_covers_are_proven_too(seed: int) -> None:
     random = Random(seed)
     sets = np.array([[random.random() < 0.08 for _ in range(60)] for _ in range(120)])
     sets[range(60), range(60)] = True
-    found = cover(sets)
+    found = find_smallest_cover(sets)
     assert found.is_least and len(found.sets) < len(find_greedy_cover(sets))
     assert sets[list(found.sets)].any(axis=0).all()
 

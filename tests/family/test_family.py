@@ -14,9 +14,9 @@ from attrs import evolve
 from family_parts import shop_parts
 from workhold import Fence, Peg, Plate, Query, Restrictions, Vise, Workpiece, answer
 from workhold.errors import InputError
-from workhold.family.family import Family, MemberRequest, make_family, make_peg_entry, write_family_json
+from workhold.family.family import Family, MemberRequest, format_family_json, make_family, make_peg_entry
 from workhold.family.members import RANKINGS, add_half_turns, compute_losses, make_member, make_threshold
-from workhold.family.patterns import list_holes, shift_fixture, turn_fixtures_over
+from workhold.family.patterns import list_holes, rotate_fixtures_by_half_turn, shift_fixture
 from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.ranking import measure_table
@@ -35,7 +35,7 @@ TWENTY = shop_parts(20)
 
 def asked(parts: list[Workpiece], toolkit: Toolkit, **more: object) -> list[MemberRequest]:
     """Parts to be members, ranked by location error first."""
-    ranking = RANKINGS[toolkit.travels]
+    ranking = RANKINGS[toolkit.travel_count]
     return [MemberRequest(part.name, Query(part, toolkit, **{"rank_by": ranking, **more})) for part in parts]  # type: ignore[arg-type]
 
 
@@ -106,7 +106,7 @@ def test_numbers_are_those_of_the_list(twenty: Family) -> None:
         result = answer(one.member.query, threads=1)
         listed = result.table.take(slice(one.number - 1, one.number))
         if one.turned:
-            listed = measured_again(turn_fixtures_over(listed, WIDE), one)
+            listed = measured_again(rotate_fixtures_by_half_turn(listed, WIDE), one)
         assert float(listed.quality[0, LOCATION_ERROR]) == one.figure
         assert sorted(listed.face[0]) == sorted(one.row.face[0])
         assert len(result) == one.member.fixtures
@@ -242,7 +242,7 @@ def test_a_plan_is_made_of_all_fixtures_whatever_a_list_would_show(toolkit: Tool
     """Of two clamps of every pair, too."""
     part = TWENTY[:1]
     every = answer(
-        asked(part, toolkit, **({"listing": "all"} if toolkit.travels > 1 else {}))[0].query, threads=1
+        asked(part, toolkit, **({"listing": "all"} if toolkit.travel_count > 1 else {}))[0].query, threads=1
     )
     member = make_family(asked(part, toolkit, best=1), threads=1).members[0]
     assert member.fixtures == len(every) > 1
@@ -286,8 +286,8 @@ def test_many_fixtures_are_kept_on_the_disk(monkeypatch: pytest.MonkeyPatch) -> 
 
 @pytest.mark.thorough
 def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
-    text = write_family_json(twenty)
-    assert text == write_family_json(make_family(asked(TWENTY, WIDE), threads=2))
+    text = format_family_json(twenty)
+    assert text == format_family_json(make_family(asked(TWENTY, WIDE), threads=2))
     data = json.loads(text)
     assert data["format"] == "workhold-family/1"
     family = data["family"]

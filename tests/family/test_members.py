@@ -141,7 +141,7 @@ def test_both_sides_share_pins() -> None:
     "toolkit", [Plate(pitch=20, peg_radius=3, clamps=2), Vise(pitch=10, columns=2, peg_radius=3)]
 )
 def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
-    ranking = RANKINGS[toolkit.travels]
+    ranking = RANKINGS[toolkit.travel_count]
     # Rectangles of one height: a common corner can lie at one place.
     parts = [
         Workpiece.from_loops(str(w), [[[0, 0, 0], [w, 0, 0], [w, 45.0, 0], [0, 45.0, 0]]])

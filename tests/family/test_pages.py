@@ -27,7 +27,7 @@ DAY = date(2026, 3, 31)
 
 def family_in(toolkit: Vise | Plate, count: int) -> Family:
     """A family of so many parts."""
-    ranking = RANKINGS[toolkit.travels]
+    ranking = RANKINGS[toolkit.travel_count]
     return make_family(
         [MemberRequest(part.name, Query(part, toolkit, rank_by=ranking)) for part in shop_parts(count)],
         threads=1,

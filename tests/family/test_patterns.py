@@ -15,8 +15,8 @@ from workhold.family.patterns import (
     list_holes,
     map_carriers_by_half_turn,
     move_onto_pattern,
+    rotate_fixtures_by_half_turn,
     shift_fixture,
-    turn_fixtures_over,
 )
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import make_fixture_of_row
@@ -43,7 +43,7 @@ HELD: dict[str, tuple[Workpiece, Toolkit]] = {
 def results() -> dict[str, Result]:
     """All fixtures of each part in its toolkit."""
     return {
-        name: answer(Query(part, toolkit, listing="all" if toolkit.travels > 1 else None), threads=1)
+        name: answer(Query(part, toolkit, listing="all" if toolkit.travel_count > 1 else None), threads=1)
         for name, (part, toolkit) in HELD.items()
     }
 
@@ -121,8 +121,8 @@ def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(
     rows = np.flatnonzero(result.table.arrangement == kind)[:40]
     assert len(rows)
     table = result.table.take(rows)
-    after = turn_fixtures_over(table, toolkit)
-    again = turn_fixtures_over(after, toolkit)
+    after = rotate_fixtures_by_half_turn(table, toolkit)
+    again = rotate_fixtures_by_half_turn(after, toolkit)
     assert (
         (again.column == table.column).all()
         and (again.row == table.row).all()

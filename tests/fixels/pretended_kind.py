@@ -13,7 +13,7 @@ from typing import ClassVar
 from workhold.fixels import kinds
 from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
-from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle
+from workhold.fixels.making import complete_and_check, make_class_from_table, make_lattice_carrier
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Toolkit, ToolkitWording
@@ -60,7 +60,7 @@ class Press(Toolkit):
     flat: ClassVar[None] = None
 
     def __attrs_post_init__(self) -> None:
-        settle(self, noun="bed", peg="peg")
+        complete_and_check(self, noun="bed", peg="peg")
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:

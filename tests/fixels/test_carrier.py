@@ -37,7 +37,7 @@ def test_what_stands_on_a_carrier(
 ) -> None:
     """A clamp of which only the line is known has a column or a row, and the end of a wall neither."""
     assert [carrier.contact for carrier in toolkit.carriers] == contacts
-    assert [carrier.counted for carrier in toolkit.carriers] == counted
+    assert [carrier.counted_axes for carrier in toolkit.carriers] == counted
     assert [one.has_lattice for one in toolkit.carriers] == [
         kind in (ROUND_PIN, FLAT_PIN) for kind in contacts
     ]
@@ -71,7 +71,12 @@ def test_how_files_name_what_stands_on_a_carrier() -> None:
 
 def test_how_many_things_move_in_a_fixture() -> None:
     two = Fence(pitch=20, peg_radius=3, wall_offset=8, clamps=2)
-    assert [(one.tips, one.travels) for one in (VISE, PLATE, FENCE, two)] == [(0, 1), (1, 1), (1, 1), (2, 2)]
+    assert [(one.tip_count, one.travel_count) for one in (VISE, PLATE, FENCE, two)] == [
+        (0, 1),
+        (1, 1),
+        (1, 1),
+        (2, 2),
+    ]
     assert [one.closes_at_once for one in (VISE, PLATE, two)] == [True, True, False]
     assert [one.ends_on_walls for one in (VISE, PLATE, two)] == [(), (), (slice(1, 3),)]
 
@@ -89,12 +94,12 @@ def test_what_half_a_turn_makes_of_a_toolkit() -> None:
 def test_where_places_are_measured_from() -> None:
     """From a hole, or from a column and the fence, which then stands for a row and fixes the others."""
     vise, fence = VISE.datum, FENCE.datum
-    assert (vise.start, vise.lines, vise.full) == (
+    assert (vise.origin_words, vise.lines, vise.full) == (
         "hole L-A1",
         ("column A", "row 1"),
         "the left jaw's hole L-A1",
     )
-    assert (fence.start, fence.lines) == ("column A and the fence", ("column A", "the fence"))
+    assert (fence.origin_words, fence.lines) == ("column A and the fence", ("column A", "the fence"))
     assert (vise.fixes_rows, fence.fixes_rows, fence.edge) == (False, True, 8.0)
     assert vise.describe_peg_centres("peg") == "x, y: peg centre, from the centre of hole L-A1."
     assert fence.describe_peg_centres("peg") == "x from column A, y from the fence, to centres."

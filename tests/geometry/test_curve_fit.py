@@ -19,7 +19,7 @@ from workhold.geometry.rational import (
     compute_direction,
     compute_end_curvatures,
     compute_point,
-    cut,
+    cut_between_parameters,
     join_pieces,
     make_bezier_piece,
     sample_points,
@@ -139,10 +139,10 @@ def test_a_cut_curve_is_the_curve_between() -> None:
     """Across a joint, within one piece, and to the very end."""
     pieces = wave(1)
     for first, last in ((0.3, 2.6), (1.2, 1.7), (3.0, 6.0), (5.5, 6.0)):
-        part = cut(pieces, first, last)
+        part = cut_between_parameters(pieces, first, last)
         assert compute_point(part, 0) == pytest.approx(compute_point(pieces, first), abs=1e-12)
         assert compute_point(part, len(part)) == pytest.approx(compute_point(pieces, last), abs=1e-12)
-    middle = cut(pieces, 1.2, 1.7)
+    middle = cut_between_parameters(pieces, 1.2, 1.7)
     assert compute_point(middle, 0.5) == pytest.approx(compute_point(pieces, 1.45), abs=1e-12)
 
 

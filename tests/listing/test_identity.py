@@ -15,7 +15,7 @@ from workhold.geometry.symmetry import find_symmetries, rotate_vectors
 from workhold.listing.identity import (
     FixtureIdentity,
     SetCounter,
-    find_smallest_images,
+    find_smallest_face_images,
     make_entries,
     number_near_duplicates,
     order_by_identity,
@@ -52,7 +52,7 @@ def carried(table: FixtureTable, angle: float) -> FixtureTable:
 def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> None:
     """Whatever rotation a fixture is carried by: the set it makes is the same, and so is the number of sets."""
     toolkit = TOOLKITS[name]
-    query = Query(polygon(corners), toolkit, listing="all" if toolkit.travels > 1 else None)
+    query = Query(polygon(corners), toolkit, listing="all" if toolkit.travel_count > 1 else None)
     result = answer(query)
     table, identity = result.table, FixtureIdentity(toolkit, query.workpiece)
     assert len(identity.rotations) == corners
@@ -192,7 +192,7 @@ def test_the_first_image_is_the_first_of_all(corners: int) -> None:
     keys = np.column_stack([random.integers(0, 2, (300, 2)), random.integers(0, corners, (300, 4))])
     carriers = VISE.find_peg_carriers(keys[:, 0].astype(np.int8))
     keys[:, 2:] = np.take_along_axis(keys[:, 2:], np.lexsort((keys[:, 2:], carriers), axis=-1), axis=1)
-    for key, first in zip(keys.tolist(), find_smallest_images(keys, part, VISE).tolist(), strict=True):
+    for key, first in zip(keys.tolist(), find_smallest_face_images(keys, part, VISE).tolist(), strict=True):
         images = []
         for image in find_symmetries([face.segment for face in part.faces]):
             a, b, c, d = (int(image[face]) for face in key[2:])

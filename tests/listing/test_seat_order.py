@@ -162,7 +162,7 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(
             if Random(number).random() < 0.1:
                 kept.tables, bound = [kept.tables[0].take(slice(0))], groups.bounds.take([number])
                 if groups.sharpened is not None:
-                    bound = groups.select_groups_between(np.array([number])).bounds
+                    bound = groups.select_groups_with_sharper_bounds(np.array([number])).bounds
                 yield np.sort(groups.select_contacts(np.array([number]))[0])
                 table, query = kept.concatenate(), kept.query
                 keys = make_table_keys(table, query, kept.effective)

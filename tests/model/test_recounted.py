@@ -54,7 +54,7 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
         )
         assert peg.place in (None, carrier.name_place(peg.column, peg.row))
         home = toolkit.find_carrier(carrier.stands_on)
-        in_column, in_row = carrier.counted
+        in_column, in_row = carrier.counted_axes
         assert not in_column or 0 <= peg.column < (home.columns or 10**9)
         assert not in_row or 0 <= peg.row < (home.rows or 10**9)
         assert not (in_column and in_row and home.is_blocked(peg.column, peg.row))
@@ -82,7 +82,7 @@ def test_everything_has_a_hole_and_keeps_its_place(name: str) -> None:
             refuse_moved(fixture, toolkit, triple, again)
             count += 1
             moved += again.move != (0, 0) or again.fixture.travel != fixture.travel
-            if toolkit.travels and toolkit.moving.has_lattice and triple.travel is not None:
+            if toolkit.travel_count and toolkit.moving.has_lattice and triple.travel is not None:
                 assert again.fixture.travel == pytest.approx(triple.travel, abs=1e-9)
     assert count > 0
     if name in ("vise", "narrow jaws"):

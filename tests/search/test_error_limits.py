@@ -254,13 +254,13 @@ def test_spots_join_what_fixtures_touch() -> None:
     query = Query(PARTS["bores"], KITS["plate"], tolerance=TOLERANCE, best=5)
     problem = Problem.from_query(query)
     spots = LocatorSpots.from_problem(problem)
-    assert spots.least > 0.0
+    assert spots.least_middle_error > 0.0
     shares = [
         spots.make_error_limit(most).square.joined.mean()
-        for most in (0.5 * spots.least, spots.least, 4.0 * spots.least)
+        for most in (0.5 * spots.least_middle_error, spots.least_middle_error, 4.0 * spots.least_middle_error)
     ]
     assert shares[0] < shares[1] < shares[2]
-    near = spots.make_error_limit(spots.least).square
+    near = spots.make_error_limit(spots.least_middle_error).square
     # Whole circles count as one stretch, which is joined where any of its arcs is.
     rows = problem.rows[slice(*problem.standing)]
     circles = (rows[:, IS_ARC] != 0.0) & (rows[:, HALF_EXTENT] >= np.pi)

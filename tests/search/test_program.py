@@ -38,7 +38,7 @@ Key = tuple[object, ...]
 
 def asked(part: Workpiece, toolkit: Toolkit, program: Program | None, **more: Any) -> Query:
     """A query whose fixtures can be compared one by one."""
-    listing = "all" if toolkit.travels > 1 else None
+    listing = "all" if toolkit.travel_count > 1 else None
     return Query(part, toolkit, listing=listing, program=program, peg_height=PEG_HEIGHT, **more)
 
 

@@ -177,7 +177,7 @@ def test_small_searches_and_whole_lists_begin_anywhere(monkeypatch: pytest.Monke
     monkeypatch.setattr("workhold.search.shares.SQUARE_FIRST", 1e12)
     for asked in (query, Query(part(NOTCHED), CLAMPS)):
         with LatticeShares.open_for_query(asked, 1, None) as shares:
-            assert shares.bound is None and shares.shares == 1
+            assert shares.bound is None and shares.share_count == 1
     result: Result = answer(Query(cad_part(0), VISE, best=20))
     whole = design(cad_part(0), VISE)
     assert result.proof is not None and whole.proof is not None

@@ -167,7 +167,7 @@ def test_a_server_that_keeps_fewer_says_that_alone() -> None:
     result = cut(MOST)
     job = jobs.ServerJob.__new__(jobs.ServerJob)
     job.task, job.fraction, job.revision, job.orders = None, 0.0, 0, {}
-    jobs.JobRegistry.keep(
+    jobs.JobRegistry.keep_outcome(
         jobs.JobRegistry.__new__(jobs.JobRegistry),
         job,
         SearchOutcome(result.slice_rows(slice(10)), MOST - 10),

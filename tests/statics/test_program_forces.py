@@ -51,7 +51,7 @@ def as_loads(program: Program, step: float = 0.05) -> tuple[Load, ...]:
     """The loads that a program stands for, arcs as points near to each other."""
     forces = program.forces
     assert forces is not None
-    moves, out = program.moves.cut_to(forces.stretches), []
+    moves, out = program.moves.cut_into_stretches(forces.stretches), []
     for k, own in enumerate(forces.stretches.move.tolist()):
         count = 2 if moves.bulge[k] == 0.0 else int(moves.length[k] / step) + 2
         share, ones = np.linspace(0, 1, count), np.ones(count)

@@ -56,14 +56,14 @@ def test_sets_fit_where_some_way_to_write_them_out_does(vise: Vise) -> None:
         holes = find_holes_under_face(fixture, vise, TouchableFace.from_loops(part.loops), request)
         room = CarrierRoom.from_fixture(fixture, vise, holes)
         sets = np.array(list(combinations(range(len(holes.row)), 3)), np.int64)
-        fits = room.find_standing(sets).fits
+        fits = room.place_sets(sets).fits
         # Some of both answers: in tight vises few sets fit.
         chosen = list[int]()
         for one in (True, False):
             alike = np.flatnonzero(fits == one).tolist()
             chosen += random.sample(alike, min(len(alike), 150))
         sets = sets[chosen]
-        found, pairs = room.find_standing(sets), room.find_compatible_pairs()
+        found, pairs = room.place_sets(sets), room.find_compatible_pairs()
         pegs = [(int(peg.carrier == "right"), peg.column, peg.row) for peg in fixture.pegs]
         for row, own in enumerate(sets.tolist()):
             pads = [(int(holes.carrier[k]), int(holes.column[k]), int(holes.row[k])) for k in own]

@@ -15,7 +15,7 @@ from workhold.verification.rules.hardware import ToolkitRules
 
 def place(toolkit: Toolkit, carrier: str, column: int, row: int) -> tuple[float, float]:
     """Where a verification puts a hole, in mm."""
-    x, y = ToolkitRules(toolkit).place(Peg(carrier, column, row, 0.0, 0.0, 0, 0.0))
+    x, y = ToolkitRules(toolkit).compute_hole_center(Peg(carrier, column, row, 0.0, 0.0, 0, 0.0))
     return float(x.mid()), float(y.mid())
 
 

@@ -13,7 +13,7 @@ from attrs import evolve
 from symmetric_parts import Symmetric, sets_of, symmetric_parts
 from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.fixels.toolkit import Toolkit
-from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself
+from workhold.geometry.symmetry import compute_centroid_of_segments, find_rotations_onto_itself
 from workhold.verification import verify
 from workhold.verification.repeats import PartRotations
 
@@ -35,9 +35,9 @@ TOOLKITS: dict[str, Toolkit] = {
 CASES = [
     (name, kind, listing)
     for name, (kind, toolkit) in product(PARTS, TOOLKITS.items())
-    for listing in (("best", "all") if toolkit.travels > 1 else (None,))
+    for listing in (("best", "all") if toolkit.travel_count > 1 else (None,))
     # Two clamps about half circles have very many double roots.
-    if not (name == "slot" and toolkit.travels > 1)
+    if not (name == "slot" and toolkit.travel_count > 1)
 ]
 # Every third one here, in which every part and every toolkit is met; all by ``make prove``.
 SOME = [
@@ -114,7 +114,7 @@ def test_rotations_are_those_that_the_part_was_made_with(name: str) -> None:
     turning, rotations = PartRotations.from_workpiece(case.part), find_rotations_onto_itself(faces)
     assert turning.is_certain and turning.order == len(rotations) == case.order
     assert turning.angles == pytest.approx([rotation.angle for rotation in rotations[1:]])
-    for point in (turning.center, find_centroid_of_joints(faces)):
+    for point in (turning.center, compute_centroid_of_segments(faces)):
         assert complex(*point) == pytest.approx(case.kept, abs=1e-9)
 
 

@@ -10,7 +10,7 @@ from running_server import LONG, RunningServer, request
 
 from family_parts import shop_parts
 from workhold import Query, Vise
-from workhold.family.family import MemberRequest, make_family, write_family_json
+from workhold.family.family import MemberRequest, format_family_json, make_family
 from workhold.family.members import RANKINGS
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
@@ -60,7 +60,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     assert answer["figure"] == "location_error" and answer["parts"] == [part.name for part in PARTS]
     assert answer["left_out"] == [{"name": "disc", "reason": "it has no fixture in this vise"}]
     told = json.loads(server.client.get(f"{job}/family/plans.json").text)["family"]
-    assert told["curve"] == json.loads(write_family_json(family))["family"]["curve"]
+    assert told["curve"] == json.loads(format_family_json(family))["family"]["curve"]
 
 
 def test_curve_and_sheets_are_made(server: RunningServer, job: str) -> None:

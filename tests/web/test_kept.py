@@ -193,8 +193,8 @@ def test_how_many_there_are_about_is_said_beside_the_best(jobs: JobRegistry) -> 
     whole = fake_result(5)
     limited = evolve(whole, query=evolve(whole.query, best=5), notes=(BestOnly(5),))
     made = job(jobs, "one", asked=AskedQueries.from_queries((("", whole.query),)))
-    jobs.keep(made, SearchOutcome(limited, 0, (Many(4_240_000, 5),)))
+    jobs.keep_outcome(made, SearchOutcome(limited, 0, (Many(4_240_000, 5),)))
     assert tuple(map(str, made.notes)) == ("There are about 4,200,000 fixtures: these are the best 5.",)
     assert made.result is not None and made.result.query.best == 5 and made.result.notes == (BestOnly(5),)
-    jobs.keep(made, SearchOutcome(evolve(whole, notes=(BestOnly(5),)), 0))
+    jobs.keep_outcome(made, SearchOutcome(evolve(whole, notes=(BestOnly(5),)), 0))
     assert made.notes == (BestOnly(5),) and made.result.query.best is None

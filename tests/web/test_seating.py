@@ -17,7 +17,7 @@ import workhold
 from workhold import Plate, Result, Vise, Workpiece
 from workhold.model.notes import PushedByHand
 from workhold.model.seating import Seating
-from workhold.web.fixture_tasks import ClosingForm, ClosingOrder, close
+from workhold.web.fixture_tasks import ClosingForm, ClosingOrder, simulate_closing
 from workhold.web.worker import TaskContext
 
 CORNERS = [[0, 0, 0], [70, 0, 0], [25, 55, 0]]
@@ -254,10 +254,10 @@ def test_a_closing_that_is_stopped_has_no_answer(result: Result, told: Seating) 
     held = result[1], result.workpiece, result.toolkit
     form = ClosingForm(**put(result, 1.0, 1.0, 0.0), opening=3.0)
     order = TaskContext(lambda _: None, stopped, 1.0)
-    answer = close(ClosingOrder(held, told, form), order)
+    answer = simulate_closing(ClosingOrder(held, told, form), order)
     assert answer is not None and answer["ending"] == "right"
     stopped.set()
-    assert close(ClosingOrder(held, told, form), order) is None
+    assert simulate_closing(ClosingOrder(held, told, form), order) is None
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
         pool.waiting = [PoolTask("x", None, 1.0, client) for client in clients]
         order, running = [], []
         while pool.waiting:
-            if pool.turn() is None:
+            if pool.choose_next_task() is None:
                 pool.release_worker(running.pop(0))
                 continue
             task = await pool.wait_for_task()
@@ -67,10 +67,10 @@ def test_nobody_has_all_workers() -> None:
         pool = WorkerPool("search", 3, 1 << 30, 64)
         pool.waiting = [PoolTask("x", None, 1.0, "greedy") for _ in range(5)]
         mine = [await pool.wait_for_task() for _ in range(2)]
-        assert pool.turn() is None
+        assert pool.choose_next_task() is None
         pool.waiting.append(PoolTask("x", None, 1.0, "other"))
         assert (await pool.wait_for_task()).client == "other"
-        assert pool.turn() is None
+        assert pool.choose_next_task() is None
         pool.release_worker(mine[0])
         assert (await pool.wait_for_task()).client == "greedy"
 

@@ -44,7 +44,7 @@ __all__ = [
     "SlidingPair",
     "are_alike_on_both_jaws",
     "find_level_orientations",
-    "meets",
+    "intersect_carriers",
     "find_sliding_pairs",
     "find_three_and_one_contacts",
     "find_two_and_two_contacts",
@@ -130,7 +130,7 @@ def bound_orientation_error(
     )
 
 
-def meets(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
+def intersect_carriers(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
     """Return the points of the line or circle of feature ``a`` that, moved by ``shift``, are on that of
     feature ``b``.
 
@@ -174,7 +174,7 @@ def bound_steepness(size: float, across: float) -> float:
 def intersect_line_with_circle(
     point: complex, tangent: complex, center: complex, radius: float
 ) -> list[tuple[complex, float]]:
-    """Return the two points where a line meets a circle, in the form of :func:`meets`; an empty list for a
+    """Return the two points where a line meets a circle, in the form of :func:`intersect_carriers`; an empty list for a
     tangent or a miss.
 
     The line goes through ``point`` with the unit direction ``tangent``. (At a tangency the contacts carry no
@@ -206,7 +206,7 @@ def find_two_and_two_contacts(
         for j in np.flatnonzero(near):
             c, d = int(pairs.tail[j]), int(pairs.head[j])
             step = z * compute_pair_step(pairs, int(j), frame)
-            for point, steep in meets(rows[c], rows[d], step):
+            for point, steep in intersect_carriers(rows[c], rows[d], step):
                 line, tail, slope = find_stopping_rows(rows[a], sliding_pair.psi, (point / z).imag, frame)
                 if len(line) == 0:
                     continue
@@ -277,7 +277,7 @@ def find_three_and_one_contacts(
             ) > most:
                 continue
             third = z * complex(column * frame.lattice.pitch_x, row * frame.lattice.pitch_y)
-            for point, slope in meets(rows[a], rows[c], third):
+            for point, slope in intersect_carriers(rows[a], rows[c], third):
                 places = np.array([[point, point + own, point + third]])
                 found.append(
                     SimultaneousContacts(

@@ -145,7 +145,7 @@ class Report:
         """Figures that have columns: heading, column of the table of results, and decimals of each."""
         return (*FIGURES, *(OF_FRICTION if self.by_friction else ()), CLEARANCE)
 
-    def add(self, job: JobRow, sheet: Path | None = None) -> None:
+    def add_job(self, job: JobRow, sheet: Path | None = None) -> None:
         """Add a job's row to the page; ``sheet`` is the setup sheet of its first choice, None where there is
         none.
 
@@ -322,7 +322,7 @@ def write_results(
     by_friction = holds_by_friction(batch.jobs)
     report = Report(folder, store, by_friction)
     for row in write_tables(list_job_rows(batch.jobs, store, measured), folder, by_friction):
-        report.add(row, None if sheets is None else write_first_sheet(row, store, sheets))
+        report.add_job(row, None if sheets is None else write_first_sheet(row, store, sheets))
     report.write(folder / report_name, summary)
     return report
 

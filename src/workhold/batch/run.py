@@ -118,7 +118,7 @@ class BatchPart:
         except InputError as error:
             return cls(request, refusal=str(error))
 
-    def take(self, record: Mapping[str, Any]) -> None:
+    def apply_record(self, record: Mapping[str, Any]) -> None:
         """Take content, faces, size and remarks, or the refusal, from the record of the part's drawing."""
         self.refusal = record["refusal"]
         if not self.refusal:
@@ -224,7 +224,7 @@ class BatchRunner:
     counting: ProgressCounter
     stop: Event
 
-    def do(
+    def run_missing_tasks(
         self, doing: str, items: Sequence[T], seconds: Callable[[T], float], task_of: Callable[[T], Task]
     ) -> tuple[dict[str, Outcome], int]:
         """Run the tasks of those items that have no record, longest first; items with the same name share one
@@ -247,7 +247,7 @@ class BatchRunner:
         self.counting.begin_stage(doing, len(reckoned), sum(reckoned.values()))
         outcomes: dict[str, Outcome] = {}
 
-        def tasks() -> Iterator[Task]:
+        def yield_tasks() -> Iterator[Task]:
             """Yield the tasks, longest first, skipping those that another run has done meanwhile."""
             for name in sorted(reckoned, key=reckoned.__getitem__, reverse=True):
                 if self.store.has(name):
@@ -266,16 +266,16 @@ class BatchRunner:
                     continue
                 yield task
 
-        for outcome in self.queue.run(tasks(), self.stop):
+        for outcome in self.queue.run(yield_tasks(), self.stop):
             if outcome.has_no_room:
                 raise InputError(f"{outcome.failure} {GO_ON}")
             if not outcome.failure:
-                self.keep(outcome)
+                self.keep_outcome(outcome)
             outcomes[outcome.name] = outcome
             self.counting.count_done(reckoned[outcome.name])
         return outcomes, len(by_name) - len(reckoned)
 
-    def keep(self, outcome: Outcome) -> None:
+    def keep_outcome(self, outcome: Outcome) -> None:
         """Keep the duration of a task, and its record unless the worker has kept it already.
 
         Raises InputError where there is no room.
@@ -311,14 +311,14 @@ def run_batch(requests: Iterable[PartRequest], best: int, work: BatchRunner) -> 
     jobs = [job for job in batch.jobs if job.name]
     if not work.stop.is_set():
 
-        def task_of(job: BatchJob) -> Task:
+        def make_task(job: BatchJob) -> Task:
             """Return the task of a job; raise InputError where the record of its part is gone."""
             record = work.store.read(job.part.name)
             if record is None:
                 raise InputError("The record of its part is gone: start the batch again.")
             return job.make_answering(record, best)
 
-        outcomes, batch.kept = work.do("Searching", jobs, lambda job: job.estimate, task_of)
+        outcomes, batch.kept = work.run_missing_tasks("Searching", jobs, lambda job: job.estimate, make_task)
         for job in jobs:
             if job.name in outcomes:
                 job.failure = outcomes[job.name].failure
@@ -331,16 +331,18 @@ def read_parts(batch: BatchState, work: BatchRunner) -> None:
     """Read the parts that have no record yet, and fill in all parts from their records."""
     parts = [part for part in batch.parts if part.name]
 
-    def seconds(part: BatchPart) -> float:
+    def predict_seconds(part: BatchPart) -> float:
         """Return the predicted seconds to read a part."""
         path = part.request.listed.path
         return predict_reading_seconds(path.suffix, path.stat().st_size if path.is_file() else 0)
 
-    outcomes, _ = work.do("Reading", parts, seconds, lambda part: make_reading(part.request))
+    outcomes, _ = work.run_missing_tasks(
+        "Reading", parts, predict_seconds, lambda part: make_reading(part.request)
+    )
     for part in parts:
         record = work.store.read(part.name)
         if record is not None:
-            part.take(parse_record(record))
+            part.apply_record(parse_record(record))
         elif part.name in outcomes:
             part.refusal = outcomes[part.name].failure
 

@@ -161,7 +161,7 @@ class RecordStore(Protocol):
             When it cannot be kept.
         """
 
-    def place(self, name: str) -> str:
+    def get_location(self, name: str) -> str:
         """Return the path or URL at which the record of a task is, or would be."""
 
     def open_record(self, name: str) -> AbstractContextManager[Path]:
@@ -182,7 +182,7 @@ class FolderStore(RecordStore):
 
     folder: Path
 
-    def place(self, name: str) -> str:
+    def get_location(self, name: str) -> str:
         """Return the path of a task's record."""
         return str(self.make_record_path(name))
 
@@ -224,7 +224,7 @@ class UrlStore(RecordStore):
 
     url: str
 
-    def place(self, name: str) -> str:
+    def get_location(self, name: str) -> str:
         """Return the URL of a task's record."""
         return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
 
@@ -232,7 +232,7 @@ class UrlStore(RecordStore):
         """Return the fsspec file system of a task's record, and the record's path there."""
         from fsspec.core import url_to_fs
 
-        system, path = url_to_fs(self.place(name))
+        system, path = url_to_fs(self.get_location(name))
         return system, path
 
     def read(self, name: str) -> bytes | None:
@@ -256,7 +256,9 @@ class UrlStore(RecordStore):
             system.pipe_file(make_checksum_path(path), make_checksum_line(name, record))
             system.pipe_file(path, record)
         except OSError as error:
-            raise InputError(f"{self.place(name)} cannot be written: {error.strerror or error}.") from error
+            raise InputError(
+                f"{self.get_location(name)} cannot be written: {error.strerror or error}."
+            ) from error
 
     @contextmanager
     def open_record(self, name: str) -> Iterator[Path]:

@@ -118,8 +118,8 @@ def list_job_rows(jobs: Sequence[BatchJob], store: RecordStore, measured: TaskDu
         best: list[Row] = []
         record = store.read(job.name) if job.name else None
         if record is not None:
-            best = take_record(row, named, parse_record(record), job)
-            row["record"] = store.place(job.name)
+            best = fill_job_row(row, named, parse_record(record), job)
+            row["record"] = store.get_location(job.name)
             best = [one | {"record": row["record"]} for one in best]
         elif job.refusal:
             row |= {"state": "refused" if part.content else "unreadable", "reason": job.refusal}
@@ -131,7 +131,7 @@ def list_job_rows(jobs: Sequence[BatchJob], store: RecordStore, measured: TaskDu
         yield JobRow(job, row, best)
 
 
-def take_record(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob) -> list[Row]:
+def fill_job_row(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob) -> list[Row]:
     """Fill a job's row from its record, in place, and return the rows of its best fixtures; [] for a refusal.
 
     ``named`` has the cells that every row of the job begins with.

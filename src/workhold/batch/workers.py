@@ -123,14 +123,14 @@ class LocalWorkers:
             yield from self.end_late_workers()
         # What was begun is given up; its worker could not be stopped at once.
         for one in [one for one in self.workers if one.task is not None]:
-            self.drop(one)
+            self.remove_worker(one)
 
     def end_late_workers(self) -> Iterator[Outcome]:
         """End the workers whose tasks have run out of time, and yield the failures of these tasks."""
         for one in [one for one in self.workers if one.task is not None and monotonic() > one.ends_at]:
             task = one.task
             assert task is not None
-            self.drop(one)
+            self.remove_worker(one)
             words = (
                 f"This task was stopped after {one.seconds:,.0f} s, the longest time that it may take: "
                 "allow more seconds, or simplify the part or the question."
@@ -144,7 +144,7 @@ class LocalWorkers:
         """Give waiting tasks to idle workers, and start workers for the rest, up to ``count``."""
         for one in self.workers:
             if waiting and one.is_ready and one.task is None:
-                self.give(one, waiting.popleft())
+                self.give_task(one, waiting.popleft())
         free = sum(one.task is None for one in self.workers)
         for _ in range(min(len(waiting) - free, self.count - len(self.workers))):
             self.workers.append(self.start_worker(self.find_free_title()))
@@ -167,7 +167,7 @@ class LocalWorkers:
         theirs.close()
         return Worker(title, process, ours)
 
-    def give(self, one: Worker, task: Task) -> None:
+    def give_task(self, one: Worker, task: Task) -> None:
         """Send a task to an idle worker and start its clock.
 
         That a worker is dead is noticed later, in :meth:`wait_for_workers`.
@@ -193,7 +193,7 @@ class LocalWorkers:
             kind, _, value = one.connection.recv()
         except Exception:
             # The end of the pipe, or half a message of a worker that was ended.
-            self.drop(one)
+            self.remove_worker(one)
             if not one.is_ready:
                 self.refuse_failed_starts(one)
             return None
@@ -208,7 +208,7 @@ class LocalWorkers:
         outcome: Outcome = value
         return evolve(outcome, worker=one.title)
 
-    def drop(self, one: Worker) -> None:
+    def remove_worker(self, one: Worker) -> None:
         """End a worker and remove it."""
         self.workers.remove(one)
         one.end()

@@ -206,7 +206,7 @@ def make_set_head(name: str, result: Result) -> dict[str, Any]:
     }
 
 
-def write_set_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
+def format_set_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
     """Return the text of a set's file from its head and lines."""
     entries = "".join(f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
     return "{" + entries + '"fixtures": [\n' + ",\n".join(lines) + "\n]}\n"
@@ -216,17 +216,17 @@ def compute_checksums(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str
     """Return the checksums of a set, SHA-256 in hexadecimal, under the keys "file", "fixtures" and "holes".
 
     "file" is of the whole text and "fixtures" of the lines joined by line ends. "holes" is of the whole
-    numbers in the lines only (:func:`write_holes_line`); it is the same on machines whose arithmetic rounds
+    numbers in the lines only (:func:`format_holes_line`); it is the same on machines whose arithmetic rounds
     otherwise.
     """
     return {
-        "file": compute_sha256(write_set_text(head, lines)),
+        "file": compute_sha256(format_set_text(head, lines)),
         "fixtures": compute_sha256("\n".join(lines)),
-        "holes": compute_sha256("\n".join(map(write_holes_line, lines))),
+        "holes": compute_sha256("\n".join(map(format_holes_line, lines))),
     }
 
 
-def write_holes_line(line: str) -> str:
+def format_holes_line(line: str) -> str:
     """Return a fixture's line reduced to type, directions, and column, row and face of each peg, as JSON
     text.
     """

@@ -17,10 +17,10 @@ from workhold.benchmark.catalogue import (
     SetEntry,
     compute_checksums,
     find_set,
+    format_set_text,
     make_set_query,
     make_set_text,
     read_benchmark_file,
-    write_set_text,
 )
 from workhold.benchmark.matching import (
     Comparison,
@@ -121,7 +121,7 @@ def make_and_write_sets(
         if large:
             write_parquet(path, head, lines)
         else:
-            write_bytes(path, write_set_text(head, lines).encode("utf-8"))
+            write_bytes(path, format_set_text(head, lines).encode("utf-8"))
         fixtures, done = fixtures + len(lines), done + entry.size + 200
         if progress is not None:
             progress(done / total, fixtures)

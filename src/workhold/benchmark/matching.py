@@ -32,7 +32,11 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.tables import SAVED, CsvRow, read_table
 from workhold.files.text import parse_json, read_text
-from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself, rotate_vectors
+from workhold.geometry.symmetry import (
+    compute_centroid_of_segments,
+    find_rotations_onto_itself,
+    rotate_vectors,
+)
 from workhold.limits import read_number, refuse_long
 from workhold.model.workpiece import Workpiece
 
@@ -252,7 +256,7 @@ class ListedPlaces:
         """
         every = self.part.numbered
         faces = [face.segment for face in every.faces]
-        kept = find_centroid_of_joints(faces)
+        kept = compute_centroid_of_segments(faces)
         out = []
         for rotation in find_rotations_onto_itself(faces, every.marks):
             x, y = rotate_vectors(place[:, 0] - kept[0], place[:, 1] - kept[1], rotation.angle)

@@ -292,7 +292,7 @@ def find_bendings(
     for one, give in zip(held, gives, strict=True):
         if cancel.is_set():
             break
-        found.append(describe(one, give, second, third, loads, places, is_cut, query, asked))
+        found.append(make_bending(one, give, second, third, loads, places, is_cut, query, asked))
         tell(SOLVED + (1 - SOLVED) * len(found) / len(held), len(found))
     return found
 
@@ -301,7 +301,7 @@ def tell_nobody(fraction: float, count: int) -> None:
     """Do nothing: the progress callback used where none is given."""
 
 
-def describe(
+def make_bending(
     one: HeldFixture,
     give: WorstGive | None,
     second: SolvedLoads,
@@ -318,7 +318,7 @@ def describe(
     """
     surface = third.body.surface
     pressed = find_pressed(surface.nodes, one.hold.pressed)
-    moved = third.clamp(one)
+    moved = third.solve_clamping(one)
     most = find_most_moved(one, moved, pressed, is_cut, second, third)
     given = None
     if give is not None and loads is not None:
@@ -503,7 +503,7 @@ class SolvedLoads:
         numbers, factors = self.gather(numbers, factors)
         return one.hold.find_motion([self.read(level, numbers) @ factors for level in one.reads], gives)
 
-    def clamp(self, one: HeldFixture) -> Array:
+    def solve_clamping(self, one: HeldFixture) -> Array:
         """Return the movement (N, 3) in mm of the surface's nodes by a fixture's clamps, the part laid
         against its locators.
         """

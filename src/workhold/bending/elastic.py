@@ -70,12 +70,12 @@ def make_rigid_motions(points: Array) -> Array:
 # Sums over all unknowns, without the library of NumPy that spreads small work over threads and waits for them.
 
 
-def weigh(columns: Array, values: Array) -> Array:
+def project_on_columns(columns: Array, values: Array) -> Array:
     """Return the transpose of ``columns`` (n, 6) times ``values`` (n,): an array (6,)."""
     return np.asarray(np.einsum("nk,n->k", columns, values))
 
 
-def combine(columns: Array, factors: Array) -> Array:
+def combine_columns(columns: Array, factors: Array) -> Array:
     """Return ``columns`` (n, 6) times ``factors`` (6,): an array (n,)."""
     return np.asarray(np.einsum("nk,k->n", columns, factors))
 
@@ -199,10 +199,12 @@ class ElasticBody:
             full = np.zeros((int(self.scalar.ndof), 3))
             full[used] = work
             flat = full.reshape(-1)
-            load.FV().NumPy()[:] = flat - combine(weighted, turning @ weigh(motions, flat))
+            load.FV().NumPy()[:] = flat - combine_columns(
+                weighted, turning @ project_on_columns(motions, flat)
+            )
             answer.data = solver * load
             moved = answer.FV().NumPy()
-            moved = moved - combine(motions, turning @ weigh(weighted, moved))
+            moved = moved - combine_columns(motions, turning @ project_on_columns(weighted, moved))
             out[place] = moved.reshape(-1, 3)[used]
         return out
 

@@ -71,7 +71,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
         size = min(
             (shape.mass / (SHARE * TETRAHEDRA)) ** (1 / 3), OF_LEAST_EXTENT * float((high - low).min())
         )
-        mesh = fill(shape, size)
+        mesh = mesh_shape(shape, size)
     except list_mesher_errors() as error:
         raise InputError(
             "the part cannot be meshed, so it is not known how far it bends: repair its solid in the CAD program."
@@ -86,7 +86,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
     return curve_mesh(mesh)
 
 
-def fill(shape: Any, size: float) -> Any:
+def mesh_shape(shape: Any, size: float) -> Any:
     """Return a library mesh of a shape, with tetrahedra of at most ``size`` mm.
 
     It has few tetrahedra, or more where the shape cannot be meshed with few. Raises one of the errors of

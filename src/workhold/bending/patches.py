@@ -116,14 +116,14 @@ def make_strip(point: tuple[float, float], normal: tuple[float, float], low: flo
     along = (-normal[1], normal[0])
     heights = compute_interval_middles(low, high, max(ACROSS, ceil((high - low) / ALONG)))
 
-    def at(offsets: Array) -> Array:
+    def shift_along(offsets: Array) -> Array:
         off, z = (one.ravel() for one in np.meshgrid(offsets, heights, indexing="ij"))
         return np.column_stack([point[0] + off * along[0], point[1] + off * along[1], z])
 
     half = PEG_WIDTH / 2
     return LoadPatch(
-        at(compute_interval_middles(-half, half, ACROSS)),
-        at(np.array([-half - BESIDE, half + BESIDE])),
+        shift_along(compute_interval_middles(-half, half, ACROSS)),
+        shift_along(np.array([-half - BESIDE, half + BESIDE])),
         np.array([*normal, 0.0]),
     )
 

@@ -30,7 +30,7 @@ from workhold.cli.show_command import describe_program_clearances
 from workhold.errors import InputError
 from workhold.files.declared_forms import collect_given_values
 from workhold.files.input_forms import LoadTable
-from workhold.files.loads_file import load_from_words
+from workhold.files.loads_file import parse_load
 from workhold.files.part.load import LoadedPart, read_workpiece, refuse_unsure_numbers
 from workhold.files.result.save import save
 from workhold.files.toolkit_file import load_toolkit
@@ -217,7 +217,7 @@ def make_asked_toolkit(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, T
 def make_loads(tables: list[LoadTable]) -> tuple[Load, ...]:
     """Return loads made of tables as an agent gives them, in order; lengths in mm."""
     given = (table.model_dump(exclude_unset=True) for table in tables)
-    return tuple(load_from_words(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
+    return tuple(parse_load(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
 
 
 def show(asked: ShowArguments, folder: Path, cancel: Event) -> ToolAnswer:

@@ -122,7 +122,7 @@ class WorkerOptions:
         "themselves.",
     )
 
-    def place(self) -> WorkerSetting:
+    def read_setting(self) -> WorkerSetting:
         """Return the place of the work: processes of this machine, or a cluster.
 
         Raises InputError for more than one place, and for a cluster without Dask installed.
@@ -266,7 +266,11 @@ def parse(
     """
     if not written.out:
         raise InputError("the folder for the results is not given: name one with --out.")
-    kept, place, folder = read_optional_count("--best", written.best) or 1, work.place(), Path(written.out)
+    kept, place, folder = (
+        read_optional_count("--best", written.best) or 1,
+        work.read_setting(),
+        Path(written.out),
+    )
     from workhold.batch.tables import list_table_names
 
     names = (*list_table_names(), REPORT)

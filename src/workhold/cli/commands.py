@@ -25,7 +25,7 @@ __all__ = [
     "PlainCommand",
     "PlainGroup",
     "make_flag",
-    "forget",
+    "redirect_to_null",
     "make_option",
     "print_remark",
     "spread_option_groups",
@@ -46,10 +46,10 @@ def print_remark(message: str) -> None:
     except OSError as error:
         if error.errno not in NO_ROOM:
             raise
-        forget(sys.stderr)
+        redirect_to_null(sys.stderr)
 
 
-def forget(stream: TextIO) -> None:
+def redirect_to_null(stream: TextIO) -> None:
     """Redirect a stream to the null device because its reader is gone or the disk is full.
 
     Otherwise the interpreter would complain when it flushes the stream at exit.

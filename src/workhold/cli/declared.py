@@ -259,10 +259,10 @@ def read_words(rows: Iterable[Declaration], typed: Any, unit: Unit) -> dict[str,
     InputError
         For words that cannot be read.
     """
-    return {row.name: read(row, getattr(typed, row.argument), unit) for row in rows}
+    return {row.name: read_declared_value(row, getattr(typed, row.argument), unit) for row in rows}
 
 
-def read(row: Declaration, words: Any, unit: Unit) -> Any:
+def read_declared_value(row: Declaration, words: Any, unit: Unit) -> Any:
     """Return the value of one declared field from what was typed for it; its default where nothing was."""
     if not words and words != "":
         return row.default

@@ -95,7 +95,7 @@ def end_on_signals() -> None:
     if sys.platform != "win32":
         os.set_blocking(writer, False)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-    signal.signal(signal.SIGINT, interrupt)
+    signal.signal(signal.SIGINT, raise_interrupted)
     signal.signal(signal.SIGTERM, terminate)
     sys.unraisablehook = end_where_it_is_lost
     atexit.register(keep_the_code)
@@ -109,7 +109,7 @@ def watch(reader: int) -> None:
             ending.note(numbers[0])
 
 
-def interrupt(number: int, frame: FrameType | None) -> None:
+def raise_interrupted(number: int, frame: FrameType | None) -> None:
     """Raise :class:`Interrupted`; the handler of Ctrl-C."""
     ending.heard = True
     raise Interrupted

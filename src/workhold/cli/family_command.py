@@ -264,9 +264,9 @@ def report(asked: FamilyTask, answer: FamilyAnswer) -> None:
     if asked.written.json_:
         from json import loads
 
-        from workhold.family.family import write_family_json
+        from workhold.family.family import format_family_json
 
-        print_json(**loads(write_family_json(answer.found)), written=written)
+        print_json(**loads(format_family_json(answer.found)), written=written)
         return
     print_family(answer, asked.unit)
     if written:
@@ -279,9 +279,9 @@ def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
 
     found, plan, names, contents = answer.found, answer.plan, asked.written, dict[str, bytes]()
     if names.out is not None:
-        from workhold.family.family import write_family_json
+        from workhold.family.family import format_family_json
 
-        contents[names.out] = write_family_json(found).encode("utf-8")
+        contents[names.out] = format_family_json(found).encode("utf-8")
     if names.draw is not None and found.members:
         from workhold.drawing.render import render
         from workhold.family.pages import draw_curve

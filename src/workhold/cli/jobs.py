@@ -275,7 +275,7 @@ def make_family_queries(
     from workhold.model.setup import choose_part_zero
     from workhold.model.solid import flip_up_axis
 
-    usual = RANKINGS[toolkit.travels]
+    usual = RANKINGS[toolkit.travel_count]
     members, left_out = [], []
     for job in jobs:
         options = {

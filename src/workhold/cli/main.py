@@ -18,7 +18,7 @@ import typer
 from typer.main import get_command
 
 from workhold import __version__
-from workhold.cli.commands import PlainCommand, PlainGroup, forget, print_remark
+from workhold.cli.commands import PlainCommand, PlainGroup, print_remark, redirect_to_null
 from workhold.cli.ending import INTERRUPTED, end_on_signals, leave, say_interrupted
 from workhold.errors import NO_ROOM, InputError, lacks_memory
 from workhold.limits import refuse_little_space
@@ -134,7 +134,7 @@ def handle_exits() -> Iterator[None]:
         say_interrupted()
         raise typer.Exit(INTERRUPTED) from error
     except BrokenPipeError as error:
-        forget(sys.stdout)
+        redirect_to_null(sys.stdout)
         raise typer.Exit(NO_READER) from error
 
 
@@ -244,43 +244,43 @@ def exit_code(command: Callable[[], Any]) -> int:
     try:
         return int(command() or DONE)
     except InputError as error:
-        say(f"error: {error}")
+        print_message(f"error: {error}")
         return BAD_INPUT
     except UsageError as error:
-        return complain(error)
+        return print_usage_error(error)
     except (KeyboardInterrupt, typer.Abort):
         say_interrupted()
         return INTERRUPTED
     except BrokenPipeError:
-        forget(sys.stdout)
+        redirect_to_null(sys.stdout)
         return NO_READER
     except Exception as error:
         if lacks_memory(error):
-            say(
+            print_message(
                 "error: this needs more memory than there is: close other programs, use fewer threads, or "
                 "raise the limit."
             )
             return BAD_INPUT
         if isinstance(error, OSError) and error.errno in NO_ROOM:
-            forget(sys.stdout)
-            say(f"error: the output cannot be written: {error.strerror}.")
+            redirect_to_null(sys.stdout)
+            print_message(f"error: the output cannot be written: {error.strerror}.")
             return BAD_INPUT
         report_fault(error)
         return FAULT
 
 
-def complain(error: Exception) -> int:
+def print_usage_error(error: Exception) -> int:
     """Print what is wrong with the command line and how to get help; return BAD_INPUT."""
     message = str(getattr(error, "message", "") or error)
     with suppress(Exception):
         message = error.format_message()  # type: ignore[attr-defined]
     context = getattr(error, "ctx", None)
     command = getattr(context, "command_path", "workhold")
-    say(f"error: {message.rstrip('.')}; see {command} --help.")
+    print_message(f"error: {message.rstrip('.')}; see {command} --help.")
     return BAD_INPUT
 
 
-def say(message: str) -> None:
+def print_message(message: str) -> None:
     """Print a message on stderr as one remark, line breaks replaced by spaces."""
     print_remark(" ".join(message.split()))
 
@@ -307,7 +307,7 @@ def report_fault(error: Exception) -> None:
             place = f"in {file.name}"
         except OSError:
             place = "shown with WORKHOLD_TRACEBACK=1"
-    say(
+    print_message(
         f"fault: workhold has a mistake, which is not yours ({what}); please report it with the "
         f"traceback {place}."
     )

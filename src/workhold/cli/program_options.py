@@ -162,7 +162,7 @@ class ProgramOptions:
             )
         zero = read_program_zero_on_part(workpiece, self.zero, unit)
         heights = {"thickness": None if solid is not None else thick, "peg_height": high or thick}
-        return {"program": read_once(self, unit, thick, zero), **heights}
+        return {"program": read_program_once(self, unit, thick, zero), **heights}
 
     def read_heights(self, unit: Unit, peg_height: str | None) -> dict[str, float | None]:
         """Return "thickness" of a part from a drawing, and "peg_height", in mm; None for those not given.
@@ -249,7 +249,7 @@ def make_reader_arguments(
 
 
 @cache
-def read_once(
+def read_program_once(
     words: ProgramOptions, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> Program:
     """Return the program, read from its file and cached, after printing remarks.

@@ -32,13 +32,13 @@ def show_search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], 
     """
     with show_progress("Searching", "found") as show:
 
-        def progress(fraction: float, found: int) -> None:
+        def report_progress(fraction: float, found: int) -> None:
             """Show progress, and note that there are findings to keep."""
             if found and keeps:
                 keep_what_is_found()
             show(fraction, found)
 
-        yield progress
+        yield report_progress
 
 
 @contextmanager

@@ -62,7 +62,7 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
     ((0.0, 0.0), (40.0, 0.0), (40.0, 20.0))
     """
     place = f'--load "{text}"'
-    from workhold.files.loads_file import load_from_words
+    from workhold.files.loads_file import parse_load
 
     try:
         words = shlex.split(text)
@@ -79,7 +79,7 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
         if key in values:
             raise InputError(f"{place} has {key} twice: give it once, and another --load for another load.")
         values[key] = value
-    return load_from_words(values, place, unit_scale)
+    return parse_load(values, place, unit_scale)
 
 
 LOAD = make_option(LOADS, "LOAD", LOAD_HELP)

@@ -221,7 +221,7 @@ def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.opening_words
     named = "" if setting.tip is None else f"a {setting.name} of "
     more, less = ("more", "less") if gauge.grows else ("less", "more")
-    if seating.is_untold:
+    if seating.is_capture_unknown:
         words = [
             "It is not known how far you may open: put the part in its place, hold it there and "
             f"{ways.close}."
@@ -239,7 +239,7 @@ def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
         f"When the part is in its place, the {setting.name} is {unit.format_length(setting.length)}. While "
         f"it is {more}, the part is stuck short of its place."
     )
-    if seating.drop_room is not None and not seating.is_untold:
+    if seating.drop_room is not None and not seating.is_capture_unknown:
         words.append(
             f"{ways.done} this far, there is about {unit.format_length(seating.drop_room)} of room at every "
             "peg at once."

@@ -388,7 +388,9 @@ def describe_program_clearances(
         return []
     near, need = find_nearest_passing(result, rank - 1), find_cutting_need(result, rank - 1, jaw_force, jaw)
     forces = (
-        [] if need is None else need.list_sentences(result.toolkit.moving.noun, unit, result.toolkit.travels)
+        []
+        if need is None
+        else need.list_sentences(result.toolkit.moving.noun, unit, result.toolkit.travel_count)
     )
     if near is None:
         return [

@@ -104,7 +104,7 @@ class Table:
             if kept < len(headings):
                 left_out = f"No room for: {', '.join(headings[kept:])}. {MORE}"
 
-        def lines_of(cells: list[list[str]], low: bool) -> list[str]:
+        def make_lines(cells: list[list[str]], low: bool) -> list[str]:
             """Return the lines of one row; shorter cells are padded above if ``low``, else below."""
             high = max(map(len, cells[:kept]))
             filled = [
@@ -124,12 +124,14 @@ class Table:
         lines = ["─" * sum_widths(widths[:kept], gap)]
         red: set[int] = set()
         for number, row in enumerate(rows):
-            written = lines_of(row, low=False)
+            written = make_lines(row, low=False)
             if number in self.red:
                 red.update(range(len(lines), len(lines) + len(written)))
             lines += written
         return FittedTable(
-            lines_of(tops, low=True), lines + wrap(left_out, max(width or 0, 1), break_long_words=False), red
+            make_lines(tops, low=True),
+            lines + wrap(left_out, max(width or 0, 1), break_long_words=False),
+            red,
         )
 
 

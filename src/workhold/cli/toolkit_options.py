@@ -226,7 +226,7 @@ PLURALS = {
 }
 
 
-def list_options() -> dict[str, Any]:
+def make_list_options() -> dict[str, Any]:
     """Return the attrs attributes of :class:`ToolkitListOptions` by name, in the order of the help."""
     words: Any = str | None
     made = {}
@@ -239,7 +239,7 @@ def list_options() -> dict[str, Any]:
     return made
 
 
-@frozen(these=list_options())
+@frozen(these=make_list_options())
 class ToolkitListOptions:
     """Lists of figures of toolkits, as typed; None for those not given."""
 
@@ -350,7 +350,7 @@ def list_toolkits_to_try(
     given = varied.list_given_fields()
     lists = [
         [
-            (make_entry_name(row, word), {row.name: read(row, word, unit)})
+            (make_entry_name(row, word), {row.name: parse_list_entry(row, word, unit)})
             for word in split_words(row.option, text)
         ]
         for row, text in given
@@ -435,7 +435,7 @@ def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[Toolkit
         )
 
 
-def read(row: ToolkitField, word: str, unit: Unit) -> Any:
+def parse_list_entry(row: ToolkitField, word: str, unit: Unit) -> Any:
     """Return the value of one entry of a field's list, lengths in mm."""
     if row.form == PITCH.form:
         return read_pitch(row.option, word, unit)

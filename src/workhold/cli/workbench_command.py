@@ -193,7 +193,7 @@ def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[i
             "the outline of this part has no faces of its solid: choose another axis or peg height."
         )
 
-    def under(named: Mapping[str, int]) -> set[int]:
+    def list_segments_under(named: Mapping[str, int]) -> set[int]:
         """Return the numbers of the outline's faces that lie under the named faces of the solid."""
         numbers = set[int]()
         for name, place in named.items():
@@ -203,9 +203,9 @@ def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[i
             numbers.update(face.number for face in numbered.faces if not segments.isdisjoint(face.segments))
         return numbers
 
-    avoid = under(order.avoid)
+    avoid = list_segments_under(order.avoid)
     if order.only:
-        avoid |= {face.number for face in numbered.faces} - under(order.only)
+        avoid |= {face.number for face in numbered.faces} - list_segments_under(order.only)
     return sorted(avoid)
 
 

@@ -152,7 +152,7 @@ def make_curve_table(
     """
     centers = number_centers(rows) if centers is None else centers
 
-    def curves_from(tail: int) -> tuple[NDArray[Any], ...]:
+    def make_curves_from(tail: int) -> tuple[NDArray[Any], ...]:
         """Return five arrays for the tails on one feature: integers and reals of curves, integers and reals
         of sliding pairs, and stretches."""
         few = steps if cancel is None or not cancel.is_set() else steps.without_steps
@@ -173,9 +173,9 @@ def make_curve_table(
                 space.stretches[:stretch_count].copy(),
             )
 
-        return CURVE_CAPACITY.give(write)
+        return CURVE_CAPACITY.call_with_room(write)
 
-    parts = map_in_threads(curves_from, range(len(rows)) if tails is None else tails, threads)
+    parts = map_in_threads(make_curves_from, range(len(rows)) if tails is None else tails, threads)
     before = 0
     for integers, _, _, _, stretches in parts:
         integers[:, [FIRST_STRETCH, END_STRETCH]] += before
@@ -201,7 +201,7 @@ def map_in_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: 
     made: list[Any] = [None] * len(numbers)
     turns, errors = iter(range(len(numbers))), list[BaseException]()
 
-    def work() -> None:
+    def map_numbers() -> None:
         """Take numbers until none is left or an error occurred; store results and the error."""
         try:
             for turn in turns:
@@ -213,14 +213,14 @@ def map_in_threads(make: Callable[[int], Any], numbers: Sequence[int], threads: 
 
     others = []
     for _ in range(threads - 1):
-        other = Thread(target=work)
+        other = Thread(target=map_numbers)
         try:
             other.start()
         except RuntimeError:
             # There is no room for another thread.
             break
         others.append(other)
-    work()
+    map_numbers()
     for other in others:
         other.join()
     if errors:

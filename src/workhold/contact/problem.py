@@ -54,7 +54,7 @@ class SearchFrame:
     Requirements of other toolkits. Both carriers need one pitch only where both hold two pegs: Type I asks
     for heights that differ by whole row pitches (``kernels.base.tables.Lattice``). Chords are made of the
     steps of one lattice alone: a carrier of another pitch needs lattice steps and curves of its own
-    (``search.toolkit_search``, ``CurveTable.joined``), and ``record.take_pegs`` its pitch. A single moving
+    (``search.toolkit_search``, ``CurveTable.joined``), and ``record.read_record`` its pitch. A single moving
     peg, such as a clamp on a line of holes of the locators' own plate, needs the pitch of its rows and their
     offset only.
 

@@ -111,10 +111,10 @@ class SweptSpans:
     @classmethod
     def from_program(cls, program: Program, height: float) -> SweptSpans:
         """Return the spans of what a program sweeps at heights up to ``height`` in mm."""
-        return cls.within(program, -inf, height)
+        return cls.from_height_range(program, -inf, height)
 
     @classmethod
-    def within(cls, program: Program, low: float, high: float) -> SweptSpans:
+    def from_height_range(cls, program: Program, low: float, high: float) -> SweptSpans:
         """Return the spans of what a program sweeps between the heights ``low`` and ``high`` in mm."""
         if program.find_boxed_moves().any():
             return cls.from_pieces(program.iterate_swept_pieces(low, high))
@@ -417,9 +417,9 @@ def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[SweptSpans, floa
 
     Return None without a program.
     """
-    if query.passed is None:
+    if query.program_to_clear is None:
         return None
-    program, height = query.passed
+    program, height = query.program_to_clear
     return find_swept_beside_carrier(program, height, carrier), program.clearance
 
 
@@ -437,4 +437,4 @@ def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carr
 @lru_cache(maxsize=16)
 def find_swept_between(program: Program, low: float, high: float) -> SweptSpans:
     """Return the spans that a program sweeps between the heights ``low`` and ``high`` in mm."""
-    return SweptSpans.within(program, low, high)
+    return SweptSpans.from_height_range(program, low, high)

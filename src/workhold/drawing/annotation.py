@@ -305,7 +305,7 @@ class LabelPlacer:
         shares = np.linspace(0.0, 1.0, count)[:, None]
         self.avoid_ink((1 - shares) * np.array(start) + shares * np.array(end), price)
 
-    def avoid_walls(self, points: Array) -> None:
+    def avoid_crossing(self, points: Array) -> None:
         """Add an open polyline (N, 2), page units; each crossing of it costs a leader ``WALL``."""
         self.wall_starts = np.vstack([self.wall_starts, points[:-1]])
         self.wall_ends = np.vstack([self.wall_ends, points[1:]])
@@ -394,7 +394,7 @@ def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: 
     Segments run from ``starts`` to ``ends`` (C, 2), and from ``other_starts`` to ``other_ends`` (N, 2).
     """
 
-    def side(p: Array, q: Array, r: Array) -> Array:
+    def compute_side(p: Array, q: Array, r: Array) -> Array:
         """Return twice the signed areas of the triangles p, q, r: the sign says on which side of the line p q
         the point r is.
         """
@@ -402,7 +402,9 @@ def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: 
         return cross
 
     a, b, c, d = starts[:, None], ends[:, None], other_starts[None], other_ends[None]
-    return (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
+    return (compute_side(a, b, c) * compute_side(a, b, d) < 0) & (
+        compute_side(c, d, a) * compute_side(c, d, b) < 0
+    )
 
 
 def find_entries_into_boxes(starts: Array, ends: Array, boxes: Array) -> NDArray[np.bool_]:

@@ -100,7 +100,7 @@ class BentView:
     is_from_below: bool
 
     @classmethod
-    def of(cls, bending: Bending, times: float, turn: float, rise: float) -> BentView:
+    def from_bending(cls, bending: Bending, times: float, turn: float, rise: float) -> BentView:
         """Return the view of a part bent ``times`` as far as it is.
 
         ``turn`` is the eye's angle about the upright axis and ``rise`` its angle above the horizontal, in
@@ -139,7 +139,7 @@ def choose_view(bending: Bending, times: float, node: int) -> tuple[BentView, bo
     """Return (view, is shown): the first view that shows a node, or where none does, the first view and
     False.
     """
-    views = [BentView.of(bending, times, *angles) for angles in VIEWS]
+    views = [BentView.from_bending(bending, times, *angles) for angles in VIEWS]
     for view in views:
         if view.shows(node, bending.surface.triangles):
             return view, True

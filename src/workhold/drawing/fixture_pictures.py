@@ -215,7 +215,7 @@ def arrange_cells(extents: Sequence[Box]) -> list[tuple[Box, View]]:
     """Return (page cell, view) for each extent (mm); all views have one scale and leave room for a caption
     below.
     """
-    cells = make_grid(len(extents))
+    cells = make_thumbnail_boxes(len(extents))
     rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
     scale = min(View.fit_box(extent, room).scale for extent, room in zip(extents, rooms, strict=True))
     views = [View.fit_box(extent, room, scale) for extent, room in zip(extents, rooms, strict=True)]
@@ -241,7 +241,7 @@ def draw_best_thumbnails(result: Result, shown: ShownEntries, unit: Unit = MILLI
     return draw_thumbnails(fixtures, result.workpiece, result.toolkit, titles, unit=unit)
 
 
-def make_grid(count: int) -> list[Box]:
+def make_thumbnail_boxes(count: int) -> list[Box]:
     """Return page cells of equal size for ``count`` thumbnails (at most 12), row by row.
 
     There are at most four across and three down.

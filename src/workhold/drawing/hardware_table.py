@@ -181,7 +181,7 @@ def list_hardware(
     clamps = [carrier for carrier, _ in placed if carrier.contact is CLAMP_TIP]
     for (name, radius), count in Counter((c.noun, c.peg_radius) for c in clamps).items():
         items.append(HardwareItem(count, format_count(name, count), 2 * radius or None, None, OF_TIP))
-    bolted = sum(all(carrier.counted) for carrier in clamps)
+    bolted = sum(all(carrier.counted_axes) for carrier in clamps)
     if bolted:
         words = f"{format_count('bolt', bolted)} for {'a clamp' if bolted == 1 else 'clamps'}"
         items.append(HardwareItem(bolted, words))

@@ -45,7 +45,7 @@ def draw_hold_panel(
     if isinstance(fixture.hold, StrappedHold):
         draw_strap_panel(column, fixture, lengths)
         return
-    hold, jaws, query = fixture.hold, toolkit.flat_jaws, find_query(fixture)
+    hold, jaws, query = fixture.hold, toolkit.flat_jaws, get_query(fixture)
     assert isinstance(hold, JawHold) and jaws is not None
     column.write_line("Opening S of the jaws", 13, fill=GREY, gap=0.8)
     column.write_line(lengths.format_length(hold.opening), 30, bold=True, gap=0.4)
@@ -100,7 +100,7 @@ def format_pressure(pressure: float, lengths: LengthUnit) -> str:
     return f"{pressure:.1f} MPa" if unit.pressure == "MPa" and pressure < 20 else unit.format_stress(pressure)
 
 
-def find_query(fixture: Fixture) -> Query | None:
+def get_query(fixture: Fixture) -> Query | None:
     """Return the query of the result that lists a fixture; None for a fixture of no result."""
     return None if fixture.listed is None else fixture.listed.result.query
 
@@ -115,7 +115,7 @@ def list_hold_blocks(sheet: SetupSheet) -> tuple[list[Writer], list[Writer]]:
 
 def find_sheet_query(sheet: SetupSheet) -> Query:
     """Return the query of the result that lists the sheet's fixture; the fixture must belong to a result."""
-    query = find_query(sheet.fixture)
+    query = get_query(sheet.fixture)
     assert query is not None
     return query
 

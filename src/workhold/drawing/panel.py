@@ -279,7 +279,7 @@ def draw_settings(column: TextColumn, fixture: Fixture, toolkit: Toolkit, length
         column.write_fact(f"Each {first.noun}", f"{format_count(first.column_count, 'column')}, {pitch}")
     else:
         column.write_fact(first.title.capitalize(), f"{describe_holes(first)}, {pitch}")
-    if toolkit.tips:
+    if toolkit.tip_count:
         column.write_fact(f"Tip of the {moving.noun}", describe_diameter(moving, lengths))
     column.write_fact(f"{first.peg.capitalize()}s", describe_diameter(first, lengths))
     if toolkit.datum.edge is not None:

@@ -159,7 +159,7 @@ def draw_numbers(
     placer = LabelPlacer(bounds)
     for loop in workpiece.loop_segments:
         placer.avoid_ink(sample_loop(loop, view, 3.0), 5.0)
-        placer.avoid_walls(sample_loop(loop, view, 12.0))
+        placer.avoid_crossing(sample_loop(loop, view, 12.0))
     placer.avoid_ink(sample_segments(features, view, 3.0), 0.6)
     outer = workpiece.outer_count
     places = placer.place(

@@ -220,15 +220,15 @@ def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float =
         match look.kind:
             case "band":
                 wide = program.tools[look.tool].diameter * paths.scale
-                add(group, paths, rows, colour, wide, "band", stroke_opacity=BAND)
+                draw_moves(group, paths, rows, colour, wide, "band", stroke_opacity=BAND)
             case "rapid":
-                add(group, paths, rows, GREY, 1.0 * weight, "rapid", stroke_dasharray="6 5")
+                draw_moves(group, paths, rows, GREY, 1.0 * weight, "rapid", stroke_dasharray="6 5")
             case _:
                 wide = (1.8 if look.kind == "cut" else 5.0) * weight
-                add(group, paths, rows, shade_colour(colour, look.level), wide, f"cut-{look.tool}")
+                draw_moves(group, paths, rows, shade_colour(colour, look.level), wide, f"cut-{look.tool}")
 
 
-def add(
+def draw_moves(
     group: Scene, paths: PagePaths, rows: NDArray[np.int64], colour: str, wide: float, name: str, **more: str
 ) -> None:
     """Draw the moves with the indices ``rows`` as one SVG path; nothing where none of them is shown.
@@ -330,8 +330,8 @@ class PlannedPath:
         paths = PagePaths.from_moves(Moves.from_rows([row]), view, pose, box)
         only = np.zeros(1, np.int64)
         wide = 2 * self.passing.radius * view.scale
-        add(group, paths, only, NEAREST, wide, "nearest-band", stroke_opacity="0.16")
-        add(group, paths, only, NEAREST, 2.6, "nearest")
+        draw_moves(group, paths, only, NEAREST, wide, "nearest-band", stroke_opacity="0.16")
+        draw_moves(group, paths, only, NEAREST, 2.6, "nearest")
         if are_in_box(np.array([view(self.find_nearest_place())]), box)[0]:
             group.add_circle(
                 view(self.find_nearest_place()), 3.6, "#ffffff", NEAREST, 1.8, **{"class": "nearest-place"}

@@ -130,12 +130,12 @@ def make_painted_path(tag: str, attributes: dict[str, str]) -> PaintedPath:
         path.circle(*(float(attributes[k]) for k in ("cx", "cy", "r")))
     else:
         refuse_unknown(tag, attributes, STYLE | SILENT | {"d"})
-        trace(path, attributes["d"])
+        append_path_data(path, attributes["d"])
     set_style(path.style, attributes)
     return path
 
 
-def trace(path: PaintedPath, d: str) -> None:
+def append_path_data(path: PaintedPath, d: str) -> None:
     """Append SVG path data with the absolute commands M, L, A and Z to a path."""
     here = (0.0, 0.0)
     for letter, numbers in COMMAND.findall(d):

@@ -134,7 +134,7 @@ def avoid_drawing(placer: LabelPlacer, bench: BenchDrawing, view: View) -> None:
     """Mark everything drawn of a bench for the label placer to avoid."""
     for outline in bench.sample_outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
-        placer.avoid_walls(outline[::3])
+        placer.avoid_crossing(outline[::3])
     for index, peg in enumerate(bench.fixture.pegs):
         (x, y), radius = view((peg.x, peg.y)), bench.get_page_radius(view, index)
         placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))

@@ -74,12 +74,12 @@ class SeatingSentences:
         """Return a reading in mm as text, such as "S = 24.125 mm"."""
         return f"{self.sign} = {self.lengths.format_length(length)}"
 
-    def bound(self, length: float) -> str:
+    def format_upper_limit(self, length: float) -> str:
         """Return a length in mm that must not be exceeded as text with the unit's sign, rounded down."""
         unit = self.lengths.unit
         return f"{round_down_in_words(length / unit.millimetres)} {unit.abbreviation}"
 
-    def format_reading_short_of(self, opened: float) -> float:
+    def compute_rounded_reading(self, opened: float) -> float:
         """Return the reading in mm at which the jaws are opened by ``opened`` mm from the fixture's own seat.
 
         It is rounded to the displayed decimals in the direction in which the jaws are opened less.
@@ -137,7 +137,7 @@ class SeatingSentences:
         most, more = ("at most", "more") if self.gauge.grows else ("at least", "less")
         capture, room = seating.capture_opening, seating.drop_room
         widest = inf if seating.most is None else seating.most
-        if seating.is_untold:
+        if seating.is_capture_unknown:
             steps = ["It is not known how far you may open: put the part in its place and hold it there."]
         elif capture is None or room is None:
             steps = [f"{ways.open} as far as you like: the part cannot get to another place on these pegs."]
@@ -145,16 +145,16 @@ class SeatingSentences:
             steps = [f"{ways.open} as far as possible: the part cannot get to another place on the way."]
         else:
             steps = [
-                f"{ways.open} to {self.format_reading(self.format_reading_short_of(capture))} {most}, "
-                f"{self.bound(capture)} from "
-                f"where {ways.hold} the part. That leaves about {self.bound(room)} of room at every peg."
+                f"{ways.open} to {self.format_reading(self.compute_rounded_reading(capture))} {most}, "
+                f"{self.format_upper_limit(capture)} from "
+                f"where {ways.hold} the part. That leaves about {self.format_upper_limit(room)} of room at every peg."
             ]
         within = self.compute_safe_start(workpiece)
         if within is not None:
             shift, turn = within
             steps.append(
-                f"Put the part in within {self.bound(shift)} and {round_down_in_words(turn)}° of its place, as far as "
-                "the pegs let it: from there it settles in its place."
+                f"Put the part in within {self.format_upper_limit(shift)} and {round_down_in_words(turn)}° of its "
+                "place, as far as the pegs let it: from there it settles in its place."
             )
         steps.append(
             f"{ways.close.capitalize()}. The right reading is {right}. While the reading is {more}, "
@@ -172,9 +172,7 @@ class SeatingSentences:
         """Return sentences on the number of wrong seats, and on which of them the reading does not reveal."""
         seating, reach = self.seating, ""
         if seating.opening is not None:
-            reach = (
-                f", {self.gauge.opening_words.done.lower()} by no more than {self.bound(seating.opening)},"
-            )
+            reach = f", {self.gauge.opening_words.done.lower()} by no more than {self.format_upper_limit(seating.opening)},"
         wrong, over = self.wrong, sum(seat.mirrored for seat in self.wrong)
         turned = "" if not over else f", {f'{over} of them ' if over < len(wrong) else ''}turned over"
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
@@ -225,13 +223,13 @@ class SeatingSentences:
     def list_cautions(self) -> list[tuple[str, str]]:
         """Return cautions as (kind, sentence); the kind is "capture" or "reading"."""
         seating, found = self.seating, list[tuple[str, str]]()
-        if seating.is_untold:
+        if seating.is_capture_unknown:
             words = "It is not known how far you may open: hold the part in its place while you close."
             found.append(("capture", words))
         elif seating.capture_opening is not None and seating.is_hardly_caught:
             words = (
                 f"The part settles only from very close: {self.gauge.opening_words.done.lower()} by "
-                f"{self.bound(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
+                f"{self.format_upper_limit(seating.capture_opening)} it may come to rest elsewhere. Hold it in its "
                 "place while you close, and compare the reading."
             )
             found.append(("capture", words))

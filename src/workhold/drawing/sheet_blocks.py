@@ -90,7 +90,7 @@ def write_pegs(column: TextColumn, sheet: SetupSheet) -> None:
         stands_on = [first.noun, *(peg.carrier for peg in sheet.fixture.pegs)]
         table = [[row[0], word, *row[1:]] for row, word in zip(table, stands_on, strict=True)]
     column.write_table(table[0], table[1:], BODY)
-    of_tips = f" or of {'the' if sheet.is_closed_at_once else 'a'} {noun}'s tip" if toolkit.tips else ""
+    of_tips = f" or of {'the' if sheet.is_closed_at_once else 'a'} {noun}'s tip" if toolkit.tip_count else ""
     of_plate = f" of the fixed {first.noun}" if len(plates) > 1 else ""
     column.write_paragraph(
         f"x, y: centre of the {first.peg}{of_tips}, from {sheet.datum.point}{of_plate}"
@@ -131,7 +131,7 @@ def write_flush(column: TextColumn, sheet: SetupSheet, wall: Carrier) -> None:
     column.write_paragraph(words, NOTE)
 
 
-def put_words(sheet: SetupSheet) -> str:
+def write_placing_step(sheet: SetupSheet) -> str:
     """Return the sentence of the step "put the pegs in", with their holes."""
     plates, holes = sheet.toolkit.plates, list[str]()
     for plate in plates:
@@ -193,7 +193,7 @@ def list_opening_steps(sheet: SetupSheet) -> list[str]:
     count = len(fixture.placed)
     pegs = "both" if count == 2 else f"all {NUMBERS[count]}"
     return [
-        put_words(sheet),
+        write_placing_step(sheet),
         f"{there} the {moving.noun}s a little {more} than S = {lengths.format_length(fixture.travel)} and "
         f"lay the part in as drawn, {describe_lie(sheet)}{against}.{describe_pegs_in_holes(sheet)}",
         f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part "
@@ -294,7 +294,7 @@ def list_clamp_steps(sheet: SetupSheet) -> list[str]:
     count = sum(peg.carrier == plate.name for peg in sheet.fixture.pegs)
     against = toolkit.setup_words.against.format(count=NUMBERS[count], peg=plate.peg)
     return [
-        f"{put_words(sheet)} {' '.join(bolts)}",
+        f"{write_placing_step(sheet)} {' '.join(bolts)}",
         f"Lay the part in as drawn, {describe_lie(sheet)}, {against}.{describe_pegs_in_holes(sheet)}",
         " ".join(ups),
         f"{describe_clamping(sheet)} They touch: {describe_touch(sheet)}",
@@ -473,7 +473,7 @@ def write_loads(column: TextColumn, sheet: SetupSheet) -> None:
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
     friction = [] if details.friction is None else [f"µ {details.friction:g}"]
     names = [name.removeprefix(f"{moving.noun} ") for name in name_contacts(sheet.fixture, sheet.toolkit)]
-    header = ["Load", "needs" if sheet.toolkit.tips else moving.pushers, *friction, *names]
+    header = ["Load", "needs" if sheet.toolkit.tip_count else moving.pushers, *friction, *names]
     rows = []
     for number, case in cases[:MOST_LOADS]:
         name = shorten_text(case.load.name or f"load {number}", BODY, WIDEST_LOAD * column.width, bold=True)
@@ -583,11 +583,11 @@ def make_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
         others.append(write_bending)
     others += [write_quality, write_counting, write_legend]
 
-    def bound(writer: Writer) -> Block:
+    def make_block(writer: Writer) -> Block:
         """Return the block that a function writes for this sheet."""
         return lambda column: writer(column, sheet)
 
-    return list(map(bound, needed)), list(map(bound, others))
+    return list(map(make_block, needed)), list(map(make_block, others))
 
 
 def make_hold_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
@@ -596,11 +596,11 @@ def make_hold_blocks(sheet: SetupSheet) -> tuple[list[Block], list[Block]]:
     needed = [write_title, *setting, write_zero, *([write_cautions] if sheet.cautions else [])]
     others = [*rest, *([write_program] if sheet.details.program is not None else []), write_part]
 
-    def bound(writer: Writer) -> Block:
+    def make_block(writer: Writer) -> Block:
         """Return the block that a function writes for this sheet."""
         return lambda column: writer(column, sheet)
 
-    return list(map(bound, needed)), list(map(bound, others))
+    return list(map(make_block, needed)), list(map(make_block, others))
 
 
 def write_title(column: TextColumn, sheet: SetupSheet) -> None:

@@ -50,7 +50,7 @@ __all__ = [
     "list_cautions",
     "measure_edge_distances",
     "find_part_lift",
-    "find_placing",
+    "find_shift_on_plate",
     "list_result_cautions",
     "collect_sheet_details",
 ]
@@ -298,7 +298,7 @@ def list_cautions(
         seated = SeatingSentences(details.seating, fixture, toolkit, lengths)
         return found + [Caution(kind, sentence) for kind, sentence in seated.list_cautions()]
     if details.others:
-        holes = "holes" if toolkit.tips else "four holes"
+        holes = "holes" if toolkit.tip_count else "four holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"
         found.append(
             Caution(
@@ -309,7 +309,7 @@ def list_cautions(
     return found
 
 
-def find_placing(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
+def find_shift_on_plate(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
     """Return (columns, rows) by which a fixture is moved on its plate from where it is listed.
 
     It is moved to the hole ``at``, or if that is None to the plate's middle.
@@ -454,7 +454,7 @@ def collect_sheet_details(
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if supports is not None and at is not None:
         supports = supports.move_to_hole(at)
-    move = find_placing(fixture, result, at) if supports is None else supports.recounted.move
+    move = find_shift_on_plate(fixture, result, at) if supports is None else supports.recounted.move
     placed = move_fixture_by_holes(fixture, toolkit, move) if supports is None else supports.recounted.fixture
     if placed.pegs != fixture.pegs:
         # The readings of its seats would be those of other holes.

@@ -23,7 +23,7 @@ __all__ = [
     "draw_supports",
     "draw_triangle",
     "describe_supports",
-    "choose_lettering_size",
+    "compute_drawn_radius",
     "list_support_steps",
     "describe_tipping",
     "write_heights",
@@ -87,7 +87,7 @@ class PlannedSupports:
         corners = [*self.places, self.places[0]]
         for one, other in pairwise(corners):
             placer.avoid_line(view(one), view(other), 1.0)
-        pad, tip = (choose_lettering_size(radius, view) for radius in (self.pad_radius, self.tip_radius))
+        pad, tip = (compute_drawn_radius(radius, view) for radius in (self.pad_radius, self.tip_radius))
         for at, radius in (*((place, pad) for place in self.places), (self.clamp, tip)):
             x, y = view(at)
             placer.avoid_box(Box(x, y, x, y).grow(radius))
@@ -99,7 +99,7 @@ class PlannedSupports:
         named = [(name, at, self.pad_radius) for name, at in zip(self.names, self.places, strict=True)]
         for name, at, radius in [*named, (TOP_NAME, self.clamp, self.tip_radius)]:
             size = (measure_text(name, NAME, bold=True) + 8, HIGH)
-            gaps = [choose_lettering_size(radius, view) + gap for gap in (3, 8, 16, 28, 44, 64)]
+            gaps = [compute_drawn_radius(radius, view) + gap for gap in (3, 8, 16, 28, 44, 64)]
             found.append(make_label_around(view(at), -pi / 4, size, gaps, turns, turn_cost=1.0))
         return found
 
@@ -108,14 +108,14 @@ class PlannedSupports:
         for name, place, radius in zip(
             (*self.names, TOP_NAME), places, (*[self.pad_radius] * 3, self.tip_radius), strict=True
         ):
-            leader = place.compute_leader(choose_lettering_size(radius, view))
+            leader = place.compute_leader(compute_drawn_radius(radius, view))
             if dist(*leader) > 1.0:
                 scene.add_line(leader, SUPPORT, 1.2)
             scene.add_rectangle(place.box, "#ffffff", SUPPORT, 1.2, 3)
             scene.add_text(place.box.center, name, NAME, "middle", bold=True, fill=SUPPORT)
 
 
-def choose_lettering_size(radius: float, view: View) -> float:
+def compute_drawn_radius(radius: float, view: View) -> float:
     """Return the radius in page units at which a pad or tip is drawn, at least ``SMALLEST``.
 
     ``radius`` is its true radius in mm.
@@ -129,8 +129,8 @@ def draw_supports(scene: Scene, supports: PlannedSupports, view: View) -> None:
     corners = [view(place) for place in supports.places]
     draw_triangle(group, corners)
     for at in corners:
-        draw_pad(group, at, choose_lettering_size(supports.pad_radius, view))
-    draw_tip(group, view(supports.clamp), choose_lettering_size(supports.tip_radius, view))
+        draw_pad(group, at, compute_drawn_radius(supports.pad_radius, view))
+    draw_tip(group, view(supports.clamp), compute_drawn_radius(supports.tip_radius, view))
 
 
 def draw_triangle(scene: Scene, corners: Sequence[Point]) -> None:

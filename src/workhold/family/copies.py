@@ -118,7 +118,7 @@ def measure_distances(one: Array, other: Array) -> Array:
         share = np.clip((off * way).sum(axis=2) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
         return np.asarray(np.hypot(*np.moveaxis(off - share[:, :, None] * way, 2, 0)))
 
-    def side(pieces: Array, points: Array) -> Array:
+    def find_side(pieces: Array, points: Array) -> Array:
         """Return (N, M) on which side of N lines M points lie: 1 left, -1 right, 0 on the line.
 
         ``pieces`` (N, 2, 2) are two points of each line, ``points`` is (M, 2).
@@ -128,8 +128,8 @@ def measure_distances(one: Array, other: Array) -> Array:
 
     near = np.minimum(from_ends(one[:, 0], other), from_ends(one[:, 1], other))
     near = np.minimum(near, np.minimum(from_ends(other[:, 0], one), from_ends(other[:, 1], one)).T)
-    crossing = side(one, other[:, 0]) * side(one, other[:, 1]) < 0
-    crossing &= (side(other, one[:, 0]) * side(other, one[:, 1]) < 0).T
+    crossing = find_side(one, other[:, 0]) * find_side(one, other[:, 1]) < 0
+    crossing &= (find_side(other, one[:, 0]) * find_side(other, one[:, 1]) < 0).T
     return np.where(crossing, 0.0, near)
 
 
@@ -186,7 +186,7 @@ def list_places_on_plate(fixture: Fixture, toolkit: Toolkit, columns: int, rows:
     """
     used_columns, used_rows = [], []
     for peg in fixture.pegs:
-        in_column, in_row = toolkit.find_carrier(peg.carrier).counted
+        in_column, in_row = toolkit.find_carrier(peg.carrier).counted_axes
         used_columns += [peg.column] * in_column
         used_rows += [peg.row] * in_row
     if max(used_columns) - min(used_columns) >= columns or max(used_rows) - min(used_rows) >= rows:
@@ -263,7 +263,7 @@ def sort_by_rows(places: list[Shift]) -> tuple[Shift, ...]:
     return tuple(sorted(places, key=lambda place: (place[1], place[0])))
 
 
-def find_crowds(near: set[Shift]) -> list[list[Shift]]:
+def find_conflict_sets(near: set[Shift]) -> list[list[Shift]]:
     """Return sets of shifts, each a list that begins with (0, 0), whose members are pairwise too near.
 
     Every shift in ``near`` is the difference of two members of some set.
@@ -296,7 +296,7 @@ def solve_packing(
 
     number = {place: k for k, place in enumerate(places)}
     rows = set()
-    for crowd in find_crowds(near):
+    for crowd in find_conflict_sets(near):
         for i, j in places:
             for a, b in crowd:
                 # Every crowd in which this place is any of the members.

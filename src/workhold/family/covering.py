@@ -33,7 +33,7 @@ __all__ = [
     "Point",
     "Search",
     "convert_bits_to_sets",
-    "cover",
+    "find_smallest_cover",
     "compute_curve",
     "find_first_cover",
     "find_greedy_cover",
@@ -101,7 +101,7 @@ def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
     return tuple(sorted(chosen))
 
 
-def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
+def find_smallest_cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     """Return a cover with the fewest sets: such that together they hold all M members.
 
     ``sets`` (S, M) says which members each set holds; every member must be in some set. After ``deadline``,
@@ -178,7 +178,7 @@ def complete_cover(
     some = sets[first:, left]
     if not len(some) or not some.any(axis=0).all() or left.sum() > count * some.sum(axis=1).max():
         return None
-    found = cover(some, deadline)
+    found = find_smallest_cover(some, deadline)
     return tuple(first + one for one in found.sets) if len(found.sets) <= count else None
 
 
@@ -291,7 +291,7 @@ class Search:
     table : the losses.
     bounds : (B,) the distinct losses that matter, ascending from the least bound at which every member is
         held.
-    deadline : on the clock ``time.monotonic``; see :func:`cover`.
+    deadline : on the clock ``time.monotonic``; see :func:`find_smallest_cover`.
     progress : called with the fraction done.
     covers : found so far, by index into ``bounds``; the sets of each are given by numbers of patterns.
     """
@@ -311,7 +311,7 @@ class Search:
         """
         masks = table.make_masks(float(self.bounds[place]))
         kept = find_maximal_sets(masks)
-        found = cover(convert_bits_to_sets(masks[kept], table.members), self.deadline)
+        found = find_smallest_cover(convert_bits_to_sets(masks[kept], table.members), self.deadline)
         numbers = tuple(sorted(table.number[kept[list(found.sets)]].tolist()))
         self.covers[place] = Cover(numbers, found.at_least)
 

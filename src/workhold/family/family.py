@@ -42,7 +42,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
 from workhold.version import __version__
 
-__all__ = ["FORMAT", "MemberRequest", "Family", "ExcludedPart", "make_family", "write_family_json"]
+__all__ = ["FORMAT", "MemberRequest", "Family", "ExcludedPart", "make_family", "format_family_json"]
 
 # The share of the searches in the work, for the progress.
 SEARCHES = 0.95
@@ -235,11 +235,11 @@ def make_family(
     table = make_loss_table(members)
     deadline = None if seconds is None else monotonic() + seconds
 
-    def later(fraction: float) -> None:
+    def report_curve(fraction: float) -> None:
         """Report the progress of the curve."""
         progress(SEARCHES + (1.0 - SEARCHES) * fraction, found)
 
-    points = compute_curve(table, float("inf") if most_loss is None else most_loss, deadline, later)
+    points = compute_curve(table, float("inf") if most_loss is None else most_loss, deadline, report_curve)
     return Family(first.toolkit, figure, tuple(members), tuple(out), points, table)
 
 
@@ -262,7 +262,7 @@ def explain_missing_member(member: Member, has_patterns: bool) -> str:
 FORMAT = "workhold-family/1"
 
 
-def write_family_json(family: Family) -> str:
+def format_family_json(family: Family) -> str:
     """Return the family's file as JSON text."""
     toolkit = family.toolkit
     head = {
@@ -282,23 +282,23 @@ def write_family_json(family: Family) -> str:
         for one in family.members
     ]
     out = [{"name": one.name, "path": one.path, "reason": one.reason} for one in family.left_out]
-    lines = ",\n".join(write_plan_json(plan, family) for plan in family.plans)
+    lines = ",\n".join(format_plan_json(plan, family) for plan in family.plans)
     # Every part and every set-up has a line of its own.
     return (
         f'{{"format": "{FORMAT}", "program": "workhold {__version__}", "family": {{\n'
         f"{json.dumps(head)[1:-1]},\n"
-        f'"parts": {write_list_json(parts)},\n'
-        f'"left_out": {write_list_json(out)},\n'
+        f'"parts": {format_list_json(parts)},\n'
+        f'"left_out": {format_list_json(out)},\n'
         f'"curve": [\n{lines}\n]}}}}\n'
     )
 
 
-def write_list_json(entries: list[dict[str, Any]]) -> str:
+def format_list_json(entries: list[dict[str, Any]]) -> str:
     """Return a JSON list with one entry on each line."""
     return "[\n" + ",\n".join(json.dumps(entry) for entry in entries) + "\n]" if entries else "[]"
 
 
-def write_plan_json(plan: FamilyPlan, family: Family) -> str:
+def format_plan_json(plan: FamilyPlan, family: Family) -> str:
     """Return a plan as JSON text with one set-up on each line."""
     numbers = {id(member): number for number, member in enumerate(family.members)}
     point = {
@@ -318,7 +318,7 @@ def make_setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) ->
     return {
         "pattern": {
             "type": fixture.type,
-            **({"direction": fixture.direction} if toolkit.tips else {}),
+            **({"direction": fixture.direction} if toolkit.tip_count else {}),
             "pegs": [make_peg_entry(peg, toolkit) for peg in fixture.placed],
         },
         "pegs_to_place": setup.moved,

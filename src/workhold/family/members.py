@@ -23,7 +23,7 @@ from workhold.family.patterns import (
     encode_patterns,
     encode_zeros,
     map_carriers_by_half_turn,
-    turn_fixtures_over,
+    rotate_fixtures_by_half_turn,
 )
 from workhold.listing.canonical_form import mark_changes
 from workhold.listing.ranking import measure_table
@@ -366,7 +366,7 @@ def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, Int
         kind = table.arrangement == arrangement
         number = np.flatnonzero(kind & are_at_allowed_angle(np.degrees(table.theta) + 180.0, query))
         if len(number):
-            after = turn_fixtures_over(table.take(number), toolkit)
+            after = rotate_fixtures_by_half_turn(table.take(number), toolkit)
             # Where another jaw stands still the location error changes; the locators of a plate stay what
             # they are.
             tables.append(after if places[0] == 0 else measure_table(after, Problem.from_query(query)))

@@ -87,7 +87,7 @@ def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: P
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
     first = points[0].setups
 
-    def at(setups: float, loss: float) -> tuple[float, float]:
+    def place_point(setups: float, loss: float) -> tuple[float, float]:
         """Return the page point of a number of set-ups and a loss."""
         across = (setups - first + 0.5) / (last - first + 1)
         return room.x0 + across * room.width, room.y1 - (loss - 1.0) / (top - 1.0) * (room.height - 30)
@@ -95,13 +95,13 @@ def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: P
     axes = scene.group("axes")
     decimals = max(0, -floor(log10(step) + 1e-9))
     for k in range(round((top - 1.0) / step) + 1):
-        y = at(first, 1.0 + k * step)[1]
+        y = place_point(first, 1.0 + k * step)[1]
         axes.add_line([(room.x0, y), (room.x1, y)], GRID if k else BLACK, 1.0)
         axes.add_text((room.x0 - 10, y), f"{1.0 + k * step:.{max(decimals, 1)}f}", 14, "end")
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 1000) if room.width / (last - first + 1) * k >= 26)
     for setups in range(first, last + 1):
         if (setups - first) % every == 0 or setups == last:
-            x = at(setups, 1.0)[0]
+            x = place_point(setups, 1.0)[0]
             axes.add_line([(x, room.y1), (x, room.y1 + 6)], BLACK, 1.0)
             axes.add_text((x, room.y1 + 20), str(setups), 14, "middle")
     axes.add_text((room.center[0], room.y1 + 48), "set-ups", 15, "middle", bold=True)
@@ -109,12 +109,14 @@ def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: P
     curve = scene.group("curve")
     for one, other in pairwise(points):
         # Numbers of set-ups in between lose as much as the smaller one.
-        corner = at(other.setups, one.loss)
-        curve.add_line([at(one.setups, one.loss), corner], CURVE_LINE, 2.0)
-        curve.add_line([corner, at(other.setups, other.loss)], CURVE_LINE, 1.2, stroke_dasharray="3 4")
+        corner = place_point(other.setups, one.loss)
+        curve.add_line([place_point(one.setups, one.loss), corner], CURVE_LINE, 2.0)
+        curve.add_line(
+            [corner, place_point(other.setups, other.loss)], CURVE_LINE, 1.2, stroke_dasharray="3 4"
+        )
     taken: list[Box] = []
     for point in points:
-        here, is_chosen = at(point.setups, point.loss), point == chosen
+        here, is_chosen = place_point(point.setups, point.loss), point == chosen
         proven = point.is_least and point.at_least == point.setups
         curve.add_circle(
             here,
@@ -289,7 +291,7 @@ def draw_parts(
     head = make_table_head(benches[0][0], titles)
     widths = compute_column_widths(head, rows, room.width)
     for most in range(MOST_NAME_LINES, 0, -1):
-        lines = sum(len(name_lines(row[0], widths[0], most)) for row in rows)
+        lines = sum(len(wrap_name(row[0], widths[0], most)) for row in rows)
         high = ROW * (lines + 2) + LINE * len(notes) + GAP
         if high <= MOST_TABLE * room.height:
             break
@@ -321,11 +323,11 @@ def make_grid(count: int, room: Box) -> list[Box]:
     """
     ways = [(across, -(-count // across)) for across in range(1, count + 1)]
 
-    def size(way: tuple[int, int]) -> float:
+    def compute_size(way: tuple[int, int]) -> float:
         """Return the size of a cell for ``way``, a number of columns and a number of rows."""
         return min(room.width / way[0], 1.2 * room.height / way[1])
 
-    across, down = max(ways, key=lambda way: (size(way), -way[0]))
+    across, down = max(ways, key=lambda way: (compute_size(way), -way[0]))
     width, height = (room.width - (across - 1) * GAP) / across, (room.height - (down - 1) * GAP) / down
     corners = [
         (room.x0 + (k % across) * (width + GAP), room.y0 + (k // across) * (height + GAP))
@@ -372,7 +374,7 @@ def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
     toolkit = holdings[0].member.query.toolkit
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
     yield (
-        f"X0 Y0 is {first}, x and y from {toolkit.datum.start}, θ counter-clockwise. Fixture: its number in "
+        f"X0 Y0 is {first}, x and y from {toolkit.datum.origin_words}, θ counter-clockwise. Fixture: its number in "
         "the part's list."
     )
     if any(one.turned for one in holdings):
@@ -402,7 +404,7 @@ def compute_column_widths(head: list[str], rows: list[list[str]], width: float) 
     return widths
 
 
-def name_lines(name: str, width: float, most: int) -> list[str]:
+def wrap_name(name: str, width: float, most: int) -> list[str]:
     """Return a part's name wrapped to ``width`` page units, in ``most`` lines at most.
 
     The last line is shortened where the name is longer.
@@ -428,7 +430,7 @@ def draw_table(
     lines = [[pair[k] for pair in heads] for k in (0, 1)]
     top = room.y0
     for place, row in enumerate([*lines, *rows]):
-        bold, names = place < len(lines), name_lines(row[0], widths[0], most)
+        bold, names = place < len(lines), wrap_name(row[0], widths[0], most)
         for k, name in enumerate(names):
             group.add_text((room.x0, top + ROW * (k + 0.5)), name, WORDS, bold=True)
         for end, word in zip(ends[1:], row[1:], strict=True):

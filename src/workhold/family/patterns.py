@@ -27,7 +27,7 @@ __all__ = [
     "move_onto_pattern",
     "encode_patterns",
     "shift_fixture",
-    "turn_fixtures_over",
+    "rotate_fixtures_by_half_turn",
     "encode_zeros",
 ]
 
@@ -75,7 +75,7 @@ def encode_patterns(table: FixtureTable, toolkit: Toolkit) -> IntArray:
     Their lexicographic order is that of the patterns' identities.
     """
     carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
-    counts = np.array([one.counted for one in toolkit.carriers])[carriers]
+    counts = np.array([one.counted_axes for one in toolkit.carriers])[carriers]
     groups = np.array(group_carriers_by_columns(toolkit))[carriers]
     column, row = table.column.astype(np.int64), table.row.astype(np.int64)
     for group in range(int(groups.max(initial=0)) + 1):
@@ -108,7 +108,7 @@ def encode_zeros(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntAr
     are equal.
     """
     carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
-    counts = np.array([one.counted for one in toolkit.carriers])[carriers]
+    counts = np.array([one.counted_axes for one in toolkit.carriers])[carriers]
     still = np.array(group_carriers_by_columns(toolkit))[carriers] == 0
     pitch = toolkit.carriers[0].pitch
     column = find_least_counted(table.column.astype(np.int64), counts[:, :, 0] & still)[:, 0]
@@ -142,20 +142,20 @@ def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], 
     """
     carriers = toolkit.find_peg_carriers(one.arrangement)[0]
     groups, pitch = group_carriers_by_columns(toolkit), toolkit.carriers[0].pitch
-    counts = np.array([toolkit.carriers[number].counted for number in carriers])
+    counts = np.array([toolkit.carriers[number].counted_axes for number in carriers])
     steps = np.array([columns.get(groups[number], 0) for number in carriers])
     move = np.array([columns.get(0, 0) * pitch[0], rows * pitch[1]])
     column = one.column + np.where(counts[:, 0], steps, 0).astype(np.int32)
     row = one.row + np.where(counts[:, 1], rows, 0).astype(np.int32)
     moved = evolve(one, column=column, row=row, position=one.position + move)
-    if not toolkit.tips:
+    if not toolkit.tip_count:
         return evolve(
             moved, jaw_separation=one.jaw_separation + (columns.get(0, 0) - columns.get(1, 0)) * pitch[0]
         )
     return move_tips(moved, toolkit, find_tips(one, toolkit) + move)
 
 
-def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
+def rotate_fixtures_by_half_turn(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
     """Return the fixtures after everything is turned by half a turn about z.
 
     All must be of one arrangement that the half turn leaves as it is. The pegs take up the same range of rows
@@ -167,11 +167,11 @@ def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
     places = map_carriers_by_half_turn(toolkit, number)
     assert places is not None
     carriers, pitch = np.array(toolkit.arrangements[number].carriers), np.array(toolkit.carriers[0].pitch)
-    in_column, in_row = np.array([toolkit.carriers[number].counted for number in carriers]).T
+    in_column, in_row = np.array([toolkit.carriers[number].counted_axes for number in carriers]).T
     rows = table.row[:, in_row]
     ends = rows.min(axis=1) + rows.max(axis=1)
     moving = toolkit.moving
-    if toolkit.tips:
+    if toolkit.tip_count:
         last = table.column[:, in_column].max(axis=1)
         middle = np.stack([last, ends], axis=1) * pitch
     else:
@@ -195,7 +195,7 @@ def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
         position=middle - table.position,
         force=force,
     )
-    if not toolkit.tips:
+    if not toolkit.tip_count:
         return out
     return move_tips(out, toolkit, (middle[:, None] - find_tips(table, toolkit))[:, ::-1])
 
@@ -231,7 +231,7 @@ def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
     carriers = toolkit.find_peg_carriers(one.arrangement)
     places = (rows[0].tolist() for rows in (carriers, one.column, one.row))
     for number, column, row in zip(*places, strict=True):
-        in_column, in_row = toolkit.carriers[number].counted
+        in_column, in_row = toolkit.carriers[number].counted_axes
         if in_column or in_row:
             out.append((number, column if in_column else NOTHING, row if in_row else NOTHING))
     return sorted(out)

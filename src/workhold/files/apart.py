@@ -40,7 +40,7 @@ START = (
     "import signal, sys; sys.path[:] = sys.argv[1:]; signal.signal(signal.SIGINT, signal.SIG_DFL); "
     "from workhold.files import apart, fork_server; "
 )
-ANSWER, SERVE = "apart.answer()", "fork_server.serve(apart.load_prepared_module, apart.answer)"
+ANSWER, SERVE = "apart.run_child()", "fork_server.serve(apart.load_prepared_module, apart.run_child)"
 
 
 def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:
@@ -151,7 +151,7 @@ def read_outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float
     raise InputError(f"{what} is damaged so that the library that reads it breaks down: save it anew.")
 
 
-def answer() -> None:
+def run_child() -> None:
     """Run the main program of a child: do the work ordered on
     standard input, write its outcome to standard output, exit.
     """

@@ -48,7 +48,7 @@ def add_declared_fields(
         constructor, as files do.
     """
 
-    def made(form: type[Kind]) -> type[Kind]:
+    def add_fields(form: type[Kind]) -> type[Kind]:
         """Return the form with the declared fields added."""
         entries: dict[str, Any] = {
             row.name: make_form_field(row, largest, bounded)
@@ -59,7 +59,7 @@ def add_declared_fields(
             form.__name__, __base__=form, __module__=form.__module__, __doc__=form.__doc__, **entries
         )
 
-    return made
+    return add_fields
 
 
 def make_form_field(row: Declaration, largest: float | None, bounded: bool) -> tuple[Any, Any]:

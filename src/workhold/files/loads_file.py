@@ -34,7 +34,7 @@ from workhold.files.text import parse_json, parse_toml, read_text
 from workhold.model.requirements import ANY_DIRECTION, Load
 from workhold.units import find_unit
 
-__all__ = ["load_from_words", "read_loads"]
+__all__ = ["parse_load", "read_loads"]
 
 KEYS = ("name", "force", "at", "path", "z", "direction", "moment")
 # Exact: 0.45359237 kg (international pound, 1959) times 9.80665 m/s^2 (standard gravity, 1901).
@@ -81,7 +81,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
         raise InputError(
             f"{path} has no loads: write a table [[load]] for each, with force and at, path or moment."
         )
-    return tuple(load_from_words(table, f"{path}: load {n}", unit_scale) for n, table in enumerate(tables, 1))
+    return tuple(parse_load(table, f"{path}: load {n}", unit_scale) for n, table in enumerate(tables, 1))
 
 
 def parse_loads_file(path: Path) -> dict[str, Any]:
@@ -96,7 +96,7 @@ def parse_loads_file(path: Path) -> dict[str, Any]:
     return content
 
 
-def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> Load:
+def parse_load(words: Mapping[str, Any], place: str, unit_scale: float) -> Load:
     """Return a load from the values of its keys.
 
     Parameters
@@ -130,10 +130,10 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     points: list[tuple[float, float]] = []
     height = None
     if "z" in words:
-        height = read_number(words["z"])
+        height = parse_plain_number(words["z"])
         if height is None:
             raise InputError(
-                f"{place}: z {quote_value(words['z'])} is not a height: give a number, such as 12."
+                f"{place}: z {quote_shortened(words['z'])} is not a height: give a number, such as 12."
             )
     vector = read_force_components(words, place)
     if "at" in words:
@@ -176,7 +176,7 @@ def read_force_components(words: Mapping[str, Any], place: str) -> tuple[float, 
         return None
     if len(parts) != 3:
         raise InputError(
-            f"{place}: force {quote_value(given)} is not a force along x, y and z: give three numbers, such as "
+            f"{place}: force {quote_shortened(given)} is not a force along x, y and z: give three numbers, such as "
             "[300, -200, 80], or its size."
         )
     if "direction" in words:
@@ -205,11 +205,13 @@ def read_quantity(value: Any, place: str, units: Mapping[str, float], such_as: s
     found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
     unit = found[2].lower().replace("·", ".").replace("*", ".") if found else ""
     if found is None or unit not in units:
-        raise InputError(f"{place} {quote_value(value)} cannot be used: give a number, such as {such_as}.")
+        raise InputError(
+            f"{place} {quote_shortened(value)} cannot be used: give a number, such as {such_as}."
+        )
     return float(found[1]) * units[unit]
 
 
-def read_number(value: Any) -> float | None:
+def parse_plain_number(value: Any) -> float | None:
     """Return a finite number, given as a number or as text without a unit; None for anything else."""
     if isinstance(value, str):
         found = QUANTITY.fullmatch(value)
@@ -223,10 +225,10 @@ def read_point(value: Any, place: str) -> tuple[float, float]:
     """
     parts = value.split(",") if isinstance(value, str) else value
     if isinstance(parts, list | tuple) and len(parts) == 2:
-        x, y = read_number(parts[0]), read_number(parts[1])
+        x, y = parse_plain_number(parts[0]), parse_plain_number(parts[1])
         if x is not None and y is not None:
             return x, y
-    raise InputError(f"{place} {quote_value(value)} is not a point: give two numbers, such as 10,5.")
+    raise InputError(f"{place} {quote_shortened(value)} is not a point: give two numbers, such as 10,5.")
 
 
 def read_path_points(value: Any, place: str) -> list[tuple[float, float]]:
@@ -238,7 +240,7 @@ def read_path_points(value: Any, place: str) -> list[tuple[float, float]]:
     parts = value.split(";") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple) or len(parts) < 2:
         raise InputError(
-            f"{place} {quote_value(value)} is not a path: give two points or more, such as 0,0;40,0;40,20."
+            f"{place} {quote_shortened(value)} is not a path: give two points or more, such as 0,0;40,0;40,20."
         )
     return [read_point(part, place) for part in parts]
 
@@ -254,17 +256,17 @@ def read_direction_range(value: Any, place: str) -> tuple[float, float]:
     parts = value.split("..") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple):
         parts = [parts]
-    angles = [read_number(part) for part in parts]
+    angles = [parse_plain_number(part) for part in parts]
     low, high = angles[0] if angles else None, angles[-1] if angles else None
     if len(angles) > 2 or low is None or high is None:
         raise InputError(
-            f"{place} {quote_value(value)} cannot be used: give an angle in degrees such as 30, a range such as "
+            f"{place} {quote_shortened(value)} cannot be used: give an angle in degrees such as 30, a range such as "
             "30..60, or any."
         )
     return low, high
 
 
-def quote_value(value: Any) -> str:
+def quote_shortened(value: Any) -> str:
     """Return a value as shown in a message: text in quotes, and all cut to 60 characters."""
     text = f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

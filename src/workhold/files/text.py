@@ -162,7 +162,7 @@ def parse_whole_number(digits: str) -> int:
     return int(digits)
 
 
-def refuse_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def make_dict_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Return the pairs of a JSON object as a dict; raise InputError for a key that is given twice."""
     content = dict(pairs)
     if len(content) < len(pairs):
@@ -191,7 +191,7 @@ def make_json_decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSON
     return json.JSONDecoder(
         parse_constant=refuse_constant,
         parse_int=parse_whole_number,
-        object_pairs_hook=refuse_repeated_keys
+        object_pairs_hook=make_dict_without_repeats
         if hook is None
-        else lambda pairs: hook(refuse_repeated_keys(pairs)),
+        else lambda pairs: hook(make_dict_without_repeats(pairs)),
     )

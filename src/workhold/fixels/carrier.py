@@ -334,7 +334,7 @@ class Carrier:
         return self.contact is CLAMP_TIP and self.has_a_hole
 
     @property
-    def counted(self) -> tuple[bool, bool]:
+    def counted_axes(self) -> tuple[bool, bool]:
         """Whether (1) a column and (2) a row say where a contact on it is.
 
         A clamp without a hole has only one of them: the row or column along which it pushes. A wall has

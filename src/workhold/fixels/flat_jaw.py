@@ -15,10 +15,10 @@ from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.making import (
+    complete_and_check,
     make_class_from_table,
     make_lattice_carrier,
     make_wall_carrier,
-    settle,
     suggest_half_pitch,
 )
 from workhold.fixels.pegs import PegFlat
@@ -172,7 +172,7 @@ class FlatJaw(Toolkit):
         ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
-        settle(self, noun="jaw", peg="peg")
+        complete_and_check(self, noun="jaw", peg="peg")
         if self.jaw_width is not None and self.columns is None:
             raise InputError(
                 f"jaw width {self.jaw_width:g} says where the jaws end only beside a plate that ends as "

@@ -33,7 +33,7 @@ __all__ = [
     "convert_pitch",
     "refuse_all_out_of_bounds",
     "refuse_many_holes",
-    "settle",
+    "complete_and_check",
     "make_wall_carrier",
     "convert_whole_number",
 ]
@@ -279,7 +279,7 @@ CONVERTERS: dict[str, Callable[[Any], Any]] = {
 }
 
 
-def settle(toolkit: Any, *, noun: str, peg: str) -> None:
+def complete_and_check(toolkit: Any, *, noun: str, peg: str) -> None:
     """Complete a new toolkit in place with the defaults that follow from other fields, and check all its
     values.
 

@@ -16,7 +16,12 @@ from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle, suggest_half_pitch
+from workhold.fixels.making import (
+    complete_and_check,
+    make_class_from_table,
+    make_lattice_carrier,
+    suggest_half_pitch,
+)
 from workhold.fixels.pegs import PegFlat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
@@ -148,7 +153,7 @@ class Plate(Toolkit):
         ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
-        settle(self, noun=self.noun, peg="locator")
+        complete_and_check(self, noun=self.noun, peg="locator")
         object.__setattr__(self, "directions", self.list_asked_directions())
 
     @property

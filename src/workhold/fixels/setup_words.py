@@ -132,7 +132,7 @@ class Datum:
         return not self.is_hole
 
     @property
-    def start(self) -> str:
+    def origin_words(self) -> str:
         """Words for what x and y are measured from, such as "hole A1" or "column A and the fence"."""
         return self.x if self.is_hole else f"{self.x} and {self.y}"
 

@@ -15,7 +15,12 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Carrier
-from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle, suggest_half_pitch
+from workhold.fixels.making import (
+    complete_and_check,
+    make_class_from_table,
+    make_lattice_carrier,
+    suggest_half_pitch,
+)
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.strap_set import USUAL_STANDOUT, StrapSet
 from workhold.fixels.table import FieldTable, PageLabel
@@ -163,7 +168,7 @@ class StrapPlate(Toolkit):
         ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
-        settle(self, noun=self.noun, peg="locator")
+        complete_and_check(self, noun=self.noun, peg="locator")
         least, most = self.reach
         if not 0 <= least <= most or most == 0:
             raise InputError(

@@ -211,7 +211,7 @@ class Toolkit:
         return frozenset(carrier.contact for carrier in self.carriers)
 
     @property
-    def tips(self) -> int:
+    def tip_count(self) -> int:
         """The number of clamp tips in a fixture; they are the last of its contacts."""
         carriers = self.carriers
         return sum(carriers[number].contact is CLAMP_TIP for number in self.arrangements[0].carriers)
@@ -227,14 +227,14 @@ class Toolkit:
         return {one.role: one.heights for one in self.carriers if one.heights is not None}
 
     @property
-    def travels(self) -> int:
+    def travel_count(self) -> int:
         """The number of separate travels in a fixture: that of each clamp, or 1 for a jaw."""
-        return max(self.tips, 1)
+        return max(self.tip_count, 1)
 
     @property
     def closes_at_once(self) -> bool:
         """Whether one movement closes it, so that closing can be simulated; False with two clamps."""
-        return self.travels == 1
+        return self.travel_count == 1
 
     @property
     def ends_on_walls(self) -> tuple[slice, ...]:
@@ -484,14 +484,16 @@ class Toolkit:
         unit = np.array([(0.0, 0.0) if one.travel is None else one.travel.unit for one in self.carriers])
         carriers = np.array([one.carriers for one in self.arrangements], np.int64)
 
-        def of_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        def repeat_for_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
             """Return for each contact (N, K) the value of its carrier, from the values (C,) of the C
             carriers.
             """
             return np.asarray(values[carriers].take(arrangement, axis=0))
 
         x, y = (
-            of_pegs(offset[:, k]) + holes * of_pegs(pitch[:, k]) + moved * of_pegs(unit[:, k])
+            repeat_for_pegs(offset[:, k])
+            + holes * repeat_for_pegs(pitch[:, k])
+            + moved * repeat_for_pegs(unit[:, k])
             for k, holes in enumerate((column, row))
         )
         return x, y

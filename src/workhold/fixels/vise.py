@@ -10,7 +10,7 @@ from attrs import evolve
 
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights, HoleSelection
-from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle
+from workhold.fixels.making import complete_and_check, make_class_from_table, make_lattice_carrier
 from workhold.fixels.pegs import PegFlat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
@@ -141,7 +141,7 @@ class Vise(Toolkit):
         ) -> None: ...
 
     def __attrs_post_init__(self) -> None:
-        settle(self, noun="jaw", peg="peg")
+        complete_and_check(self, noun="jaw", peg="peg")
 
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]

@@ -31,7 +31,7 @@ from workhold.geometry.rational import (
     compute_end_curvatures,
     compute_end_directions,
     compute_point,
-    cut,
+    cut_between_parameters,
     drop_point_pieces,
     sample_points,
 )
@@ -134,7 +134,7 @@ def fit_small_line(pieces: Pieces, first: float, last: float, tolerance: float) 
 
     The size is the diagonal of the control points' bounding box; the tolerance is in mm.
     """
-    stretch = cut(pieces, first, last)
+    stretch = cut_between_parameters(pieces, first, last)
     places = (stretch[..., :2] / stretch[..., 2:]).reshape(-1, 2)
     size = float(np.hypot(*np.ptp(places, axis=0)))
     ends = compute_point(pieces, first), compute_point(pieces, last)
@@ -172,7 +172,10 @@ def fit_biarc(pieces: Pieces, first: float, last: float, tolerance: float) -> Fi
         (middle, last, joint, end, bulges[1]),
     ):
         away = max(
-            away, bound_departure(cut(pieces, low, high), make_segment_from_bulge(p, q, bulge), tolerance)
+            away,
+            bound_departure(
+                cut_between_parameters(pieces, low, high), make_segment_from_bulge(p, q, bulge), tolerance
+            ),
         )
         if away > tolerance:
             return None
@@ -219,19 +222,19 @@ def find_crossing(pieces: Pieces, first: float, last: float, joint: Point, acros
     and ahead of it, in the direction of ``across``, at ``last``. Found by the Illinois method.
     """
 
-    def height(parameter: float) -> float:
+    def measure_height(parameter: float) -> float:
         """Return the signed distance of the curve from the line at a parameter."""
         x, y = subtract_points(compute_point(pieces, parameter), joint)
         return x * across[0] + y * across[1]
 
-    low, high = height(first), height(last)
+    low, high = measure_height(first), measure_height(last)
     if not low < 0.0 < high:
         return None
     size, side = high - low, 0
     middle = first
     for _ in range(100):
         middle = (first * high - last * low) / (high - low)
-        value = height(middle)
+        value = measure_height(middle)
         if abs(value) <= 1e-12 * size or last - first <= 1e-14 * last:
             break
         if value > 0.0:

@@ -72,7 +72,7 @@ def is_one_already(arcs: Sequence[Arc]) -> bool:
     return all(dist(arc.center, first.center) + abs(arc.radius - first.radius) < hair for arc in arcs)
 
 
-def follows(one: Segment, other: Segment) -> bool:
+def may_share_circle(one: Segment, other: Segment) -> bool:
     """Return whether segment ``other``, next after ``one``, may lie on the same circle.
 
     Both must be arcs of similar radius that turn the same way and are nearly tangent where they meet. (An arc
@@ -93,7 +93,7 @@ def find_arc_chains(segments: Sequence[Segment]) -> list[list[int]]:
     """
 
     def continues(one: int, other: int) -> bool:
-        return follows(segments[one], segments[other])
+        return may_share_circle(segments[one], segments[other])
 
     found = cut_into_runs(range(len(segments)), continues)
     return [chain for chain in found if len(chain) > 1 and isinstance(segments[chain[0]], Arc)]

@@ -34,7 +34,7 @@ from workhold.geometry.segment import Arc, Point, Segment, make_segment_from_bul
 __all__ = [
     "Pieces",
     "split_arc",
-    "cut",
+    "cut_between_parameters",
     "bound_departure",
     "compute_direction",
     "split_ellipse",
@@ -125,14 +125,21 @@ def split_ellipse(center: Point, major: Point, minor: Point, start: float, sweep
     step = sweep / count
     half = cos(step / 2)
 
-    def at(angle: float, weight: float) -> tuple[float, float, float]:
+    def make_control_point(angle: float, weight: float) -> tuple[float, float, float]:
         """Return the row (x w, y w, w) of the control point at an angle."""
         c, s = cos(angle) / weight, sin(angle) / weight
         x, y = center[0] + major[0] * c + minor[0] * s, center[1] + major[1] * c + minor[1] * s
         return x * weight, y * weight, weight
 
     places = [start + k * step for k in range(count)]
-    rows = [[at(t, 1.0), at(t + step / 2, half), at(t + step, 1.0)] for t in places]
+    rows = [
+        [
+            make_control_point(t, 1.0),
+            make_control_point(t + step / 2, half),
+            make_control_point(t + step, 1.0),
+        ]
+        for t in places
+    ]
     found = np.array(rows)
     found[1:, 0] = found[:-1, -1]
     if abs(abs(sweep) - 2 * pi) < 1e-9:
@@ -200,11 +207,11 @@ def drop_point_pieces(pieces: Pieces, shortest: float) -> Pieces:
 
 def halve_pieces(pieces: Pieces) -> Pieces:
     """Return the two halves of each of P pieces, in order along the curve: (2 P, n + 1, 3)."""
-    left, right = split(pieces, 0.5)
+    left, right = split_at_parameter(pieces, 0.5)
     return np.stack([left, right], axis=1).reshape(-1, *pieces.shape[1:])
 
 
-def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
+def split_at_parameter(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
     """Return two arrays: the first and the second part of every piece, split at one parameter.
 
     The parameter ``at`` of each piece is between 0 and 1. The method is de Casteljau's.
@@ -218,7 +225,7 @@ def split(pieces: Pieces, at: float) -> tuple[Pieces, Pieces]:
     return left, right
 
 
-def cut(pieces: Pieces, first: float, last: float) -> Pieces:
+def cut_between_parameters(pieces: Pieces, first: float, last: float) -> Pieces:
     """Return the pieces of the part of a curve between parameters ``first`` < ``last`` (0 to P for a curve of
     P pieces).
     """
@@ -226,10 +233,10 @@ def cut(pieces: Pieces, first: float, last: float) -> Pieces:
     stretch = pieces[low : max(high, low + 1)]
     begin, end = first - low, last - (low + len(stretch) - 1)
     if end < 1.0:
-        stretch = np.concatenate([stretch[:-1], split(stretch[-1:], end)[0]])
+        stretch = np.concatenate([stretch[:-1], split_at_parameter(stretch[-1:], end)[0]])
         begin = begin / end if len(stretch) == 1 else begin
     if begin > 0.0:
-        stretch = np.concatenate([split(stretch[:1], begin)[1], stretch[1:]])
+        stretch = np.concatenate([split_at_parameter(stretch[:1], begin)[1], stretch[1:]])
     return stretch
 
 
@@ -255,7 +262,7 @@ def compute_direction(pieces: Pieces, parameter: float, after: bool) -> Point:
         number -= 1
     one, t = pieces[number : number + 1], parameter - number
     if 0.0 < t < 1.0:
-        one = split(one, t)[1 if after else 0]
+        one = split_at_parameter(one, t)[1 if after else 0]
     leaving, entering = compute_end_directions(one)
     x, y = (leaving if after else entering)[0]
     return float(x), float(y)
@@ -268,7 +275,7 @@ def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
     See :func:`compute_direction` for vanishing derivatives.
     """
 
-    def leaving(rows: Pieces) -> NDArray[np.float64]:
+    def compute_start_tangents(rows: Pieces) -> NDArray[np.float64]:
         """Return the unit tangents (P, 2) at the starts of pieces."""
         places = rows[..., :2] / rows[..., 2:]
         steps = places[:, 1:] - places[:, :1]
@@ -278,7 +285,7 @@ def compute_end_directions(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
         found: NDArray[np.float64] = steps[every, far] / np.maximum(sizes[every, far], 1e-300)[:, None]
         return found
 
-    return leaving(pieces), -leaving(pieces[:, ::-1])
+    return compute_start_tangents(pieces), -compute_start_tangents(pieces[:, ::-1])
 
 
 def sample_points(pieces: Pieces, each: int) -> NDArray[np.float64]:
@@ -302,7 +309,7 @@ def compute_end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
     1) / n * w0 w2 / w1² * cross(p1 - p0, p2 - p1) / |p1 - p0|³ (Farin, section 12.5).
     """
 
-    def curvature(rows: Pieces) -> NDArray[np.float64]:
+    def compute_start_curvatures(rows: Pieces) -> NDArray[np.float64]:
         """Return the curvatures (P,) at the starts of pieces, positive to the left."""
         n = rows.shape[1] - 1
         if n < 2:
@@ -316,7 +323,7 @@ def compute_end_curvatures(pieces: Pieces) -> tuple[NDArray[np.float64], NDArray
         found: NDArray[np.float64] = np.where(flat, np.nan, factor * cross / np.where(flat, 1.0, size) ** 3)
         return found
 
-    return curvature(pieces), -curvature(pieces[:, ::-1])
+    return compute_start_curvatures(pieces), -compute_start_curvatures(pieces[:, ::-1])
 
 
 Array = NDArray[np.float64]

@@ -21,7 +21,7 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
     "Rotation",
-    "find_centroid_of_joints",
+    "compute_centroid_of_segments",
     "is_own_mirror_image",
     "find_middle",
     "rotate_vectors",
@@ -60,7 +60,7 @@ class Rotation:
     image: NDArray[np.int64]
 
 
-def find_centroid_of_joints(segments: Sequence[Segment]) -> Point:
+def compute_centroid_of_segments(segments: Sequence[Segment]) -> Point:
     """Return the mean of the segments' middles, weighted by their lengths, in mm.
 
     Every rotation of the outline onto itself leaves this point in place.
@@ -109,7 +109,7 @@ class CenteredOutline:
             else:
                 points.append((s.compute_point(0.0), s.start, s.end, s.compute_point(0.0)))
                 kinds.append((0.0, 0.0, mark))
-        return cls(np.array(points) - find_centroid_of_joints(segments), np.array(kinds))
+        return cls(np.array(points) - compute_centroid_of_segments(segments), np.array(kinds))
 
     @cached_property
     def levels(self) -> tuple[Array, NDArray[np.int64]]:
@@ -237,9 +237,14 @@ def mirror_image(segment: Segment) -> Segment:
     its left.
     """
 
-    def over(point: Point) -> Point:
+    def mirror_point(point: Point) -> Point:
         return point[0], -point[1]
 
     if isinstance(segment, Line):
-        return Line(over(segment.end), over(segment.start))
-    return evolve(segment, center=over(segment.center), mid_angle=-segment.mid_angle, rest=over(segment.rest))
+        return Line(mirror_point(segment.end), mirror_point(segment.start))
+    return evolve(
+        segment,
+        center=mirror_point(segment.center),
+        mid_angle=-segment.mid_angle,
+        rest=mirror_point(segment.rest),
+    )

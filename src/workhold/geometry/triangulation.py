@@ -173,13 +173,13 @@ class SweepLine:
         (x, y), points = self.points[v], self.points
         back = atan2(points[u][1] - y, points[u][0] - x)
 
-        def clockwise(w: int) -> float:
+        def measure_angle(w: int) -> float:
             """Return the clockwise angle in radians, in (0, 2 pi], from the direction v to u to the direction
             v to w.
             """
             return (back - atan2(points[w][1] - y, points[w][0] - x)) % tau or tau
 
-        return min((w for w in (self.after[v], *others) if w != u), key=clockwise)
+        return min((w for w in (self.after[v], *others) if w != u), key=measure_angle)
 
 
 def triangulate_monotone_piece(piece: Sequence[int], points: Sequence[Point]) -> list[Triangle]:

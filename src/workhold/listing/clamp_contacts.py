@@ -100,7 +100,7 @@ def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContact
     ``found`` are the proven pairs of locator and clamp of one direction.
     """
     found = found.list_each_once()
-    found = found.take(is_one_of_two(found.null[:, :3], found.push))
+    found = found.take(may_hold_in_pair(found.null[:, :3], found.push))
     index, hole = found.make_clamp_placement(problem).choose_holes(problem, every=True)
     kept = np.unique(index)
     found, hole_of = found.take(kept), np.searchsorted(kept, index)
@@ -159,7 +159,7 @@ def make_contacts_of_candidates(c: CandidateFixtures, problem: Problem) -> Clamp
     holes = np.stack(frame.map_step_to_toolkit(hole, c.row[index, TIP]), axis=1) - lowest[index]
     is_bolted = np.zeros(len(push), np.bool_)
     is_bolted[index] = True
-    kept = is_one_of_two(taken, push) & is_bolted
+    kept = may_hold_in_pair(taken, push) & is_bolted
     number = np.cumsum(kept) - 1
     order = np.lexsort((row, column), axis=1)
     feature, column, row = (
@@ -254,7 +254,7 @@ def make_box_beside(
     return CandidateBox(rows, offsets, TIP, middle, reach)
 
 
-def is_one_of_two(taken: Array, push: Array) -> BoolArray:
+def may_hold_in_pair(taken: Array, push: Array) -> BoolArray:
     """Return a mask (N,): True for clamps that neither hold the part alone nor overload a locator.
 
     A locator is overloaded beyond ``MOST_FORCE`` times the clamp's own force. ``taken`` (N, 3) are the
@@ -278,7 +278,7 @@ def bound_rounding_doubts(
     Parameters
     ----------
     inverse : (N, 3, 3) inverses of the matrices of the locators' wrenches.
-    taken, push : see :func:`is_one_of_two`.
+    taken, push : see :func:`may_hold_in_pair`.
     rows : (N, 4, 12) kernel rows of the features touched.
     """
     size = float(np.abs(problem.rows[:, [X, Y, RADIUS]]).max()) + problem.wrench_length

@@ -193,7 +193,7 @@ class BestFixtures:
         )
 
     @property
-    def most(self) -> int:
+    def wanted_count(self) -> int:
         """Number of fixtures that the query asks for."""
         assert self.problem.query.best is not None
         return self.problem.query.best
@@ -202,7 +202,7 @@ class BestFixtures:
         """Take records (N, 19) from the search; return the limits that further fixtures must keep."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
-        if sum(map(len, self.waiting)) >= max(least, self.most):
+        if sum(map(len, self.waiting)) >= max(least, self.wanted_count):
             self.decide()
         return self.needed
 
@@ -219,7 +219,7 @@ class BestFixtures:
             parts.append(part)
             fresh += len(part.standing)
             # Measured in parts, so that a user who cancels does not wait for all.
-            if fresh >= max(BLOCK, self.most):
+            if fresh >= max(BLOCK, self.wanted_count):
                 parts, fresh = [self.drop_beaten(list_each_once(CandidateFixtures.concatenate(parts)))], 0
         self.kept = self.drop_beaten(list_each_once(CandidateFixtures.concatenate(parts)))
 
@@ -228,12 +228,12 @@ class BestFixtures:
 
         Updates ``keys`` and ``needed``. ``everything`` must be free of repetitions.
         """
-        if len(everything.standing) <= self.most:
+        if len(everything.standing) <= self.wanted_count:
             return everything
         table = measure_table(place_candidates(everything, self.problem), self.problem)
         query = self.problem.query
         keys = make_table_keys(table, query, self.effective)
-        chosen = keys.are_among_best(self.most)
+        chosen = keys.are_among_best(self.wanted_count)
         self.has_dropped |= not chosen.all()
         self.keys = keys.take(chosen)
         # An unfit fixture is worse than any fit one, whatever its margin.
@@ -241,7 +241,7 @@ class BestFixtures:
             margin = float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK
             self.needed = InterestLimits(margin=max(margin, 0.0))
         # A fixture that is surely a step behind as many as are asked for is not among the best.
-        if (last := self.keys.find_last_fine_error(self.most)) is not None:
+        if (last := self.keys.find_last_fine_error(self.wanted_count)) is not None:
             self.needed = InterestLimits(error=min(A_STEP * last, self.needed.error))
         return everything.take(chosen)
 
@@ -260,14 +260,14 @@ class BestFixtures:
         """
         self.decide()
         return self.keys is not None and bool(
-            bound.are_beaten(self.keys, self.most, bound.lowest_error).all()
+            bound.are_beaten(self.keys, self.wanted_count, bound.lowest_error).all()
         )
 
     def finish(self) -> tuple[CandidateFixtures, SearchReport]:
         """Return all candidates that may be among the best, and the report on all records."""
         self.decide()
         assert self.kept is not None
-        self.has_dropped |= len(self.kept.standing) > self.most
+        self.has_dropped |= len(self.kept.standing) > self.wanted_count
         return self.kept, SearchReport.sum_up(self.accounts)
 
 

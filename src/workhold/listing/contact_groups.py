@@ -142,7 +142,7 @@ class SeatGroups:
                 same = (numbers[:, : self.alike + shift] == numbers[0, : self.alike + shift]).all(axis=1)
                 end = max(end, int(np.flatnonzero(same)[-1]) + 1)
                 rest = self.bounds.take(left[end:]).lowest_error
-                yield from self.select_groups_between(left[:end]).iterate_batches(
+                yield from self.select_groups_with_sharper_bounds(left[:end]).iterate_batches(
                     kept, min(floor, rest), together
                 )
             left, together = left[end:], 2 * together
@@ -165,7 +165,7 @@ class SeatGroups:
         order, starts = np.concatenate([self.order, last]), np.append(self.starts, len(self.order))
         return SeatGroups(order, starts, self.bounds.concatenate(self.bounds.keys_of_nothing))
 
-    def select_groups_between(self, groups: IntArray) -> SeatGroups:
+    def select_groups_with_sharper_bounds(self, groups: IntArray) -> SeatGroups:
         """Return some groups, given by index, with bounds improved by pairs of clamps.
 
         Groups without a bound stay without.

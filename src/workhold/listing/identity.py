@@ -28,7 +28,7 @@ from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Arrangement, Toolkit
 from workhold.geometry.symmetry import (
     Rotation,
-    find_centroid_of_joints,
+    compute_centroid_of_segments,
     find_rotations_onto_itself,
     find_symmetries,
     rotate_vectors,
@@ -103,7 +103,7 @@ class FixtureIdentity:
             table.arrangement
         ]
         period = np.where(halves, np.pi, 2.0 * np.pi)
-        kept = np.array(find_centroid_of_joints([face.segment for face in self.part.numbered.faces]))
+        kept = np.array(compute_centroid_of_segments([face.segment for face in self.part.numbered.faces]))
         after = [table.theta - rotation.angle + SAME_POSE for rotation in self.rotations]
         least = np.min([theta % period for theta in after], axis=0)
         words, pose = list[IntArray](), np.zeros((0, 0))
@@ -174,7 +174,7 @@ class FixtureIdentity:
         """Return the number of fixtures of each arrangement, (A,), where
         fixtures with the same image count once.
 
-        ``words`` and ``pose`` are the two results of :meth:`find_smallest_images`; ``arrangement`` (N,) is
+        ``words`` and ``pose`` are the two results of :meth:`find_smallest_face_images`; ``arrangement`` (N,) is
         that of each fixture.
         """
         order = np.lexsort(words[::-1])
@@ -364,7 +364,7 @@ def number_near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: T
     tilted = (table.quality[:, TILT] > 0.0).astype(np.int64)
     keys = np.column_stack([table.arrangement, tilted, faces])
     first, member = find_distinct_rows(keys)
-    _, group = find_distinct_rows(find_smallest_images(keys[first], workpiece, toolkit))
+    _, group = find_distinct_rows(find_smallest_face_images(keys[first], workpiece, toolkit))
     return np.asarray(group[member])
 
 
@@ -382,7 +382,7 @@ def find_distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
     return first, member.ravel()
 
 
-def find_smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
+def find_smallest_face_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
     """Return the lexicographically smallest image of each row of ``keys``, (K, 2 + P).
 
     The columns of a row are arrangement, tilt (0 or 1), and the faces that its P pegs touch. The images are

@@ -107,7 +107,7 @@ def measure_table_as_touched(table: FixtureTable, query: Query, touched: Touchab
         query.loads,
         touched=touched,
         jaw_force=query.jaw_force,
-        passed=query.passed,
+        passed=query.program_to_clear,
         pressed_up_to=query.pressed_up_to,
     )
     quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = table.quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]]
@@ -198,7 +198,7 @@ class OrderKeys:
         ``groups`` (N,) are group numbers from 0, ascending.
         """
 
-        def least(rows: Array) -> Array:
+        def find_least(rows: Array) -> Array:
             """Return the lexicographically least row of each group."""
             ordered = np.lexsort([*rows.T[::-1], groups])
             return rows[ordered[np.diff(groups[ordered], prepend=-1) > 0]]
@@ -206,7 +206,7 @@ class OrderKeys:
         error = self.error
         if error is not None:
             error = np.minimum.reduceat(error, np.flatnonzero(np.diff(groups, prepend=-1) > 0))
-        return OrderKeys(least(self.first), error, least(self.rest))
+        return OrderKeys(find_least(self.first), error, find_least(self.rest))
 
     @property
     def is_fine(self) -> BoolArray:

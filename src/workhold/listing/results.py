@@ -173,7 +173,7 @@ def make_best_result(
     result = make_result(kept.problem, candidates, account, work, is_part)
     if kept.has_dropped and not is_part:
         # Only those that are listed are counted.
-        result = evolve(result, table=result.table.take(slice(kept.most)))
+        result = evolve(result, table=result.table.take(slice(kept.wanted_count)))
         counted = SetCounter(FixtureIdentity(result.toolkit, result.workpiece))
         counted.add(result.table)
         result = evolve(
@@ -183,7 +183,7 @@ def make_best_result(
         )
     if not (work.complete and kept.has_dropped):
         return result
-    return evolve(result, notes=(BestOnly(kept.most), *result.notes))
+    return evolve(result, notes=(BestOnly(kept.wanted_count), *result.notes))
 
 
 def make_result(

@@ -70,7 +70,7 @@ from workhold.statics.contact_matrix import (
     compute_wrenches,
     invert_locator_matrices,
 )
-from workhold.statics.effective_error import EffectiveErrors, classify_angles, to_ends
+from workhold.statics.effective_error import EffectiveErrors, classify_angles, measure_end_distances
 from workhold.statics.judging import JudgingLimits, is_astray, is_near_edge, is_strong
 from workhold.statics.quality import (
     compute_tilts,
@@ -124,7 +124,7 @@ def make_ordered_groups(
     del numbers
     holes &= HOLES
     unsure = holds & (~(turn <= WELL_KNOWN) | (theta < AT_START) | (theta > tau - AT_START))
-    loose = is_among(holes, np.unique(holes[unsure]))
+    loose = mask_members(holes, np.unique(holes[unsure]))
     theta[loose] = 0.0
     # The steps of orientation are in the bits that the holes' hash leaves free.
     order = np.argsort(holes | (theta * STEPS).astype(np.int64))
@@ -146,7 +146,7 @@ def make_ordered_groups(
     if alike is None:
         return groups
 
-    def sharpened(order: IntArray, starts: IntArray) -> OrderKeys:
+    def sharpen_bounds(order: IntArray, starts: IntArray) -> OrderKeys:
         """Return bounds of some groups that also take account of the pairs of their clamps.
 
         ``order`` and ``starts`` are as in :class:`SeatGroups`.
@@ -155,7 +155,7 @@ def make_ordered_groups(
         return bound_groups(order, group, known, records, problems, query, by_pairs=True)
 
     # The first key number is whether a fixture is unfit.
-    return evolve(groups, sharpened=sharpened, alike=alike + 1)
+    return evolve(groups, sharpened=sharpen_bounds, alike=alike + 1)
 
 
 def bound_groups(
@@ -212,7 +212,7 @@ def find_best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
     return np.asarray(np.minimum.reduceat(np.where(off <= least, order, NO_CONTACT), starts))
 
 
-def is_among(numbers: IntArray, few: IntArray) -> BoolArray:
+def mask_members(numbers: IntArray, few: IntArray) -> BoolArray:
     """Return a mask (N,): True for numbers that occur in ``few`` (F,), which is ascending."""
     if len(few) == 0:
         return np.zeros(len(numbers), np.bool_)
@@ -319,7 +319,10 @@ def bound_error_factors(records: Array, off: Array, problem: Problem, query: Que
     angle = classify_angles(compute_seen_angles(records, problem), ANGLE)
     points = c.point[:, :LOCATORS] + np.asarray(problem.workpiece.center)
     place = 4.0 * SAME_PLACE + 16.0 * off
-    near = to_ends(points, effective.lines[faces]) < query.toolkit.carriers[0].peg_radius - place[:, None]
+    near = (
+        measure_end_distances(points, effective.lines[faces])
+        < query.toolkit.carriers[0].peg_radius - place[:, None]
+    )
     held = {
         "quarter_turn": angle == 1,
         "other_angle": angle == 2,

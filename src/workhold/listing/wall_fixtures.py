@@ -19,7 +19,7 @@ from workhold.listing.canonical_form import RowArrays
 from workhold.listing.clamp_placement import ClampPlacement, find_axis, find_last_holes, is_bolted
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 
-__all__ = ["WallFixtures", "find_first_of_each", "place_on_wall", "turn_points", "make_wall_table"]
+__all__ = ["WallFixtures", "find_lowest_of_each", "place_on_wall", "turn_points", "make_wall_table"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -65,7 +65,7 @@ class WallFixtures(RowArrays):
         A contact at a tangent joint is found on both features that meet there; the lower one is kept.
         """
         place = self.locator[:, 0] + self.tip @ np.array([0.7548776662, 0.5698402910])
-        return self.take(find_first_of_each((self.edge, self.row, self.line), place, self.feature))
+        return self.take(find_lowest_of_each((self.edge, self.row, self.line), place, self.feature))
 
     def make_clamp_placement(self, problem: Problem) -> ClampPlacement:
         """Return the data for placing the clamps of the fixtures; columns count from the locator's."""
@@ -92,7 +92,7 @@ class WallFixtures(RowArrays):
         )
 
 
-def find_first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
+def find_lowest_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
     """Return the index of one fixture of each set whose members agree in integers and place.
 
     Kept is the member with the lowest features.

@@ -832,9 +832,9 @@ class Fixture:
             For a fixture that is not one of a result, a part of unknown thickness, a solid without its STEP
             file, a part that cannot be meshed, and when the extra is not installed.
         """
-        from workhold.presenting.bent import bend_fixture
+        from workhold.presenting.bent import compute_bending
 
-        return bend_fixture(
+        return compute_bending(
             self,
             material,
             thickness=thickness,

@@ -159,7 +159,7 @@ class FixtureTable:
         """Return a table without rows, for a toolkit's numbers of pegs and of travels; for None, four pegs
         and one travel.
         """
-        count, travels = (4, 1) if toolkit is None else (toolkit.peg_count, toolkit.travels)
+        count, travels = (4, 1) if toolkit is None else (toolkit.peg_count, toolkit.travel_count)
         several = (travels,) if travels > 1 else ()
         ints, floats = np.zeros((0, count), np.int32), np.zeros((0, count, *several))
         return cls(

@@ -59,13 +59,13 @@ def shift_hole_numbers(
     """
     dx, dy = move
 
-    def further(peg: Peg) -> Peg:
+    def move_peg(peg: Peg) -> Peg:
         """Return the peg moved, with its hole (and name of place) numbered anew."""
         carrier = toolkit.find_carrier(peg.carrier)
         if not carrier.contact.is_placed:
             return evolve(peg, x=peg.x + dx, y=peg.y + dy)
         by = shifts[carrier.stands_on]
-        in_column, in_row = carrier.counted
+        in_column, in_row = carrier.counted_axes
         column, row = peg.column + in_column * by[0], peg.row + in_row * by[1]
         place = None if peg.place is None else carrier.name_place(column, row)
         return evolve(peg, column=column, row=row, x=peg.x + dx, y=peg.y + dy, place=place)
@@ -74,7 +74,7 @@ def shift_hole_numbers(
     # A clamp of which only the line is known is measured from the first column or row.
     ahead = [
         0.0
-        if all(carrier.counted) or carrier.travel is None
+        if all(carrier.counted_axes) or carrier.travel is None
         else dx * carrier.travel.unit[0] + dy * carrier.travel.unit[1]
         for carrier in (toolkit.find_carrier(peg.carrier) for peg in fixture.pegs)
         if carrier.on is not None
@@ -83,7 +83,7 @@ def shift_hole_numbers(
     ends = ahead or [0.0]
     pair = fixture.pair and evolve(fixture.pair, travels=(before[0] + ends[0], before[-1] + ends[-1]))
     own = travel + (ahead[0] if ahead else 0.0)
-    return evolve(fixture, pegs=tuple(map(further, fixture.pegs)), pose=pose, travel=own, pair=pair)
+    return evolve(fixture, pegs=tuple(map(move_peg, fixture.pegs)), pose=pose, travel=own, pair=pair)
 
 
 def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
@@ -92,7 +92,7 @@ def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list
     A number is left out where it stands for no hole: along a clamp's line, where the place of its tip is
     measured.
     """
-    counted = [(peg, toolkit.find_carrier(peg.carrier).counted) for peg in fixture.pegs]
+    counted = [(peg, toolkit.find_carrier(peg.carrier).counted_axes) for peg in fixture.pegs]
     return (
         [peg.column for peg, (in_column, _) in counted if in_column],
         [peg.row for peg, (_, in_row) in counted if in_row],

@@ -155,7 +155,7 @@ class Moves:
         ends = [np.array(columns[k], dtype=float).reshape(-1, 3) for k in (3, 4)]
         return cls(*columns[:3], *ends, *columns[5:])
 
-    def cut_to(self, stretches: MoveStretches) -> Moves:
+    def cut_into_stretches(self, stretches: MoveStretches) -> Moves:
         """Return K moves, one for each stretch, which run along that stretch only.
 
         Each has the line, tool and speeds of the move it is a part of.

@@ -105,13 +105,13 @@ class NumberedOutlines:
         if not self.runs or not any(self.runs[k] for k in face.segments):
             return self.bands[number] if self.bands else None
 
-        def distance_past_end(k: int) -> float:
+        def measure_distance_past_end(k: int) -> float:
             """Return how far the point lies beyond the nearer end of segment k,
             along its parameter; negative inside.
             """
             return abs(self.segments[k].find_parameter(point)) - self.segments[k].half_extent
 
-        touched = min(face.segments, key=distance_past_end)
+        touched = min(face.segments, key=measure_distance_past_end)
         rows, segment = self.runs[touched], self.segments[touched]
         if not rows:
             return self.bands[touched]

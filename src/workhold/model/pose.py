@@ -161,11 +161,11 @@ class FlushContacts:
         """
         tangent = np.array([edge.tangent for edge in edges]).reshape(-1, 2)
 
-        def named(end: HullEnd) -> tuple[int, ...]:
+        def list_faces(end: HullEnd) -> tuple[int, ...]:
             """Return the numbers of the faces at an end of an edge, ascending."""
             return tuple(sorted(numbers[index] for index in end.faces))
 
-        touching = tuple((named(edge.start), named(edge.end)) for edge in edges)
+        touching = tuple((list_faces(edge.start), list_faces(edge.end)) for edge in edges)
         shared = [
             [faces[0] if len(faces) == 1 else -1 - k for k, faces in enumerate(pair)] for pair in touching
         ]

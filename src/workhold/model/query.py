@@ -149,7 +149,7 @@ class Query(SearchQuestion):
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
         object.__setattr__(self, "types", check_arrangements(self.types, known))
-        pairs = self.toolkit.travels > 1
+        pairs = self.toolkit.travel_count > 1
         self.refuse_loads_across()
         if self.toolkit.flat_jaws is not None:
             object.__setattr__(self, "rank_by", choose_hold_ranking(self.rank_by))
@@ -288,7 +288,7 @@ class Query(SearchQuestion):
         faces, toolkit = self.restrictions.touch, self.toolkit
         if not faces:
             return
-        if toolkit.travels > 1:
+        if toolkit.travel_count > 1:
             raise InputError(
                 "faces to touch cannot be asked for with two clamps: take one clamp, or list all and "
                 "choose among them."
@@ -331,7 +331,7 @@ class Query(SearchQuestion):
         return self.workpiece.solid is not None or self.pressed_up_to is not None
 
     @property
-    def passed(self) -> tuple[Program, float] | None:
+    def program_to_clear(self) -> tuple[Program, float] | None:
         """Program whose tools must clear the fixture, and the height of the pegs in mm;
         None where one of them is missing.
         """

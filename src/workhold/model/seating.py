@@ -234,7 +234,7 @@ class Seating:
         caught = (
             "never lost" if self.capture_opening is None else f"caught below {self.capture_opening:.3f} mm"
         )
-        caught = "it is not known how far you may open" if self.is_untold else caught
+        caught = "it is not known how far you may open" if self.is_capture_unknown else caught
         wrong = len(self.list_wrong_seats())
         return f"{caught}, {wrong:,} wrong seat{'s' * (wrong != 1)}"
 
@@ -258,7 +258,7 @@ class Seating:
         return evolve(self, opening=opening, most=most, clamping=sign, opened=opened)
 
     @property
-    def is_untold(self) -> bool:
+    def is_capture_unknown(self) -> bool:
         """Whether the cage could not be worked out, so that the capture opening is unknown."""
         return self.lowest_pass is None and self.capture_opening is not None
 
@@ -310,7 +310,7 @@ class Seating:
     def warnings(self) -> tuple[str, ...]:
         """Warnings as sentences without a capital and full stop; lengths in mm."""
         out, reading = list[str](), self.find_least_reading()
-        if self.is_untold:
+        if self.is_capture_unknown:
             out.append("it is not known how far you may open without losing the part")
         elif self.is_hardly_caught:
             out.append(
@@ -336,7 +336,7 @@ class Seating:
             "capture_opening": self.capture_opening,
             "drop_room": self.drop_room,
             "way_out": self.way_out,
-            "placing": 0.0 if self.is_untold else self.placing,
+            "placing": 0.0 if self.is_capture_unknown else self.placing,
             "sticking_friction": self.sticking_friction,
             "wrong_seats": float(len(self.list_wrong_seats())),
             "reading": self.find_least_reading(),

@@ -160,7 +160,7 @@ def measure_facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
     """
     gaps: list[dict[Side, float]] = [{} for _ in spans]
 
-    def face(one: int, side: Side, gap: float) -> None:
+    def note_gap(one: int, side: Side, gap: float) -> None:
         """Note the gap at a side of box ``one``, where it is smaller than that known before."""
         gaps[one][side] = min(gap, gaps[one].get(side, inf))
 
@@ -168,11 +168,11 @@ def measure_facing_gaps(spans: list[Box]) -> list[dict[Side, float]]:
         for low, high in ((i, k), (k, i)):
             across, upward = spans[high].x0 - spans[low].x1, spans[high].y0 - spans[low].y1
             if across > 0:
-                face(low, "right", across)
-                face(high, "left", across)
+                note_gap(low, "right", across)
+                note_gap(high, "left", across)
             elif upward > 0 and spans[low].x0 <= spans[high].x1 and spans[high].x0 <= spans[low].x1:
-                face(low, "top", upward)
-                face(high, "bottom", upward)
+                note_gap(low, "top", upward)
+                note_gap(high, "bottom", upward)
     return gaps
 
 
@@ -455,7 +455,7 @@ def bound_placed_parts(
     round_ones = np.array([(*a.center, a.radius, a.mid_angle, a.half_sweep) for a in arcs]).reshape(-1, 5)
     center_x, center_y, radius, middle, half = round_ones.T
 
-    def farthest(direction: float) -> NDArray[np.float64]:
+    def find_farthest(direction: float) -> NDArray[np.float64]:
         """Return the greatest coordinate (N,) in mm along a direction,
         in radians, of the part turned by theta alone.
         """
@@ -465,7 +465,7 @@ def bound_placed_parts(
         bulges = np.where(faces, rotate_vectors(center_x, center_y, -turned)[0] + radius, -np.inf)
         return np.asarray(np.maximum(reach, bulges.max(axis=1, initial=-np.inf)))
 
-    left, bottom, right, top = (farthest(angle) for angle in (np.pi, -np.pi / 2, 0.0, np.pi / 2))
+    left, bottom, right, top = (find_farthest(angle) for angle in (np.pi, -np.pi / 2, 0.0, np.pi / 2))
     return np.stack([x - left, y - bottom, x + right, y + top], axis=1)
 
 
@@ -545,7 +545,7 @@ def make_shown_length(seen: Sequence[ShownCarrier], setting: LengthSetting) -> S
     still = [one.plate for one in seen if one.clamping is None]
     own = [one.plate for one in seen if one.carrier.name == mover.name]
 
-    def axis(at: Point, plates: list[Box]) -> Axis:
+    def make_axis(at: Point, plates: list[Box]) -> Axis:
         """Return the line through a point, square to the length,
         across these plates; for a clamp it begins at the point.
         """
@@ -555,4 +555,6 @@ def make_shown_length(seen: Sequence[ShownCarrier], setting: LengthSetting) -> S
             first, low = at
         return ((first, at[1]), (last, at[1])) if upright else ((at[0], low), (at[0], high))
 
-    return ShownLength(setting, (axis(setting.start, still or own), axis(setting.end, own or still)), upright)
+    return ShownLength(
+        setting, (make_axis(setting.start, still or own), make_axis(setting.end, own or still)), upright
+    )

@@ -231,7 +231,7 @@ class StockBorder:
 
     def measure_distance(self, points: Floats) -> Floats:
         """Return the distances (N,) in mm of points (N, 2) from the nearest edge."""
-        parts = split(len(points), len(self.edges))
+        parts = make_row_slices(len(points), len(self.edges))
         found = [self.edges.measure_distances(points[None, part]).min(axis=0) for part in parts]
         return np.concatenate([np.zeros(0), *found])
 
@@ -243,7 +243,7 @@ class StockBorder:
         """
         edges, found = self.edges, [np.zeros(0, np.bool_)]
         side = np.where(edges.is_arc, np.sign(edges.bulge), 0.0)
-        for part in split(len(points), len(edges)):
+        for part in make_row_slices(len(points), len(edges)):
             one, other = (ends[:, None] - points[None, part] for ends in (edges.start, edges.end))
             cross = one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0] + 0.0
             angle = np.arctan2(cross, (one * other).sum(axis=2))
@@ -272,7 +272,7 @@ def compute_box(border: StockBorder) -> tuple[float, float, float, float]:
     return x0, y0, x1, y1
 
 
-def split(count: int, width: int) -> list[slice]:
+def make_row_slices(count: int, width: int) -> list[slice]:
     """Return slices that cover ``count`` rows of ``width`` numbers,
     each of at most :data:`AT_ONCE` numbers or one row.
     """
@@ -351,7 +351,7 @@ def find_mixed_parts(
     """
     which, low, high = [np.zeros(0, np.int64)], [np.zeros(0)], [np.zeros(0)]
     half = paths.length / 2
-    for part in split(len(mixed), len(border.edges) * 16):
+    for part in make_row_slices(len(mixed), len(border.edges) * 16):
         rows = mixed[part]
         middle = paths.take(rows).compute_points(np.full((len(rows), 1), 0.5))[:, 0]
         distance = border.edges.measure_distances(middle[None])

@@ -264,7 +264,7 @@ def recount_holes(
             plate.name: compute_shift(plate, plates[0], (columns, rows), travel - fixture.travel)
             for plate in plates
         }
-        if all(fits(plate, shifts[plate.name], fixture, toolkit, triple) for plate in plates):
+        if all(are_holes_free(plate, shifts[plate.name], fixture, toolkit, triple) for plate in plates):
             return move_setup(fixture, toolkit, triple, (columns, rows), shifts, travel)
     raise InputError("the supports have no holes in the plates of the toolkit: list them again.")
 
@@ -312,14 +312,14 @@ def list_taken_holes(
     for peg in fixture.pegs:
         carrier = toolkit.find_carrier(peg.carrier)
         if carrier.stands_on == plate.name:
-            in_column, in_row = carrier.counted
+            in_column, in_row = carrier.counted_axes
             yield (peg.column if in_column else None), (peg.row if in_row else None)
     for pad in triple.supports:
         if pad.carrier == plate.name:
             yield pad.column, pad.row
 
 
-def fits(plate: Carrier, shift: Hole, fixture: Fixture, toolkit: Toolkit, triple: Triple) -> bool:
+def are_holes_free(plate: Carrier, shift: Hole, fixture: Fixture, toolkit: Toolkit, triple: Triple) -> bool:
     """Return whether all holes of pegs, clamps and supports on a plate, moved by ``shift``, exist and are not
     blocked.
     """

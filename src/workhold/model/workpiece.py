@@ -174,7 +174,7 @@ class Workpiece:
         if not loops:
             raise InputError(f"{name} has no loop: give at least an outer loop.")
 
-        def segment_place(loop: int, k: int) -> str:
+        def describe_segment(loop: int, k: int) -> str:
             """Return a name for segment k of a loop for messages, with its label if there are labels."""
             # Labels follow the loop as drawn, so a message before turning must not use later numbers.
             label = f" ({labels[loop][k]})" if labels else ""
@@ -185,7 +185,7 @@ class Workpiece:
         used: list[NDArray[np.float64]] = []
         drawn: list[LoopShape] = []
         for index, loop in enumerate(loops):
-            place = partial(segment_place, index)
+            place = partial(describe_segment, index)
             vertices = check_vertices(loop, f"{name}: loop {index}", place)
             straightened += int((np.asarray(loop)[:, 2] != vertices[:, 2]).sum())
             segments = make_loop_segments(vertices)
@@ -196,7 +196,7 @@ class Workpiece:
             refuse_no_area(shape, f"{name}: loop {index}")
             used.append(vertices)
             drawn.append(shape)
-        refuse_meeting(drawn, segment_place, comparisons)
+        refuse_meeting(drawn, describe_segment, comparisons)
         pieces = 1
         if solid is None:
             refuse_misplaced_holes(name, drawn, comparisons)

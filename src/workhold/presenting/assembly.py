@@ -388,7 +388,7 @@ def make_bodies(
     if around is None:
         return make_named_solids(assembly.bodies)
     own = find_own_shape(around)
-    move = to_model(own, result.workpiece, assembly.fixture)
+    move = make_location_to_model(own, result.workpiece, assembly.fixture)
     part, *others = assembly.bodies
     moved = [(name, shape.Moved(move), colour) for name, shape, colour in make_named_solids(others)]
     return [(part.name, own, COLOURS[part.kind]), *moved]
@@ -408,7 +408,7 @@ def find_own_shape(part: Any) -> Any:
     return solids[0]
 
 
-def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
+def make_location_to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
     """Return the location of Open CASCADE that carries the toolkit's frame into the model frame of the part's
     solid.
 

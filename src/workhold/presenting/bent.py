@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from workhold.model.support_triples import Supports
 
 __all__ = [
-    "bend_fixture",
-    "bend_sheet",
+    "compute_bending",
+    "compute_sheet_bending",
     "make_bent_glb",
     "make_bent_mesh",
     "find_pads_below",
@@ -94,7 +94,7 @@ def find_top_over(shape: PartShape, x: float, y: float) -> float:
     return float(heights[over].max())
 
 
-def bend_fixture(
+def compute_bending(
     fixture: Fixture,
     material: str | ElasticMaterial,
     *,
@@ -126,7 +126,9 @@ def bend_fixture(
     return find_bendings(listed.result, [listed.row], whole, asked)[0]
 
 
-def bend_sheet(fixture: Fixture, settings: dict[str, Any], shape: PartShape | None) -> Bending | None:
+def compute_sheet_bending(
+    fixture: Fixture, settings: dict[str, Any], shape: PartShape | None
+) -> Bending | None:
     """Return how far a fixture bends its part, for its setup sheet; None where the settings name no material.
 
     Parameters

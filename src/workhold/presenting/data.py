@@ -236,7 +236,7 @@ def describe_result(result: Result, shown: ShownEntries, count: int) -> dict[str
         "distinct": {kind: int(number) for kind, number in result.distinct.items()},
         "listed": len(result),
         "unfit": shown.unfit,
-        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travels > 1 else {}),
+        **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travel_count > 1 else {}),
         "complete": bool(result.complete),
         "notes": list(map(str, result.notes)),
         "proof": None if result.proof is None else describe_proof(result.proof),

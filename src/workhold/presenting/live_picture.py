@@ -21,7 +21,7 @@ from workhold.drawing.bench import BenchDrawing, make_bench
 from workhold.drawing.panel import describe_fixture
 from workhold.drawing.scene import Box, Scene, View, measure_text
 from workhold.drawing.support_signs import SUPPORT, draw_pad, draw_tip
-from workhold.drawing.supports_drawn import PlannedSupports, choose_lettering_size, draw_triangle
+from workhold.drawing.supports_drawn import PlannedSupports, compute_drawn_radius, draw_triangle
 from workhold.errors import InputError
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture
@@ -205,14 +205,14 @@ class LivePicture:
         planned, view = PlannedSupports.from_chosen(chosen), self.view
         corners, radius = (
             [view(place) for place in planned.places],
-            choose_lettering_size(planned.pad_radius, view),
+            compute_drawn_radius(planned.pad_radius, view),
         )
         draw_triangle(scene.group("stands"), corners)
         for pad, (x, y) in zip(chosen.pads, corners, strict=True):
             group, below = add_moving_group(scene, view, ways.get(pad.carrier)), (x, y + radius + PAD_NAME)
             draw_pad(group, (x, y), radius)
             group.add_text(below, pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0)
-        draw_tip(scene.group("stands"), view(planned.clamp), choose_lettering_size(planned.tip_radius, view))
+        draw_tip(scene.group("stands"), view(planned.clamp), compute_drawn_radius(planned.tip_radius, view))
 
     def write_name(self, scene: Scene, number: int) -> None:
         """Write the name of the hole of peg ``number``, an index from 0, beside the peg.

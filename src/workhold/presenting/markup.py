@@ -71,7 +71,7 @@ def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup
     """
     ways = ["right" if heading.startswith(">") else "left" for heading in headings]
 
-    def row(cells: Sequence[str], tag: str) -> str:
+    def make_row(cells: Sequence[str], tag: str) -> str:
         """Return a table row of cells with the tag "th" or "td"."""
         made = (
             f'<{tag} align="{way}" style="text-align:{way}" nowrap>{escape_html(cell)}</{tag}>'
@@ -79,8 +79,8 @@ def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup
         )
         return f"<tr>{''.join(made)}</tr>"
 
-    head = row([escape_html(heading.removeprefix(">")) for heading in headings], "th")
-    body = "\n".join(row(cells, "td") for cells in rows)
+    head = make_row([escape_html(heading.removeprefix(">")) for heading in headings], "th")
+    body = "\n".join(make_row(cells, "td") for cells in rows)
     return Markup(f"<table><thead>{head}</thead>\n<tbody>{body}</tbody></table>")
 
 

@@ -15,7 +15,7 @@ from workhold.drawing.fixture_pictures import draw_best_thumbnails, draw_fixture
 from workhold.drawing.part_pictures import draw_features
 from workhold.drawing.path_drawn import make_planned_path
 from workhold.drawing.render import render
-from workhold.drawing.sheet_facts import find_placing
+from workhold.drawing.sheet_facts import find_shift_on_plate
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
@@ -247,9 +247,9 @@ def write_paper(
         )
     shape = settings.pop("shape", None)
     if settings.get("material") is not None:
-        from workhold.presenting.bent import bend_sheet
+        from workhold.presenting.bent import compute_sheet_bending
 
-        settings["bending"] = bend_sheet(result[rank - 1], settings, shape)
+        settings["bending"] = compute_sheet_bending(result[rank - 1], settings, shape)
     pages = draw_setup_sheet(result, rank, result_hash=compute_file_hash(result_file), **settings)
     write_bytes(path, make_pages_file(pages, ending, settings["day"]))
 
@@ -312,7 +312,7 @@ def make_model_file(fixture: Fixture, result: Result, ending: str, settings: dic
     zero = choose_part_zero(result.workpiece, settings["zero"], unit)
     at, clearance, chosen = settings["at"], settings["clearance"], settings.get("supports")
     if chosen is None:
-        fixture = move_fixture_by_holes(fixture, toolkit, find_placing(fixture, result, at))
+        fixture = move_fixture_by_holes(fixture, toolkit, find_shift_on_plate(fixture, result, at))
     elif at is not None:
         chosen = chosen.move_to_hole(at)
     if isinstance(fixture.hold, JawHold) and ending in (".csv", ".dxf"):

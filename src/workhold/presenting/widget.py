@@ -84,10 +84,10 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         self.result, self.usual, self.jaw, self.supports = result, usual, jaw, supports
         read_jaw_stiffness(jaw)
         super().__init__(rank=rank, count=len(result), jaw_force=jaw_force or 0.0)
-        self.show()
-        self.observe(self.show, "rank")
-        self.observe(self.take, "dragged")
-        self.observe(self.push, ["force", "jaw_force"])
+        self.update_picture()
+        self.observe(self.update_picture, "rank")
+        self.observe(self.take_dragged_arrow, "dragged")
+        self.observe(self.update_answer, ["force", "jaw_force"])
         self.observe(self.close_jaws, "asked_closing")
 
     @traitlets.validate("rank")  # type: ignore[untyped-decorator]
@@ -95,7 +95,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         """Return the proposed rank clamped to the ranks that exist."""
         return min(max(int(proposal["value"]), 1), len(self.result))
 
-    def show(self, _: Any = None) -> None:
+    def update_picture(self, _: Any = None) -> None:
         """Set ``picture`` and ``closing`` for the fixture of the current rank, and answer the current force
         again.
         """
@@ -108,21 +108,21 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
                 "mover": self.result.toolkit.moving.noun,
             }
             self.closing = {**self.live.describe_closing(), "number": self.asked_closing}
-            self.push()
+            self.update_answer()
 
-    def take(self, change: Any) -> None:
+    def take_dragged_arrow(self, change: Any) -> None:
         """Set ``force`` from an arrow that was dragged in the browser, and answer that force."""
         *arrow, number = change["new"]
         try:
             pushed = self.live.read_push(arrow)
         except InputError as error:
-            self.answer = {**self.nothing, "words": str(error), "number": number}
+            self.answer = {**self.empty_answer, "words": str(error), "number": number}
             return
         with self.hold_trait_notifications():
             self.force = pushed.numbers
-        self.push(number=number)
+        self.update_answer(number=number)
 
-    def push(self, _: Any = None, number: int = 0) -> None:
+    def update_answer(self, _: Any = None, number: int = 0) -> None:
         """Set ``answer`` to the effect of the current force.
 
         ``number`` is that of the browser's question, returned with the answer.
@@ -131,11 +131,11 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
             pushed = TriedForce.from_numbers(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
             found = self.live.answer(pushed, self.jaw_force or None, self.jaw)
         except InputError as error:
-            found = {**self.nothing, "words": str(error)}
+            found = {**self.empty_answer, "words": str(error)}
         self.answer = {**found, "number": number}
 
     @property
-    def nothing(self) -> dict[str, Any]:
+    def empty_answer(self) -> dict[str, Any]:
         """An answer that has no arrows."""
         return self.live.answer(TriedForce(0.0, 0.0, 0.0, 0.0), None, self.jaw)
 

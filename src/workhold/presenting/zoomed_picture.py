@@ -52,7 +52,7 @@ from workhold.presenting.moving_picture import (
     measure_draw_back,
 )
 
-__all__ = ["draw_small", "draw_zoomed"]
+__all__ = ["draw_small_picture", "draw_zoomable_picture"]
 
 # Room around the drawing for names, dimensions and arrows, page units: left, top, right, bottom; in a picture
 # narrower than so much there is less.
@@ -77,7 +77,7 @@ def add_fixed_size_group(scene: Scene, at: Point, axes: str = "xy", **attributes
     )
 
 
-def draw_zoomed(
+def draw_zoomable_picture(
     bench: BenchDrawing, title: str, size: tuple[float, float], placed: Sequence[float] = (0.0, 0.0)
 ) -> str:
     """Return a fixture drawn for a frame of ``size`` (width, height) in page units.
@@ -286,7 +286,7 @@ SMALL, SMALL_RIM, STEP, CLOSEST = (84.0, 72.0), 4.0, 3.0, 0.4
 SMALL_PEG = 2.4
 
 
-def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
+def draw_small_picture(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
     """Return a small picture of the part with its touched faces and pegs, to
     choose a fixture by, as SVG text.
     """

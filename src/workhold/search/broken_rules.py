@@ -308,7 +308,7 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
     first = sum(limit.bounds == "bodies" for limit in limits)
     out: list[Rule] = []
 
-    def rule(words: str, kept: int, restrictions: Restrictions, asked_of: Query = problem.query) -> None:
+    def add_rule(words: str, kept: int, restrictions: Restrictions, asked_of: Query = problem.query) -> None:
         """Append a rule that tests the toolkit's first ``kept`` limits and some restrictions."""
         query = evolve(asked_of, toolkit=toolkit.without_limits(limits[kept:]), restrictions=restrictions)
         part = evolve(problem, query=query)
@@ -316,19 +316,19 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
         out.append((words, lambda c: are_placeable(c.candidates, part), keeps))
 
     if problem.frame.moving.on is not None:
-        rule("locators clear of the clamp", 0, Restrictions())
+        add_rule("locators clear of the clamp", 0, Restrictions())
     for number, limit in enumerate(limits):
         if number == first and asked.angles:
-            rule("angles of the part", first, asked)
+            add_rule("angles of the part", first, asked)
         ruled_out = asked if number >= first else Restrictions()
         if limit.bounds == "travel" and has_body_to_pass(problem.query):
             # First without the program, then with the rule that tools keep clear of the clamp's body.
-            rule(limit.rule, number + 1, ruled_out, problem.query.without_program)
-            rule(describe_body_rule(problem.query), number + 1, ruled_out)
+            add_rule(limit.rule, number + 1, ruled_out, problem.query.without_program)
+            add_rule(describe_body_rule(problem.query), number + 1, ruled_out)
         else:
-            rule(limit.rule, number + 1, ruled_out)
+            add_rule(limit.rule, number + 1, ruled_out)
     if first == len(limits) and asked.angles:
-        rule("angles of the part", first, asked)
+        add_rule("angles of the part", first, asked)
     return out
 
 
@@ -339,11 +339,11 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
     """
     query, out = problem.query, list[Rule]()
 
-    def table(c: ContactSets) -> FixtureTable:
+    def make_table(c: ContactSets) -> FixtureTable:
         """Return the contacts as fixtures placed in the toolkit."""
         return place_candidates(c.candidates, problem)
 
-    def untouched(c: ContactSets) -> tuple[int, str]:
+    def find_untouched(c: ContactSets) -> tuple[int, str]:
         """Return the index of the contact with the largest closure margin, and why it breaks the rule on
         faces to touch.
         """
@@ -352,11 +352,11 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
             c.margin.argmax()
         ), f"it would hold, but it does not touch all the faces that must be touched: {names}."
 
-    def imprecise(c: ContactSets) -> tuple[int, str]:
+    def find_imprecise(c: ContactSets) -> tuple[int, str]:
         """Return the index of the contact with the least location error, and a sentence that compares it with
         the limit.
         """
-        errors = measure_table(table(c), problem).quality[:, LOCATION_ERROR]
+        errors = measure_table(make_table(c), problem).quality[:, LOCATION_ERROR]
         index, most = int(np.nanargmin(errors)), query.max_location_error or 0.0
         return index, (
             f"it would hold with a location error of {unit.format_length(errors[index])}, but at most "
@@ -364,13 +364,13 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
         )
 
     if query.restrictions.touch:
-        out.append(("faces to touch", lambda c: are_touching_all(table(c), query), untouched))
+        out.append(("faces to touch", lambda c: are_touching_all(make_table(c), query), find_untouched))
     if query.max_location_error is not None:
         out.append(
             (
                 "largest location error",
-                lambda c: are_precise(measure_table(table(c), problem), query),
-                imprecise,
+                lambda c: are_precise(measure_table(make_table(c), problem), query),
+                find_imprecise,
             )
         )
     return out

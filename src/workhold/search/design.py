@@ -231,7 +231,7 @@ def answer(
         result = find_best_fixtures(query, workers, progress, cancel, preview)
         if result is not None:
             return send_to_sink(result, sink)
-    if query.toolkit.travels > 1:
+    if query.toolkit.travel_count > 1:
         with LatticeShares.open_for_query(query, workers, cancel) as shares:
             return send_to_sink(answer_by_shares(shares, progress, cancel, preview), sink)
     ways = query.toolkit.ways
@@ -263,7 +263,7 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
         return False
     if pairs / 1000.0 > LIMITED_FROM:
         return True
-    if query.toolkit.travels > 1:
+    if query.toolkit.travel_count > 1:
         return (
             count_ways(map(list_search_blocks, make_searches(query, threads, cancel))) > OF_TWO * LIMITED_FROM
         )
@@ -280,7 +280,7 @@ def find_best_fixtures(
     None where limits do not help, so that the caller must search everything. After ``cancel``, an incomplete
     result.
     """
-    is_paired = query.toolkit.travels > 1
+    is_paired = query.toolkit.travel_count > 1
     problems = (
         make_problems(query)
         if is_paired
@@ -329,7 +329,7 @@ def find_fixtures_within_limits(
         kepts.append(kept)
     keys = reduce(OrderKeys.concatenate, [kept.found_keys for kept in kepts])
 
-    def finish() -> Result:
+    def join_results() -> Result:
         """Return the result, joined from all directions."""
         results = [
             make_best_result(kept, work, len(kepts) > 1, is_limited=True)
@@ -337,7 +337,7 @@ def find_fixtures_within_limits(
         ]
         return join_ways(results, query) if len(results) > 1 else results[0]
 
-    return keys, finish
+    return keys, join_results
 
 
 def find_paired_fixtures_within_limits(

@@ -178,7 +178,7 @@ class LocatorSpots:
         return near, counts
 
     @property
-    def least(self) -> float:
+    def least_middle_error(self) -> float:
         """Smallest effective location error in mm of three contacts in the middles of coarsest spots."""
         return float(find_least_middle_error(self.spots, self.roots, self.precision, np.empty((4, 3))))
 
@@ -363,7 +363,7 @@ def choose_first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
     """Return the first limit of the effective location error in mm, given the spots of each direction of the
     clamp.
     """
-    return choose_limit_growth(query)[0] * min(one.least for one in spots)
+    return choose_limit_growth(query)[0] * min(one.least_middle_error for one in spots)
 
 
 def choose_limit_growth(query: Query) -> tuple[float, float, int]:
@@ -372,7 +372,7 @@ def choose_limit_growth(query: Query) -> tuple[float, float, int]:
     The result is (first limit divided by the least error, each further limit divided by the one before,
     largest number of limits).
     """
-    return OF_ONE if query.toolkit.travels == 1 else OF_TWO
+    return OF_ONE if query.toolkit.travel_count == 1 else OF_TWO
 
 
 def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:

@@ -70,7 +70,7 @@ def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -
     if held_flat or query.seating is not None or query.is_sifted:
         return None
     query = evolve(query, best=None)
-    if query.toolkit.travels > 1:
+    if query.toolkit.travel_count > 1:
         return estimate_clamp_pairs(query, threads, cancel)
     ways = [estimate_one_direction(evolve(query, toolkit=way), threads, cancel) for way in query.toolkit.ways]
     known = [count for count in ways if count is not None]

@@ -117,7 +117,7 @@ def evaluate(
         tolerance=tolerance,
         loads=loads,
         jaw_force=jaw_force,
-        listing="all" if toolkit.travels > 1 else None,
+        listing="all" if toolkit.travel_count > 1 else None,
     )
     far = setup.describe_distant_peg(measure_outline_diameter(query.workpiece))
     if far:
@@ -176,7 +176,7 @@ class GivenSetUp:
             tuple(find_named_hole(name.removeprefix(CLAMP), lattices) for name in some)
             for some in ([name for name in names if name not in bolted], [name.lower() for name in bolted])
         )
-        moving = toolkit.travels if any(carrier.on for carrier in toolkit.carriers) else 0
+        moving = toolkit.travel_count if any(carrier.on for carrier in toolkit.carriers) else 0
         walls = sum(2 for carrier in toolkit.carriers if carrier.contact is WALL_END)
         needed = toolkit.peg_count - moving - walls
         if len(set(pegs)) != needed or len(pegs) != needed or len(clamps) not in (0, moving):
@@ -293,7 +293,7 @@ class GivenSetUp:
         named = join_words(
             [make_hole_label(hole, self.toolkit.find_carrier(hole.carrier)) for hole in self.pegs]
         )
-        if self.is_beside_wall or query.toolkit.travels > 1:
+        if self.is_beside_wall or query.toolkit.travel_count > 1:
             return f"No pose of {query.workpiece.name} touches {named} and all else, and is held by them."
         poses, pulls = 0, 4
         for way in query.toolkit.ways:

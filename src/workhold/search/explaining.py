@@ -203,7 +203,7 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     """
     # The ranking makes no difference here, and may name a figure that a changed toolkit has not.
     query = evolve(query, rank_by="warnings")
-    toolkit, alone = query.toolkit, query.toolkit.travels == 1
+    toolkit, alone = query.toolkit, query.toolkit.travel_count == 1
     ways = [move_to_toolkit(query, way) for way in toolkit.ways]
     if toolkit.strap_set is not None:
         # Loads only choose straps; seats do not depend on them.
@@ -341,22 +341,22 @@ def find_changes_together(
     fixture.
     """
 
-    def found_without(some: Sequence[QueryChange]) -> Result | None:
+    def search_without(some: Sequence[QueryChange]) -> Result | None:
         """Return the result without the requests that ``some`` changes drop; None if it has no fixture."""
 
-        def changed(asked: Query) -> Query:
+        def apply_changes(asked: Query) -> Query:
             """Return a query after all of the changes ``some``."""
             for lift in some:
                 asked = lift.change(asked)
             return asked
 
-        result = answer_changed_query(changed, query, threads)
+        result = answer_changed_query(apply_changes, query, threads)
         return result if result is not None and any(result.found.values()) else None
 
-    needed, result = list(lifts), found_without(lifts)
+    needed, result = list(lifts), search_without(lifts)
     for lift in lifts if result is not None else ():
         fewer = [one for one in needed if one is not lift]
-        if (found := found_without(fewer)) is not None:
+        if (found := search_without(fewer)) is not None:
             needed, result = fewer, found
     if result is not None:
         words = join_words([lift.words for lift in needed])
@@ -415,7 +415,7 @@ def list_changes(query: Query, unit: Unit) -> Iterator[QueryChange]:
     """
     asked, toolkit = query.restrictions, query.toolkit
 
-    def lift(
+    def make_change(
         words: str,
         change: Callable[[Query], Query],
         rules: tuple[str, ...],
@@ -427,34 +427,44 @@ def list_changes(query: Query, unit: Unit) -> Iterator[QueryChange]:
 
     if asked.avoid:
         faces = ("faces " if len(asked.avoid) > 1 else "face ") + ", ".join(map(str, asked.avoid))
-        yield lift(f"touching {faces} too", partial(change_restrictions, avoid=()), ("faces to avoid",))
+        yield make_change(
+            f"touching {faces} too", partial(change_restrictions, avoid=()), ("faces to avoid",)
+        )
         for face in asked.avoid[: MOST_FACES if len(asked.avoid) > 1 else 0]:
             rest = tuple(number for number in asked.avoid if number != face)
             touching = partial(change_restrictions, avoid=rest)
-            yield lift(f"touching face {face} too", touching, ("faces to avoid",), is_whole=False)
+            yield make_change(f"touching face {face} too", touching, ("faces to avoid",), is_whole=False)
     if asked.zones:
-        yield lift("without the keep-out zones", partial(change_restrictions, zones=()), ("keep-out zones",))
+        yield make_change(
+            "without the keep-out zones", partial(change_restrictions, zones=()), ("keep-out zones",)
+        )
     if query.program is not None:
         line = find_program_line_in_the_way(query)
         first = "" if line is None else f", of which line {line} is most in the way"
         without = attrgetter("without_program")
-        yield lift(f"without the program{first}", without, ("tools of the program",))
+        yield make_change(f"without the program{first}", without, ("tools of the program",))
     if asked.angles:
-        yield lift("at any angle", partial(change_restrictions, angles=()), ("angles of the part",))
+        yield make_change("at any angle", partial(change_restrictions, angles=()), ("angles of the part",))
     if query.contact_margin > 0:
-        yield lift("without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",))
+        yield make_change(
+            "without a contact margin", partial(evolve, contact_margin=0.0), ("contact margin",)
+        )
     if asked.touch:
-        yield lift("without the faces to touch", partial(change_restrictions, touch=()), ("faces to touch",))
+        yield make_change(
+            "without the faces to touch", partial(change_restrictions, touch=()), ("faces to touch",)
+        )
     if query.max_location_error is not None:
         imprecise = partial(evolve, max_location_error=None)
-        yield lift("with any location error", imprecise, ("largest location error",))
+        yield make_change("with any location error", imprecise, ("largest location error",))
     if len(query.types) < len(toolkit.types):
-        yield lift("with all types", partial(evolve, types=None), ("types sought",))
+        yield make_change("with all types", partial(evolve, types=None), ("types sought",))
     for limit in toolkit.limits:
         held, fields = partial(change_toolkit, change=limit.lifted), limit.lifted.fields
-        yield lift(limit.lifted.words, held, (limit.rule,), fields)
+        yield make_change(limit.lifted.words, held, (limit.rule,), fields)
     for change in toolkit.list_further_changes(unit):
-        yield lift(change.words, partial(change_toolkit, change=change), (), change.fields, is_whole=False)
+        yield make_change(
+            change.words, partial(change_toolkit, change=change), (), change.fields, is_whole=False
+        )
 
 
 def change_restrictions(query: Query, **changed: Any) -> Query:

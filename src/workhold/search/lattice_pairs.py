@@ -157,13 +157,13 @@ def bound_features(rows: Array) -> tuple[Array, Array]:
     middle = np.arctan2(rows[:, AXIS_Y], rows[:, AXIS_X])
     half = rows[:, HALF_EXTENT] + LOOSE / radius
 
-    def reach(direction: float) -> Array:
+    def compute_reach(direction: float) -> Array:
         """Return how far in mm each arc reaches from its centre in a direction given in radians, (F,)."""
         away = np.abs((middle - direction + np.pi) % (2.0 * np.pi) - np.pi)
         return np.asarray(radius * np.cos(np.clip(away - half, 0.0, np.pi)))
 
-    back = np.stack([reach(np.pi), reach(-np.pi / 2.0)], axis=1)
-    ahead = np.stack([reach(0.0), reach(np.pi / 2.0)], axis=1)
+    back = np.stack([compute_reach(np.pi), compute_reach(-np.pi / 2.0)], axis=1)
+    ahead = np.stack([compute_reach(0.0), compute_reach(np.pi / 2.0)], axis=1)
     arcs = is_arc[:, None]
     return center - np.where(arcs, back, along), center + np.where(arcs, ahead, along)
 

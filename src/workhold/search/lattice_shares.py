@@ -146,7 +146,7 @@ class LatticeShares:
             yield cls(searches, collector, (), (), None, pool, threads, cancel)
 
     @property
-    def shares(self) -> int:
+    def share_count(self) -> int:
         """Number of shares."""
         return len(self.ranges)
 
@@ -183,7 +183,7 @@ class LatticeShares:
 
         ``whole_turn`` are the blocks of the same search that cover all orientations.
         """
-        if self.shares == 1:
+        if self.share_count == 1:
             return whole_turn
         if self.square:
             first = list_preferred_angles(self.collector.query)
@@ -202,7 +202,7 @@ class LatticeShares:
         promising seats come first, and contacts that cannot be among the best are left out.
         """
         query, total, within = self.collector.query, sum(map(len, records)), self.ranges[share]
-        if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
+        if query.best is None or (self.share_count == 1 and total <= COUNTED_WHOLE):
             yield self.find_seats([part.take(slice(None)) for part in records], within)
             return
         groups = make_ordered_groups(records, [search.problem for search in self.searches], query)
@@ -219,7 +219,7 @@ class LatticeShares:
         """Return a lower bound, in billionths of a mm, of the location
         errors in all shares after ``share``.
         """
-        if share == self.shares - 1:
+        if share == self.share_count - 1:
             return MOST_ERROR
         return 0 if self.bound is None or self.bound.error is None else int(self.bound.error.min())
 
@@ -245,7 +245,7 @@ class LatticeShares:
             list(split_into_blocks([records])),
         )
 
-        def work(block: Array) -> tuple[CandidateFixtures, SearchReport]:
+        def prove_block(block: Array) -> tuple[CandidateFixtures, SearchReport]:
             """Return the proven contacts of one block of records, and the report on the block."""
             proven, account = decide_records(block, problem, course)
             candidates = make_canonical(make_candidates(proven, problem), 0)
@@ -253,7 +253,7 @@ class LatticeShares:
                 are_at_angle(candidates.theta, problem.restrictions.angles, problem.frame)
             ), account
 
-        parts, accounts = zip(*self.pool.map(work, blocks), strict=True)
+        parts, accounts = zip(*self.pool.map(prove_block, blocks), strict=True)
         self.accounts += accounts
         return list_each_once(CandidateFixtures.concatenate(parts))
 

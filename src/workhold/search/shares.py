@@ -143,7 +143,7 @@ class ShareSearch(Protocol):
     """A search that goes on share by share."""
 
     @property
-    def shares(self) -> int:
+    def share_count(self) -> int:
         """Number of shares."""
 
     @property
@@ -177,12 +177,12 @@ def answer_by_shares(
     Parameters as in ``search.design.answer``.
     """
     kept, done = locating.collector, 0
-    for number in range(locating.shares):
+    for number in range(locating.share_count):
         if cancel is not None and cancel.is_set():
             break
-        end = (number + 1) / locating.shares
+        end = (number + 1) / locating.share_count
         found, is_whole = locating.search_share(
-            number, make_stage_progress(progress, number / locating.shares, end)
+            number, make_stage_progress(progress, number / locating.share_count, end)
         )
         for part in found:
             kept.add(part)
@@ -191,7 +191,9 @@ def answer_by_shares(
             progress(end, len(kept))
         if preview is not None and number < MOST_PREVIEWS:
             preview(kept.make_result(SearchReport(0, 0, 0, 0, ()), SearchWork(False, {})))
-    result = kept.make_result(locating.make_account(), locating.describe_work(done, done == locating.shares))
+    result = kept.make_result(
+        locating.make_account(), locating.describe_work(done, done == locating.share_count)
+    )
     if not result.complete or any(result.found.values()) or result.reasons:
         return result
     return evolve(result, notes=(locating.explain_no_fixture(),))

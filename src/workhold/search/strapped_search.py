@@ -144,7 +144,7 @@ def count_sets(table: FixtureTable, query: Query) -> int:
     onto itself makes equal count once.
     """
     # Rotations of the part change neither holes nor the place of its centre, only angle and faces.
-    from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself
+    from workhold.geometry.symmetry import compute_centroid_of_segments, find_rotations_onto_itself
 
     every = query.workpiece.numbered
     segments = [face.segment for face in every.faces]
@@ -152,7 +152,7 @@ def count_sets(table: FixtureTable, query: Query) -> int:
     if len(turns) < 2 or len(table) == 0:
         return len(table)
     plate = query.toolkit.plates[0]
-    kept = np.array(find_centroid_of_joints(segments))
+    kept = np.array(compute_centroid_of_segments(segments))
     lowest = np.column_stack([table.column.min(axis=1), table.row.min(axis=1)]) * np.array(plate.pitch)
     at = table.position + np.stack(rotate_vectors(kept[0], kept[1], table.theta), axis=1) - lowest
     period = np.pi if query.toolkit.half_turned is not None else 2 * np.pi
@@ -264,7 +264,7 @@ def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query)
     hold, then seats that no push by hand seats. Equally good seats keep their order.
     """
 
-    def key(place: int) -> tuple[float, ...]:
+    def make_key(place: int) -> tuple[float, ...]:
         """Return the sort key of one seat."""
         hold = holds[place]
         if hold.is_unfit:
@@ -283,7 +283,7 @@ def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query)
         return (0.0, float(hold.is_beyond_rating), *numbers)
 
     # What is looked at comes before what is not; equal ones stay as they are.
-    return sorted(range(len(holds)), key=key)
+    return sorted(range(len(holds)), key=make_key)
 
 
 def move_into_view(

@@ -320,7 +320,7 @@ class ToolkitSearch:
         }
 
     @property
-    def alive(self) -> float:
+    def mean_curve_count(self) -> float:
         """Average number of chord curves that exist at an orientation."""
         first, last = self.table.spans
         return float((last - first).sum()) / tau
@@ -348,7 +348,7 @@ class ToolkitSearch:
         is_idle = not self.counting and is_round(self.problem)
         cells = count_half_turn_cells(self.problem)
         most = max(cells // least, 1)
-        together = int(min(max(PAIRS_PER_BLOCK / max(self.alive, 1.0) ** 2, 1.0), most))
+        together = int(min(max(PAIRS_PER_BLOCK / max(self.mean_curve_count, 1.0) ** 2, 1.0), most))
         blocks: list[SearchBlock] = []
         frame = self.frame
         for arrangement in frame.toolkit.arrangements:

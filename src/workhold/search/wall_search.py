@@ -211,7 +211,7 @@ class WallSearch(FlushSearch):
                 self.undecided.append(self.make_undecided(candidate))
         self.escalated += len(open_)
 
-        def pairs(chosen: IntArray) -> WallFixtures:
+        def take_pairs(chosen: IntArray) -> WallFixtures:
             """Return the pairs with these indices."""
             behind = locator[chosen]
             return WallFixtures(
@@ -225,20 +225,22 @@ class WallSearch(FlushSearch):
                 push=push[chosen],
             )
 
-        def alone(chosen: IntArray) -> FixtureTable:
+        def make_tip_table(chosen: IntArray) -> FixtureTable:
             """Return the table of the pairs with these indices, in the
             toolkit whose clamp is its tip alone.
             """
             query = evolve(self.problem.query, toolkit=self.pair_toolkit)
-            return make_wall_table(pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query))
+            return make_wall_table(
+                take_pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query)
+            )
 
         good = np.flatnonzero(held)
         self.verified += len(good)
         if self.explains:
             # Forces are given per clamp force, which there has to be.
             least = np.minimum(np.abs(null.sum(axis=1)), np.abs(null[:, 3] * push))
-            self.keep_nearest(null, least < LEAST_CLAMPING * np.abs(null).sum(axis=1), alone)
-        return self.sharpen_pairs(pairs(good), edge, lying, one, two.take(good), locator[good])
+            self.keep_nearest(null, least < LEAST_CLAMPING * np.abs(null).sum(axis=1), make_tip_table)
+        return self.sharpen_pairs(take_pairs(good), edge, lying, one, two.take(good), locator[good])
 
     def sharpen_pairs(
         self,

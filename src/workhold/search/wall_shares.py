@@ -23,7 +23,7 @@ from workhold.listing.clamp_contacts import make_contacts_on_wall
 from workhold.listing.clamp_placement import find_last_holes
 from workhold.listing.results import RankedTable, SearchWork
 from workhold.listing.seats import ClampedSeats, Seats, make_seats
-from workhold.listing.wall_fixtures import WallFixtures, find_first_of_each, turn_points
+from workhold.listing.wall_fixtures import WallFixtures, find_lowest_of_each, turn_points
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.notes import NoFixture, NoPair, NoPlace, Note
 from workhold.model.query import Query
@@ -212,7 +212,7 @@ def list_pairs_once(pairs: LatticePairs) -> LatticePairs:
     Contacts at a tangent joint are found on both features that meet there; one of them is kept.
     """
     place = pairs.point.reshape(-1, 4) @ np.array([1.0, 0.7548776662, 0.5698402910, 0.4301597090])
-    return pairs.take(find_first_of_each((*pairs.step.T,), place, pairs.feature))
+    return pairs.take(find_lowest_of_each((*pairs.step.T,), place, pairs.feature))
 
 
 @define(eq=False)
@@ -240,7 +240,7 @@ class WallShares:
     @classmethod
     def from_query(cls, query: Query, cancel: Event | None) -> WallShares:
         """Return the shares of a query whose toolkit has a sliding lattice, one clamp, or two clamps."""
-        toolkit, pairing = query.toolkit, query.toolkit.travels > 1
+        toolkit, pairing = query.toolkit, query.toolkit.travel_count > 1
         if toolkit.moving.on is None:
             search = LatticePairSearch(Problem.from_query(query))
             ranked = RankedTable(query, search.problem)
@@ -254,7 +254,7 @@ class WallShares:
         return cls(searches, partial(find_fixtures_on_edge, searches), collector, cancel)
 
     @property
-    def shares(self) -> int:
+    def share_count(self) -> int:
         """Number of hull edges."""
         return len(self.edges)
 

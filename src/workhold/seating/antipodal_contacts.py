@@ -123,7 +123,9 @@ def find_antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContact
         d = hypot(wx - vx, wy - vy)
         for signed in (d, -d) if d > SHORTEST else ():
             ux, uy = (wx - vx) / signed, (wy - vy) / signed
-            if holds(boundary.pockets[v], -ux, -uy) and holds(boundary.pockets[w], ux, uy):
+            if is_direction_in_pocket(boundary.pockets[v], -ux, -uy) and is_direction_in_pocket(
+                boundary.pockets[w], ux, uy
+            ):
                 pieces = list_pocket_pieces(boundary, v), list_pocket_pieces(boundary, w)
                 found.append(AntipodalContacts(pieces, (vx, vy), (wx, wy), signed, (None, None)))
     return found
@@ -134,7 +136,7 @@ def list_pocket_pieces(boundary: ObstacleBoundary, pocket: int) -> tuple[int, ..
     return tuple(boundary.pocket_pieces[pocket].tolist())
 
 
-def holds(pocket: Array, x: float, y: float) -> bool:
+def is_direction_in_pocket(pocket: Array, x: float, y: float) -> bool:
     """Return whether the direction (x, y) lies strictly between the outward normals of a pocket's two pieces.
 
     ``pocket`` (6,) is a row of ``ObstacleBoundary.pockets``: place, first normal, second normal.
@@ -146,7 +148,7 @@ def holds(pocket: Array, x: float, y: float) -> bool:
     return bool((x * by - y * bx) / cross > LEAST_SHARE and (ax * y - ay * x) / cross > LEAST_SHARE)
 
 
-def bend(row: Array) -> float:
+def compute_curvature(row: Array) -> float:
     """Return the curvature of a piece (10,) in 1 / mm: positive where convex, 0 for a straight piece."""
     return 0.0 if row[IS_ARC] == 0.0 else float(row[SIGN] / row[RADIUS])
 
@@ -186,7 +188,9 @@ def pair_antipodal_pieces(rows: Array, a: int, b: int) -> list[AntipodalContacts
             p = find_place_with_normal(one, ux, uy, *q)
         d = (q[0] - p[0]) * ux + (q[1] - p[1]) * uy
         if abs(d) > SHORTEST and contains(one, *p) and contains(two, *q):
-            found.append(AntipodalContacts(((a,), (b,)), p, q, d, (bend(one), bend(two))))
+            found.append(
+                AntipodalContacts(((a,), (b,)), p, q, d, (compute_curvature(one), compute_curvature(two)))
+            )
     return found
 
 
@@ -204,10 +208,14 @@ def find_antipodal_in_pocket(boundary: ObstacleBoundary, pocket: int, b: int) ->
     for ux, uy in ways:
         q = find_place_with_normal(row, ux, uy, x, y)
         d = (q[0] - x) * ux + (q[1] - y) * uy
-        if abs(d) > SHORTEST and contains(row, *q) and holds(boundary.pockets[pocket], -ux, -uy):
+        if (
+            abs(d) > SHORTEST
+            and contains(row, *q)
+            and is_direction_in_pocket(boundary.pockets[pocket], -ux, -uy)
+        ):
             found.append(
                 AntipodalContacts(
-                    (list_pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, bend(row))
+                    (list_pocket_pieces(boundary, pocket), (b,)), (x, y), q, d, (None, compute_curvature(row))
                 )
             )
     return found

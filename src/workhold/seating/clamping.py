@@ -202,16 +202,16 @@ def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolki
     )
     low, high = 0.0, MOST_FRICTION
 
-    def sticks(friction: float) -> bool:
+    def does_stick(friction: float) -> bool:
         """Return whether both clamps balance without one of the locators at this friction coefficient."""
         edges, share = make_cone_edges(*contacts, friction, touched.length)
         return balances_without_a_locator(edges, share, ratio)
 
-    if not sticks(high):
+    if not does_stick(high):
         return inf
     while high - low > PRECISION * high:
         middle = (low + high) / 2
-        low, high = (low, middle) if sticks(middle) else (middle, high)
+        low, high = (low, middle) if does_stick(middle) else (middle, high)
     return high
 
 
@@ -324,7 +324,7 @@ class HandLoading:
 
     def describe_push(self) -> str:
         """Return the first step: draw the clamps back and push the part against its locators."""
-        locators = [peg.hole for peg in self.fixture.placed[: -self.toolkit.tips]]
+        locators = [peg.hole for peg in self.fixture.placed[: -self.toolkit.tip_count]]
         noun = self.toolkit.carriers[0].peg
         in_holes = f"all three {noun}s, " if len(locators) == LOCATORS else f"the {noun} in "
         flush = [f"the {one.noun}, flush," for one in self.toolkit.carriers if not one.contact.is_placed]

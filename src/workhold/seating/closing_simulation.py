@@ -111,7 +111,7 @@ def simulate_closing(
         raise InputError(
             "a peg stands in the part there, and there is no room beside it: put the part elsewhere."
         )
-    path = follow(closing, configs[0], is_cancelled)
+    path = follow_descent_path(closing, configs[0], is_cancelled)
     end, how = closing.close_from(path[-1][None], FIRST_STEP)
     path.append(end[0])
     ending, seat = classify_ending(solver, closing, center, end[0], int(how[0]), seats)
@@ -195,7 +195,9 @@ def measure_entered_depth(
     return deepest
 
 
-def follow(closing: ClosingMotion, config: Array, is_cancelled: Callable[[], bool]) -> list[Array]:
+def follow_descent_path(
+    closing: ClosingMotion, config: Array, is_cancelled: Callable[[], bool]
+) -> list[Array]:
     """Return configurations (4,) along the descent path from ``config``, at evenly spaced values of S.
 
     The first is ``config``; S is the jaw separation in mm. The path is shorter where it is cancelled.

@@ -44,7 +44,7 @@ from workhold.kernels.seating.descent_paths import (
     write_last_free_nodes,
     write_places,
 )
-from workhold.kernels.seating.gathering import write_beyond, write_first_manifolds
+from workhold.kernels.seating.gathering import write_first_manifolds, write_starts_beyond_ends
 from workhold.seating.closing import LONGEST_STEP, ClosingMotion, find_descent_starts
 from workhold.seating.equilibria import Equilibria
 from workhold.seating.obstacle_boundary import ObstacleBoundary
@@ -266,7 +266,7 @@ class ManifoldDescents:
         if not len(loose.rows):
             return NOTHING
         starts, whose = np.empty((2 * len(loose.rows), 4)), np.empty(2 * len(loose.rows), np.int64)
-        count = write_beyond(loose, closing.size, BESIDE, starts, whose)
+        count = write_starts_beyond_ends(loose, closing.size, BESIDE, starts, whose)
         starts, whose = starts[:count], whose[:count]
         ends, how = closing.close_from(starts, FIRST_STEP, seats)
         falls = np.flatnonzero(ends[:, 3] < loose.rows[whose, SEPARATION] - FALLS)

@@ -25,7 +25,7 @@ from workhold.conventions import PARALLEL
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, X, Y
 from workhold.kernels.seating.columns import HeldPart, Manifolds, Obstacles, SelfMotions
 from workhold.kernels.seating.freedom import keep_free, write_free_runs
-from workhold.kernels.seating.gathering import write_each_once
+from workhold.kernels.seating.gathering import write_distinct_sets
 from workhold.kernels.seating.parallel_and_concentric import (
     AT_HIGH,
     AT_LOW,
@@ -374,7 +374,7 @@ class ManifoldFinder:
         return self.boundary.make_obstacles(self.pattern, 1.0, 0.0)
 
     @property
-    def obstacles(self) -> int:
+    def obstacle_count(self) -> int:
         """The number of pegs, plus 1 for a wall."""
         return len(self.pattern.pegs) + (self.pattern.half_plane is not None)
 
@@ -388,7 +388,7 @@ class ManifoldFinder:
         if not motions:
             return every
         np.concatenate([motion.configs for motion in motions], out=every.configs)
-        every.pegs[:, : self.obstacles] = np.arange(self.obstacles)
+        every.pegs[:, : self.obstacle_count] = np.arange(self.obstacle_count)
         for k, motion in enumerate(motions):
             every.counts[k], every.closed[k] = len(motion.configs), motion.is_closed
             every.across[k] = motion.across or nan
@@ -408,7 +408,7 @@ class ManifoldFinder:
         most, pegs = len(motions.configs) // 2 + len(motions.counts), len(self.pattern.pegs)
         out = Manifolds.allocate(most, len(motions.configs) + 2 * most)
         low, high = self.pattern.stop + SAME, self.pattern.widest - SAME
-        clear, seen = np.empty((len(motions.configs), self.obstacles)), np.empty((pegs + 1, 4))
+        clear, seen = np.empty((len(motions.configs), self.obstacle_count)), np.empty((pegs + 1, 4))
         touched, work = np.empty(pegs, np.int64), np.empty((4, 4))
         return out.take_first(
             write_free_runs(motions, low, high, self.around, clear, seen, touched, work, out)
@@ -422,4 +422,4 @@ class ManifoldFinder:
         if not len(found.rows):
             return found
         out = Manifolds.allocate(len(found.rows), len(found.configs))
-        return out.take_first(write_each_once(found, 1.0, SAME, out))
+        return out.take_first(write_distinct_sets(found, 1.0, SAME, out))

@@ -31,7 +31,7 @@ from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["EffectiveErrors", "classify_angles", "find_unasked_faces", "to_ends"]
+__all__ = ["EffectiveErrors", "classify_angles", "find_unasked_faces", "measure_end_distances"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -131,7 +131,9 @@ class EffectiveErrors:
         x, y = x - table.position[:, :1], y - table.position[:, 1:]
         cosine, sine = np.cos(table.theta)[:, None], np.sin(table.theta)[:, None]
         points = np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=2)
-        return np.asarray(to_ends(points, self.lines[table.face]) < np.round(radius, FIGURE_DECIMALS))
+        return np.asarray(
+            measure_end_distances(points, self.lines[table.face]) < np.round(radius, FIGURE_DECIMALS)
+        )
 
     def find_overhanging(self, table: FixtureTable) -> BoolArray:
         """Return a mask (N,): True for fixtures whose part hangs over the
@@ -187,7 +189,7 @@ class EffectiveErrors:
         if any(plate.is_along_x == (axis == 0) for plate in slides) or (axis == 1 and toolkit.wall):
             return none, none
         carriers, holes = toolkit.find_peg_carriers(table.arrangement), (table.column, table.row)[axis]
-        counted = np.array([one.counted[axis] for one in toolkit.carriers])[carriers]
+        counted = np.array([one.counted_axes[axis] for one in toolkit.carriers])[carriers]
         ends = {plate.name: (plate.columns, plate.rows)[axis] or 0 for plate in toolkit.plates}
         last = np.array([ends.get(one.stands_on, 0) - 1 for one in toolkit.carriers])[carriers]
         back = np.where(counted, holes, np.iinfo(np.int32).max).min(axis=1)
@@ -195,7 +197,7 @@ class EffectiveErrors:
         return back.astype(np.float64), ahead.astype(np.float64)
 
 
-def to_ends(points: Array, lines: Array) -> Array:
+def measure_end_distances(points: Array, lines: Array) -> Array:
     """Return the distance of each contact from the nearer end of its
     straight face, in mm to nine decimals, (...).
 

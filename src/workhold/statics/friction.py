@@ -185,7 +185,7 @@ class FrictionHold:
         return out
 
     @cached_property
-    def most_work(self) -> Array:
+    def clamp_force_per_pressure(self) -> Array:
         """Jaw force in N, (R,), that a unit of each pressure of ``pressing`` counts as.
 
         It is 0 for pressures of the fixed jaw, 1 for those of the moving jaw.
@@ -210,7 +210,8 @@ class HeldByFriction(Protocol):
     pressing : (R, 6) wrenches of R unit pressures.
     rubbing : (C, D, 6) wrenches of unit friction forces in each of C cells, in D directions.
     bearing : (C, R) friction force that each cell bears, per unit of each pressure of ``pressing``.
-    most_work : (R,) clamp force that a unit of each pressure counts as: 1 for pressures that clamp, else 0.
+    clamp_force_per_pressure : (R,) clamp force that a unit of each pressure counts as: 1 for pressures that
+        clamp, else 0.
     """
 
     @property
@@ -222,7 +223,7 @@ class HeldByFriction(Protocol):
     @property
     def bearing(self) -> Array: ...
     @property
-    def most_work(self) -> Array: ...
+    def clamp_force_per_pressure(self) -> Array: ...
 
 
 @define(eq=False)
@@ -290,7 +291,7 @@ class MotionProgram:
                 break
             if float(driven @ motion) * size <= enough:
                 return max(float(driven @ motion), 0.0) * size, motion
-            if not self.cut_off(motion):
+            if not self.add_broken_conditions(motion):
                 is_free = np.abs(motion).max() > 0.5 * FARTHEST
                 return None if is_free else max(float(driven @ motion), 0.0) * size, motion
         raise WorkholdError(
@@ -362,17 +363,17 @@ class MotionProgram:
         out[left[inside]] = np.maximum((some[inside] * motions[cone[inside]]).sum(axis=1), 0.0)
         return np.asarray(left[~inside])
 
-    def cut_off(self, motion: Array) -> bool:
+    def add_broken_conditions(self, motion: Array) -> bool:
         """Add to the program the conditions that a motion (6,) breaks; return whether it breaks any."""
         grip = self.grip
         along = grip.rubbing @ motion
         chosen = along.argmax(axis=1)
         rubbed = grip.rubbing[np.arange(len(chosen)), chosen]
         forces = grip.pressing + grip.bearing.T @ rubbed
-        work = forces @ motion - grip.most_work
+        work = forces @ motion - grip.clamp_force_per_pressure
         broken = work > BROKEN * (1.0 + np.abs(forces * motion).sum(axis=1))
         if broken.any():
-            self.program.add_rows(forces[broken], grip.most_work[broken])
+            self.program.add_rows(forces[broken], grip.clamp_force_per_pressure[broken])
             self.conditions = np.vstack([self.conditions, forces[broken]])
         return bool(broken.any())
 

@@ -86,7 +86,7 @@ class CuttingPieces:
             whole = np.zeros(0, np.int64)
             return cls(whole, whole, points, points, none, none, np.zeros((0, 2)), none, none)
         stretches = forces.stretches
-        own, parts = stretches.move, moves.cut_to(stretches)
+        own, parts = stretches.move, moves.cut_into_stretches(stretches)
         height = forces.height[own]
         start, end = (
             np.column_stack([one[:, :2], np.clip(one[:, 2] + height, 0.0, thickness)])
@@ -137,7 +137,7 @@ def straighten_moves(start: Array, end: Array, bulge: Array) -> tuple[IntArray, 
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = np.where(round_, size / (2.0 * np.sin(np.abs(turn) / 2)), 0.0)[which]
 
-    def after(number: Array) -> Array:
+    def walk_steps(number: Array) -> Array:
         """Return the points (N, 3) at the end of the first ``number`` (N,) steps of the moves."""
         angle = number * step
         far = 2.0 * radius * np.sin(np.abs(angle) / 2)
@@ -147,7 +147,7 @@ def straighten_moves(start: Array, end: Array, bulge: Array) -> tuple[IntArray, 
         bent = start[which, :2] + far[:, None] * np.column_stack([np.cos(along), np.sin(along)])
         return np.where(round_[which, None], np.column_stack([bent, level[:, 2]]), level)
 
-    first, last = after(np.asarray(place, np.float64)), after(np.asarray(place + 1, np.float64))
+    first, last = walk_steps(np.asarray(place, np.float64)), walk_steps(np.asarray(place + 1, np.float64))
     tangent = radius * np.tan(np.abs(step) / 2)
     corner = first.copy()
     corner[:, :2] += tangent[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
@@ -289,7 +289,7 @@ class PressedPart:
         row[5] -= torque[at] * (1.0 if motion[5] > 0.0 else -1.0) / grip.length
         return row * self.safety + self.still, at % len(pieces)
 
-    def climb(self) -> tuple[float, int, Array]:
+    def find_hard_load(self) -> tuple[float, int, Array]:
         """Return (1) a lower bound in N of the jaw force needed, (2) the
         index of the piece that needs it, (3) its load.
 
@@ -407,7 +407,7 @@ def find_worst_move(
             if len(inside):
                 add(inside, low, high)
     # The hardest that a piece asks for, what all that was ruled out asks for at most, and the piece.
-    (best, at, _), most = placed.climb(), 0.0
+    (best, at, _), most = placed.find_hard_load(), 0.0
     while queue and best < inf:
         known, _, _, chosen, low, high, loads = heappop(queue)
         limit = best * (1.0 + GAP) if best > 0.0 else best

@@ -330,7 +330,7 @@ def list_all_pieces(program: Program, center: tuple[float, float]) -> PathForces
     """
     forces = program.forces
     stretches = MoveStretches((), (), ()) if forces is None else forces.stretches
-    does, moves = stretches.move, program.moves.cut_to(stretches)
+    does, moves = stretches.move, program.moves.cut_into_stretches(stretches)
     start, end = (one[:, :2] - np.array(center) for one in (moves.start, moves.end))
     chord, bulge = end - start, moves.bulge
     round_ = (bulge != 0.0) & (chord != 0.0).any(axis=1)

@@ -72,7 +72,7 @@ def find_nearest_moves(
     bolts = toolkit.compute_hole_places(table.arrangement, table.column, table.row, np.zeros(count))
     carriers = toolkit.find_peg_carriers(table.arrangement)
 
-    def seen(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
+    def map_to_part(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
         """Return the places of contact ``k`` of some rows in the part's coordinates, in mm, (R, 2)."""
         dx, dy = (values[rows, k] - table.position[rows, axis] for axis, values in enumerate(points))
         return np.stack(rotate_vectors(dx, dy, -table.theta[rows]), axis=1)
@@ -84,16 +84,16 @@ def find_nearest_moves(
                 find_swept_beside_carrier(program, peg_height, carrier),
             )
             if not carrier.contact.is_placed:
-                take(found, rows, k, swept, *find_reach_to_wall(table, rows, swept))
+                keep_smaller_clearances(found, rows, k, swept, *find_reach_to_wall(table, rows, swept))
                 continue
-            centers = seen((x, y), rows, k)
-            behind = seen(bolts, rows, k) if carrier.has_body_behind else centers
+            centers = map_to_part((x, y), rows, k)
+            behind = map_to_part(bolts, rows, k) if carrier.has_body_behind else centers
             reach, span = swept.find_nearest_spans(centers, behind)
-            take(found, rows, k, swept, reach - carrier.peg_radius, span)
+            keep_smaller_clearances(found, rows, k, swept, reach - carrier.peg_radius, span)
             if carrier.body_radius > carrier.peg_radius:
                 below = find_swept_below(program, 0.0)
                 reach, span = below.find_nearest_spans(centers, centers)
-                take(found, rows, k, below, reach - carrier.body_radius, span, below=True)
+                keep_smaller_clearances(found, rows, k, below, reach - carrier.body_radius, span, below=True)
     return found
 
 
@@ -142,14 +142,14 @@ def find_nearest_passing(result: Result, index: int) -> ToolClearance | None:
 
     None without a program, and where no tool comes down to the height of the pegs.
     """
-    if result.query.passed is None:
+    if result.query.program_to_clear is None:
         return None
     table, toolkit = result.table.take(slice(index, index + 1)), result.toolkit
-    near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
+    near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.program_to_clear)
     if near.line[0] < 0:
         return None
     contact, span = int(near.contact[0]), int(near.span[0])
-    program, height = result.query.passed
+    program, height = result.query.program_to_clear
     standing = toolkit.carriers[toolkit.arrangements[int(table.arrangement[0])].carriers[contact]]
     swept = (
         find_swept_below(program, 0.0)
@@ -194,7 +194,7 @@ def find_reach_to_wall(table: FixtureTable, rows: IntArray, swept: SweptSpans) -
     return reach[inverse], span[inverse]
 
 
-def take(
+def keep_smaller_clearances(
     found: NearestMove,
     rows: IntArray,
     contact: int,

@@ -70,7 +70,7 @@ class CutStretch:
         'drilling at X20 Y20 from Z5 to Z-17, 22 of 24 mm'
         """
 
-        def place(axes: str, values: Sequence[float]) -> str:
+        def format_place(axes: str, values: Sequence[float]) -> str:
             """Return coordinates as words of a program, such as "X20 Y20 Z5"."""
             numbers = (format_length(value, unit) for value in values)
             return " ".join(f"{axis}{number}" for axis, number in zip(axes, numbers, strict=True))
@@ -78,12 +78,12 @@ class CutStretch:
         upright = self.start[:2] == self.end[:2]
         if upright and self.kind != CUT_KINDS[MILLING]:
             x_y, (low, high) = (
-                place("XY", self.start[:2]),
-                (place("Z", one[2:]) for one in (self.start, self.end)),
+                format_place("XY", self.start[:2]),
+                (format_place("Z", one[2:]) for one in (self.start, self.end)),
             )
             where = f"at {x_y} from {low} to {high}"
         else:
-            where = f"from {place('XYZ', self.start)} to {place('XYZ', self.end)}"
+            where = f"from {format_place('XYZ', self.start)} to {format_place('XYZ', self.end)}"
         far = f"{format_length(self.length, unit)} of {format_length(self.whole, unit)} {unit.abbreviation}"
         if self.length >= self.whole * (1.0 - 1e-9):
             far = f"all {format_length(self.whole, unit)} {unit.abbreviation}"
@@ -155,11 +155,11 @@ class CuttingNeed:
     def rename_holes(self, before: Sequence[str], after: Sequence[str]) -> CuttingNeed:
         """Return a copy with the holes of elements renamed: ``before[k]`` becomes ``after[k]``."""
 
-        def of(asked: AskedForce) -> AskedForce:
+        def rename_hole(asked: AskedForce) -> AskedForce:
             """Return a force whose element has its hole renamed."""
             return evolve(asked, element=asked.element and rename_element(asked.element, before, after))
 
-        return evolve(self, jaw=of(self.jaw), contact=of(self.contact))
+        return evolve(self, jaw=rename_hole(self.jaw), contact=rename_hole(self.contact))
 
     def list_sentences(self, mover: str, unit: Unit, movers: int = 1) -> list[str]:
         """Return sentences for a machinist on the required forces.
@@ -348,18 +348,18 @@ def find_cut_of_move(program: Program, move: int) -> CutStretch | None:
         return None
     own = np.flatnonzero(forces.stretches.move == move)
     some = forces.stretches
-    parts = moves.cut_to(MoveStretches(some.move[own], some.first[own], some.last[own]))
+    parts = moves.cut_into_stretches(MoveStretches(some.move[own], some.first[own], some.last[own]))
     shift = np.array([*program.zero, program.z_zero])
 
-    def place(point: Array) -> tuple[float, float, float]:
+    def map_to_program(point: Array) -> tuple[float, float, float]:
         """Return a point of the part's frame as a position from the program's own zero, in mm."""
         x, y, z = (point - shift).tolist()
         return x, y, z
 
     return CutStretch(
         CUT_KINDS[forces.kind[move]],
-        place(parts.start[0]),
-        place(parts.end[-1]),
+        map_to_program(parts.start[0]),
+        map_to_program(parts.end[-1]),
         float(parts.length.sum()),
         float(moves.length[move]),
         program.tools[int(moves.tool[move])].name,

@@ -189,7 +189,7 @@ def measure_quality(
             chosen = [LOAD_REACTION, JAW_FORCE_NEEDED]
             filled[:, chosen] = np.fmax(filled[:, chosen], found)
         filled[:, CLAMP_FREEDOM] = np.nan
-        if toolkit.tips > 1:
+        if toolkit.tip_count > 1:
             filled[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = compute_closures(contact_matrices.closing)
         filled[:, JAW_CONTACT] = np.nan
         if toolkit.wall_with_ends is not None:
@@ -298,7 +298,7 @@ def measure_fixture(
         result.query.tolerance,
         asked,
         jaw_force=force,
-        passed=result.query.passed,
+        passed=result.query.program_to_clear,
         pressed_up_to=result.query.pressed_up_to,
     )
     return make_fixture_of_row(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)

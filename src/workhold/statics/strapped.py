@@ -216,7 +216,7 @@ class StrapsOnPart:
         return out
 
     @cached_property
-    def most_work(self) -> Array:
+    def clamp_force_per_pressure(self) -> Array:
         """Force of each strap, (R + 1,), that a unit of each row of
         ``pressing`` counts as: 1 for the tips, else 0.
         """

@@ -29,7 +29,7 @@ def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     'First: no warning; location error 0.0392 mm, within a tenth of the least; as drawn.'
     """
 
-    def length(mm: float) -> str:
+    def format_length(mm: float) -> str:
         """Return a length in mm as text in the unit, with as many decimals as figures have."""
         return f"{unit.format_number(mm, unit.decimals + 1)} {unit.abbreviation}"
 
@@ -53,12 +53,12 @@ def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
         for factor, holding in zip(FACTORS, holds, strict=True)
         if holding
     ]
-    size = f"location error {length(error)}"
+    size = f"location error {format_length(error)}"
     if against:
-        size += f", counted as {length(counted)} ({', '.join(against)})"
+        size += f", counted as {format_length(counted)} ({', '.join(against)})"
     if np.round(counted, 9) >= 1.1 * least:
         # This happens where its seating changed the order.
-        near = f"the least is {length(least)}"
+        near = f"the least is {format_length(least)}"
     elif np.round(counted, 9) <= least:
         near = "the least of all"
     else:

@@ -443,7 +443,7 @@ class TripleChoice:
 
         With ``last`` None, of all valid triples.
         """
-        corners = corners.take(self.room.find_standing(corners.numbers).fits)
+        corners = corners.take(self.room.place_sets(corners.numbers).fits)
         given = self.find_allowed_at_given(corners)
         out: list[Ranked] = []
         if given.any():

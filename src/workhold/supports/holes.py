@@ -142,9 +142,9 @@ class CarrierRoom:
         by_name = {one.name: one for one in carriers}
         own = [(peg, by_name[peg.carrier]) for peg in fixture.pegs]
 
-        def taken(plate: Carrier, axis: int) -> IntArray:
+        def list_taken(plate: Carrier, axis: int) -> IntArray:
             """Return the columns (axis 0) or rows (axis 1) of pegs and clamps on a plate."""
-            on = (one for one in own if one[1].stands_on == plate.name and one[1].counted[axis])
+            on = (one for one in own if one[1].stands_on == plate.name and one[1].counted_axes[axis])
             return np.array([(peg.column, peg.row)[axis] for peg, _ in on], np.int64)
 
         return cls(
@@ -152,11 +152,11 @@ class CarrierRoom:
             toolkit,
             holes,
             plates,
-            {number: (taken(plate, 0), taken(plate, 1)) for number, plate in plates.items()},
+            {number: (list_taken(plate, 0), list_taken(plate, 1)) for number, plate in plates.items()},
             len(plates) > 1 and any(one.blocked for one in plates.values()),
         )
 
-    def find_standing(self, sets: IntArray) -> TripleStanding:
+    def place_sets(self, sets: IntArray) -> TripleStanding:
         """Return how sets of supports stand beside the pegs, clear of blocked holes.
 
         ``sets`` (N, S) are indices of holes.

@@ -73,14 +73,14 @@ class SupportSearch:
             if load.heights is not None and not 0 <= load.heights[0] <= load.heights[1] <= inf:
                 raise InputError("a load acts below the part: give its height above the supports, 0 or more.")
 
-        def face(loops: Loops | None, zones: Iterable[Array], heights: Heights = None) -> TouchableFace:
+        def make_face(loops: Loops | None, zones: Iterable[Array], heights: Heights = None) -> TouchableFace:
             return TouchableFace.from_loops(workpiece.loops if loops is None else loops, zones, heights)
 
         top_zones = (zone.loop for zone in request.top_zones)
         for name, value in (
             ("touched", TouchableFeatures.from_workpiece(workpiece, self.query.toolkit)),
-            ("bottom", face(request.bottom, (zone.loop for zone in request.bottom_zones))),
-            ("top", face(request.top, top_zones, request.top_heights)),
+            ("bottom", make_face(request.bottom, (zone.loop for zone in request.bottom_zones))),
+            ("top", make_face(request.top, top_zones, request.top_heights)),
             ("center", compute_area_center(workpiece.loop_segments)),
         ):
             object.__setattr__(self, name, value)
@@ -189,7 +189,7 @@ def make_triples(choice: TripleChoice, corners: CornerTriples) -> tuple[Triple, 
     outside = np.full(len(need), -inf)
     for point in points:
         outside = np.maximum(outside, -sides.measure_distances(corners, np.array(point)).min(axis=1))
-    stand = room.find_standing(corners.numbers)
+    stand = room.place_sets(corners.numbers)
     spare = np.minimum(room.holes.spare[corners.numbers].min(axis=1), arm - choice.inside)
     spare = np.minimum(spare, stand.spare)
     best = measure_clamp_places(choice, corners, best_at)

@@ -110,7 +110,7 @@ def make_loads(
     points = np.concatenate(
         [np.stack([pieces.x[~is_arc], pieces.y[~is_arc]], axis=1), np.stack([x.ravel(), y.ravel()], axis=1)]
     )
-    parts = program.moves.cut_to(cut)
+    parts = program.moves.cut_into_stretches(cut)
     tip = np.concatenate([parts.start[:, 2], parts.end[:, 2]]) + np.tile(forces.height[cut.move], 2)
     # What a tool does below the part or over it acts at its lower or upper side.
     heights = np.clip([tip.min(), tip.max()], 0.0, thickness)
@@ -136,19 +136,23 @@ def add_program_zones(
     if program is None:
         return request
 
-    def face(loops: tuple[Array, ...] | None) -> TouchableFace:
+    def make_face(loops: tuple[Array, ...] | None) -> TouchableFace:
         return TouchableFace.from_loops(workpiece.loops if loops is None else loops)
 
-    below = list_zones_below(program, request.pad_radius, request.pad_margin, KeyedFace(face(request.bottom)))
-    above = list_zones_above(program, list_levels(request), request.tip_radius, KeyedFace(face(request.top)))
+    below = list_zones_below(
+        program, request.pad_radius, request.pad_margin, KeyedFace(make_face(request.bottom))
+    )
+    above = list_zones_above(
+        program, list_levels(request), request.tip_radius, KeyedFace(make_face(request.top))
+    )
 
-    def further(own: tuple[Zone, ...], more: tuple[Zone, ...]) -> tuple[Zone, ...]:
+    def join_zones(own: tuple[Zone, ...], more: tuple[Zone, ...]) -> tuple[Zone, ...]:
         return (*own, *(zone for zone in more if zone not in own))
 
     return evolve(
         request,
-        bottom_zones=further(request.bottom_zones, below),
-        top_zones=further(request.top_zones, above),
+        bottom_zones=join_zones(request.bottom_zones, below),
+        top_zones=join_zones(request.top_zones, above),
     )
 
 

@@ -505,7 +505,7 @@ class StrapSearch:
         pose, motions = self.fixture.pose, MotionProgram(grip)
         theta = radians(pose.theta_deg)
         pressed = PressedPart(cuts, grip, motions, theta, (pose.x, pose.y), self.asked.safety, self.weight)
-        force, _, hardest = pressed.climb()
+        force, _, hardest = pressed.find_hard_load()
         for motion in motions.motions:
             load, _ = pressed.find_hardest_load(motion)
             keep(motion, float(-load @ motion))

@@ -74,7 +74,7 @@ def explain_reason(found: Supports, unit: Unit) -> str:
             found, find_holes_under_face(found.fixture, toolkit, search.bottom, bare), unit
         )
     sets = np.array(list(islice(combinations(range(len(holes.row)), 3), MOST_LOOKED_AT)), np.int64)
-    sets = sets[CarrierRoom.from_fixture(found.fixture, toolkit, holes).find_standing(sets).fits]
+    sets = sets[CarrierRoom.from_fixture(found.fixture, toolkit, holes).place_sets(sets).fits]
     if not len(sets):
         return (
             f"{found.positions} holes could hold a support, but no three of them fit the columns, the rows "

@@ -87,7 +87,7 @@ def find_account_faults(listing: WrittenListing, rotations: int) -> Iterator[str
     """
     yield from count_faults(listing, rotations)
     yield from find_seating_count_faults(listing)
-    if listing.query.toolkit.travels > 1:
+    if listing.query.toolkit.travel_count > 1:
         yield from find_pair_count_faults(listing)
     if listing.proof is None:
         yield "it has no proof, the account of the search"
@@ -158,7 +158,7 @@ def find_proof_faults(listing: WrittenListing, proof: ProofReport) -> Iterator[s
         yield f"the proof says {proof.escalated} of {proof.candidates} candidates were escalated"
     # Of two clamps whether they close may be in doubt where neither was.
     single = sum(len(entry.faces) < listing.query.toolkit.peg_count for entry in proof.undecided)
-    pairs = listing.query.toolkit.travels > 1
+    pairs = listing.query.toolkit.travel_count > 1
     if (single if pairs else undecided) and not proof.escalated:
         yield f"the proof says that {undecided} candidates are undecided, but none was escalated"
     if has_too_few_contacts(listing, proof) if pairs else found > proof.verified:
@@ -272,7 +272,7 @@ def expect_reason(listing: WrittenListing, verified: int) -> Wanted:
     """
     query, numbers, stages = listing.query, listing.statistics, STAGES
     wording, is_walled = query.toolkit.wording, WALL_END in query.toolkit.contacts
-    if query.toolkit.travels > 1:
+    if query.toolkit.travel_count > 1:
         if not is_walled or (numbers.get("hull_edges") and numbers.get("locator_places")):
             return (
                 NoPair(0, verified),
@@ -385,7 +385,7 @@ def find_seat_faults(listing: WrittenListing, refuted: Collection[int]) -> Itera
     holds the indices, from 0, of fixtures to leave out. Stops at the first seat with a wrong number of pairs.
     """
     query, found = listing.query, sum(listing.found.values())
-    if query.toolkit.travels == 1 or query.listing != "all" or found != len(listing.fixtures):
+    if query.toolkit.travel_count == 1 or query.listing != "all" or found != len(listing.fixtures):
         return
     if is_uncounted(listing):
         return

@@ -142,10 +142,10 @@ class BallContact:
 
     def measure_from_origin(self, pose: BallPose) -> Point:
         """Return the vector from the part's origin to the peg's centre, along the toolkit's axes, in mm."""
-        x, y = self.place(pose)
+        x, y = self.compute_point(pose)
         return x - pose.x, y - pose.y
 
-    def place(self, pose: BallPose) -> Point:
+    def compute_point(self, pose: BallPose) -> Point:
         """Return the peg's centre in the toolkit's frame, in mm."""
         # Under straps nothing moves.
         travelled = pose.travels[self.travel] if pose.travels else arb(0)

@@ -158,7 +158,7 @@ class EffectiveJudge:
         shifts = [0]
         is_moved = any(one.travel is not None and one.is_along_x == (axis == 0) for one in plates)
         if not is_moved and not (axis == 1 and has_wall):
-            pegs = [peg for peg in fixture.pegs if self.find_carrier(peg).counted[axis]]
+            pegs = [peg for peg in fixture.pegs if self.find_carrier(peg).counted_axes[axis]]
             used = [(peg.column, peg.row)[axis] for peg in pegs]
             stood_on = [toolkit.find_carrier(self.find_carrier(peg).stands_on) for peg in pegs]
             ends = [(plate.columns, plate.rows)[axis] or 0 for plate in stood_on]

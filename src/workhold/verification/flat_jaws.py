@@ -153,7 +153,7 @@ class JawJudge:
         if top < self.jaws.least_grip or not all(gripped):
             yield "the jaws do not grip the part high enough"
             return
-        yield from self.shift_faults(hold, gripped, (float(low_x), float(high_x)))
+        yield from self.find_shift_faults(hold, gripped, (float(low_x), float(high_x)))
         derived = [make_patch(some, self.jaws.width) for some in gripped]
         for name, mine, theirs in zip(("fixed", "moving"), derived, (hold.fixed, hold.moving), strict=True):
             if not are_alike(mine.rectangles, theirs.rectangles):
@@ -228,13 +228,13 @@ class JawJudge:
         ends[:, 2] += np.tile([under[number] for number in moves.tool.tolist()], 2)
         ends[:, :2] = fixture.pose.apply(ends[:, :2])
 
-        def drawn(x: float, y: float) -> tuple[float, float]:
+        def map_to_part(x: float, y: float) -> tuple[float, float]:
             """Return a point of the jaws' frame in the part's frame, in mm."""
             off = complex(x - float(at[0]), y - float(at[1])) * complex(cos(turn), sin(turn))
             return off.real, off.imag
 
         for name, (x0, y0, x1, y1), top in self.list_obstacles(hold, segments):
-            ring = [drawn(*place) for place in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+            ring = [map_to_part(*place) for place in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
             near = [
                 walk.find_nearest(HoldingElement(name, name, start, end, 0.0, top))
                 for start, end in zip(ring, [*ring[1:], ring[0]], strict=True)
@@ -305,7 +305,7 @@ class JawJudge:
             out.append(JawContact(x, x, bottom, top, None))
         return out
 
-    def shift_faults(
+    def find_shift_faults(
         self, hold: JawHold, gripped: Sequence[Sequence[JawContact]], ends: tuple[float, float]
     ) -> Iterator[str]:
         """Yield one sentence where the part's place along the jaws is not the one
@@ -358,7 +358,7 @@ class JawJudge:
             if any(need is not None for need in hold.forces_needed):
                 yield "loads are held by jaws that cannot press all over"
             return
-        points, way = self.stop_points(hold, segments)
+        points, way = self.list_stop_points(hold, segments)
         friction = find_friction_coefficient(self.query.friction, "jaw")
         held = HeldBetweenJaws.from_patches(
             fixed, moving, hold.opening, friction, points, way, hold.parallels_across
@@ -408,7 +408,7 @@ class JawJudge:
         if self.query.jaw_force is not None:
             yield "safety_reached", self.query.safety_factor * self.query.jaw_force / max(needs)
 
-    def stop_points(
+    def list_stop_points(
         self, hold: JawHold, segments: Sequence[Segment]
     ) -> tuple[list[tuple[float, float, float]], float]:
         """Return (points, sign): where the work stop may push, and 1.0 where it pushes along +x, -1.0 along

@@ -123,17 +123,20 @@ class ForceWalk:
         middle = float(a.mid()), float(b.mid()), float(c.mid())
         off = [float(one.rad()) for one in (a, b, c)]
         if line is None:
-            found, most = self.search(*middle, known), float(self.force.max(initial=0.0))
+            found, most = self.find_largest(*middle, known), float(self.force.max(initial=0.0))
         else:
             moves = self.walk.program.moves
             own = (moves.line[self.move] == line) & (moves.tool[self.move] == tool)
-            found, most = self.look(np.flatnonzero(own), *middle, known), float(self.force.max(initial=0.0))
+            found, most = (
+                self.find_largest_on_stretches(np.flatnonzero(own), *middle, known),
+                float(self.force.max(initial=0.0)),
+            )
         turning = float(self.torque.max(initial=0.0)) + most * self.far
         spare = most * (off[0] + off[1]) + turning * off[2]
         size = most * (abs(middle[0]) + abs(middle[1])) + turning * abs(middle[2])
         return arb(found, spare + ROUNDED * size + FINE * found)
 
-    def search(self, a: float, b: float, c: float, known: float) -> float:
+    def find_largest(self, a: float, b: float, c: float, known: float) -> float:
         """Return the largest value of a g_x + b g_y + c m over all blocks, or ``known`` if larger.
 
         Blocks with the largest bounds are searched first.
@@ -145,10 +148,10 @@ class ForceWalk:
             if bounds[block] <= found:
                 break
             rows = np.arange(self.first[block], min(self.first[block] + RUN, len(self.move)))
-            found = self.look(rows, a, b, c, found)
+            found = self.find_largest_on_stretches(rows, a, b, c, found)
         return found
 
-    def look(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
+    def find_largest_on_stretches(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
         """Return the largest value of a g_x + b g_y + c m on the stretches with indices ``rows``, or
         ``found`` if larger.
 

@@ -264,10 +264,10 @@ class HeldBetweenJaws:
         """
         load = compute_wrenches(np.array([point]), force)[0]
         load[5] += moment / LENGTH
-        found = self.answer(load)
+        found = self.find_least_force(load)
         return None if found is None else found[0]
 
-    def answer(self, load: Array) -> tuple[float, Array] | None:
+    def find_least_force(self, load: Array) -> tuple[float, Array] | None:
         """Return (least jaw force in N for a load (6,), dual prices (6,)); None where no force suffices.
 
         The prices give a lower bound for any other load: it needs at least -prices · load. Moments of the

@@ -130,7 +130,7 @@ class PressingPath:
         row[5] += twist / LENGTH
         return np.asarray(row + self.still)
 
-    def find_dearest_load(self, prices: Array) -> Array:
+    def find_worst_load(self, prices: Array) -> Array:
         """Return the load (6,) along the path with the greatest -prices · load.
 
         At that load's own prices, or any other, this product is a lower bound of the jaw force in N that it
@@ -160,12 +160,12 @@ class PressingPath:
         worst, known = 0.0, set[bytes]()
         for prices in starts:
             for _ in range(MOST_STEPS):
-                load = self.find_dearest_load(prices)
+                load = self.find_worst_load(prices)
                 # Where an ascent came by before, it goes on as it did then.
                 if (key := load.round(9).tobytes()) in known:
                     break
                 known.add(key)
-                found = held.answer(load)
+                found = held.find_least_force(load)
                 if found is None:
                     return None
                 force, prices = found
@@ -236,7 +236,7 @@ def find_program_force_faults(
     try:
         starts = [*np.eye(6), *-np.eye(6)]
         for load in named.list_tried_loads():
-            found = held.answer(load)
+            found = held.find_least_force(load)
             if found is None:
                 if need.force is not None:
                     yield f"line {need.line} is held by no {force_name}, and {need.force:.9g} N are written"

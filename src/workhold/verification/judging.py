@@ -66,7 +66,7 @@ __all__ = [
     "find_main_direction",
     "find_order_faults",
     "compute_penalty",
-    "rank",
+    "make_sort_key",
     "compute_tilt",
     "count_warnings",
 ]
@@ -286,7 +286,7 @@ def find_order_faults(
         return
     off = query.tolerance.peg + query.tolerance.face
 
-    def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
+    def make_key(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
         """Return the sort key of a fixture with these figures, as ranges, in the order of the query
         ``asked``.
         """
@@ -297,10 +297,10 @@ def find_order_faults(
             *list_ranked_ranges(figures, list_ranking_figures(asked.rank_by)),
         ]
 
-    rows = [row_of(fixture, fixture.quality, usual) for fixture in fixtures]
+    rows = [make_key(fixture, fixture.quality, usual) for fixture in fixtures]
     stated = [collect_stated_figures(fixture) for fixture in fixtures]
     seated = [
-        None if figures is None else [*row_of(fixture, figures, query), *row[1:]]
+        None if figures is None else [*make_key(fixture, figures, query), *row[1:]]
         for fixture, row, figures in zip(fixtures, rows, stated, strict=True)
     ]
     count = sum(one is not None for one in seated)
@@ -377,14 +377,14 @@ def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> 
 def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
     """Return whether, of two equally good fixtures, ``one`` certainly stands before ``other``."""
     (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
-        rank(fixture, hardware) for fixture in (one, other)
+        make_sort_key(fixture, hardware) for fixture in (one, other)
     )
     if abs(angle - angle_of_other) > SAME:
         return (holes, angle) < (others, angle_of_other)
     return (holes, faces) < (others, faces_of_other)
 
 
-def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
+def make_sort_key(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     """Return the sort key of equally good fixtures: (type, directions and holes; angle in radians; faces).
 
     Two cases: (a) without a wall and with one moving carrier, the fixture is first turned so that its clamp

@@ -24,7 +24,7 @@ from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import check_seating, read_head_seatings
 from workhold.files.result.forms import Head
-from workhold.files.result.hold_text import is_hold
+from workhold.files.result.hold_text import is_friction_fixture
 from workhold.files.result.holds import AnyHoldPart, read_holds
 from workhold.files.result.notes import find_note_faults, read_notes
 from workhold.files.result.parts import HEAD, check_head, describe_columns_from_head, parse_head, read_parts
@@ -333,7 +333,11 @@ def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[
     iterator = iter(items)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
-    return read_holds(together, path) if first and is_hold(first[0]) else read_fixtures(together, path)
+    return (
+        read_holds(together, path)
+        if first and is_friction_fixture(first[0])
+        else read_fixtures(together, path)
+    )
 
 
 def complete_fixtures(

@@ -325,17 +325,17 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
     assert carrier.travel is not None
     ux, uy = carrier.travel.unit
 
-    def along(peg: Peg) -> float:
+    def measure_along(peg: Peg) -> float:
         """Return how far in mm a peg is from the anchor along the direction of travel."""
         return (peg.x - first_x) * ux + (peg.y - first_y) * uy
 
-    def across(peg: Peg) -> float:
+    def measure_across(peg: Peg) -> float:
         """Return how far in mm a peg is from the anchor, to the left of the direction of travel."""
         return (peg.y - first_y) * ux - (peg.x - first_x) * uy
 
     places = [(peg.x - first_x, peg.y - first_y) for peg in still]
     places += [(peg.x - tip.x, peg.y - tip.y) for peg in moved]
-    numbers, met = [across(tip), *(part for place in places for part in place)], list[float]()
+    numbers, met = [measure_across(tip), *(part for place in places for part in place)], list[float]()
     if carrier.on is not None:
         # A clamp's stroke is counted from its hole, and a wall stands where it is.
         x, y = carrier.compute_hole_center(tip.column, tip.row)
@@ -343,12 +343,12 @@ def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
         numbers += [first_y] if WALL_END in toolkit.contacts else []
         reach = [carrier.peg_radius + toolkit.find_carrier(peg.carrier).peg_radius for peg in still]
         met = [
-            along(peg)
+            measure_along(peg)
             for peg, near in zip(still, reach, strict=True)
-            if abs(across(peg) - across(tip)) < near
+            if abs(measure_across(peg) - measure_across(tip)) < near
         ]
     key = (fixture.direction, len(still), *(round(part, 5) + 0.0 for part in numbers))
-    return PegStance(key, (first_x, first_y), along(tip), tuple(met))
+    return PegStance(key, (first_x, first_y), measure_along(tip), tuple(met))
 
 
 def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:

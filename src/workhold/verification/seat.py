@@ -146,12 +146,12 @@ class ClampPush:
         return [entry / self.push for entry in self.taken]
 
     @property
-    def most(self) -> arb:
+    def largest_share(self) -> arb:
         """The largest size of a locator force, per unit of force on the clamp's face."""
         return find_largest([abs(entry) for entry in self.taken])
 
     @cached_property
-    def alone(self) -> arb:
+    def least_share(self) -> arb:
         """The least locator force divided by the sum of 1 and all sizes of locator forces; above 0 where this
         clamp alone holds the part.
         """
@@ -305,13 +305,13 @@ class SeatBalance:
                 f"the push of {name} is exactly at its limit",
             )
             yield from judge_slack(
-                MOST_FORCE * push.push - push.most,
-                f"{name} presses a locator with {format_middle(push.most / push.push)} times its own force",
+                MOST_FORCE * push.push - push.largest_share,
+                f"{name} presses a locator with {format_middle(push.largest_share / push.push)} times its own force",
                 f"the force of a locator under {name} is exactly at its limit",
             )
             yield from judge_slack(
-                NO_REACTION - push.alone,
-                f"{name} holds the part without the other: its least share is {format_middle(push.alone)}",
+                NO_REACTION - push.least_share,
+                f"{name} holds the part without the other: its least share is {format_middle(push.least_share)}",
                 f"whether {name} holds the part without the other is exactly at its limit",
             )
 

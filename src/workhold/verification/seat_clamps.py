@@ -231,14 +231,17 @@ class SeatOnPlate:
         reach = self.find_tip_radius(direction) + (
             float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0
         )
-        places = [float((compute_dot_product(axis, end) + self.shift(upright)).mid()) for end in ends]
+        places = [
+            float((compute_dot_product(axis, end) + self.compute_origin_coordinate(upright)).mid())
+            for end in ends
+        ]
         pitch, noun = self.lattice.pitch[not upright], "column" if upright else "row"
         low, high = (
             ceil((min(places) - reach - BESIDE) / pitch),
             floor((max(places) + reach + BESIDE) / pitch),
         )
         numbers = [getattr(peg, noun) for peg in self.pegs]
-        return [line for line in range(low, high + 1) if self.hardware.fits(noun, [*numbers, line])]
+        return [line for line in range(low, high + 1) if self.hardware.has_numbers(noun, [*numbers, line])]
 
     def compute_axis(self, upright: bool) -> Point:
         """Return a unit vector in the part's frame: the plate's x axis if ``upright``, else the plate's y
@@ -249,7 +252,7 @@ class SeatOnPlate:
         way = (1.0, 0.0) if upright else (0.0, 1.0)
         return turn_vector(make_exact_point(*way), self.pose.cosine, -self.pose.sine)
 
-    def shift(self, upright: bool) -> arb:
+    def compute_origin_coordinate(self, upright: bool) -> arb:
         """Return the plate coordinate in mm of the part's origin: x from column 0 if ``upright``, else y from
         row 0.
         """
@@ -267,7 +270,7 @@ class SeatOnPlate:
         back = turn_vector(way, self.pose.cosine, -self.pose.sine)
         if isinstance(side, LineSide) and not compute_dot_product(back, side.normal) > LEAST_PUSH:
             return
-        level = arb(self.lattice.pitch[not upright]) * line - self.shift(upright)
+        level = arb(self.lattice.pitch[not upright]) * line - self.compute_origin_coordinate(upright)
         for point in find_points_on_line(side, radius, axis, level):
             if not compute_dot_product(back, side.compute_outward_normal(point)) > 0:
                 continue
@@ -286,31 +289,36 @@ class SeatOnPlate:
         if touches is False:
             return None
         push = self.seat.make_push(contact, self.pose)
-        if push.push < LEAST_PUSH or push.alone > NO_REACTION:
+        if push.push < LEAST_PUSH or push.least_share > NO_REACTION:
             return None
-        most = push.most - MOST_FORCE * push.push
+        most = push.largest_share - MOST_FORCE * push.push
         if most > 0:
             return None
-        sure = [touches is True, bool(push.push > LEAST_PUSH), bool(push.alone < NO_REACTION), bool(most < 0)]
+        sure = [
+            touches is True,
+            bool(push.push > LEAST_PUSH),
+            bool(push.least_share < NO_REACTION),
+            bool(most < 0),
+        ]
         zones, place = self.query.restrictions.zones, contact.compute_center_in_part(self.pose)
         clear = [compute_zone_distance(zone, place) - contact.radius + HAIR for zone in zones]
         if any(off < 0 for off in clear):
             return None
-        passed = self.is_passed(contact, contact)
+        passed = self.is_clear_of_program(contact, contact)
         if passed is False:
             return None
         sure += [passed is True, *(bool(off > 0) for off in clear)]
         holes = list(self.list_bolt_holes(contact, line, direction))
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 
-    def is_passed(self, tip: BallContact, hole: BallContact) -> bool | None:
+    def is_clear_of_program(self, tip: BallContact, hole: BallContact) -> bool | None:
         """Return whether the program's tools keep clear of a clamp body that reaches from its tip to a hole.
 
         True where the query has no program to check; None where it is uncertain.
         """
-        if self.query.passed is None:
+        if self.query.program_to_clear is None:
             return True
-        program, height = self.query.passed
+        program, height = self.query.program_to_clear
         low, height = next(iter(self.hardware.tips.values())).heights or (0.0, height)
         (x, y), (from_x, from_y) = (
             (float(u.mid()), float(v.mid()))
@@ -346,7 +354,7 @@ class SeatOnPlate:
             place = x + arb(pitch_x) * column, y + arb(pitch_y) * row
             bolted, pose = evolve(contact, hole=place), evolve(self.pose, travels=(-stroke,))
             stands = decide_verdict(rules.judge("a clamp", self.locators, bolted, pose, self.outline))
-            passed = self.is_passed(contact, evolve(bolted, way=make_exact_point(0.0, 0.0)))
+            passed = self.is_clear_of_program(contact, evolve(bolted, way=make_exact_point(0.0, 0.0)))
             if stands is not False and passed is not False:
                 yield BoltHole(column, row, place, stroke, stands is True and passed is True)
 
@@ -362,7 +370,7 @@ class SeatOnPlate:
                 h.column for h in (first, second) if h.column is not None
             ]
             rows = [peg.row for peg in self.pegs] + [h.row for h in (first, second) if h.row is not None]
-            if not (self.hardware.fits("column", columns) and self.hardware.fits("row", rows)):
+            if not (self.hardware.has_numbers("column", columns) and self.hardware.has_numbers("row", rows)):
                 continue
             clear = measure_piece_distance((one.tip, first.place), (other.tip, second.place)) - apart
             if not clear < 0:
@@ -394,7 +402,7 @@ class SeatOnPlate:
         """Yield a finding for each choice of holes with a smaller total travel in which both clamps fit."""
         clamps = []
         for peg, contact in zip(fixture.pegs[LOCATORS:], contacts[LOCATORS:], strict=True):
-            tip = evolve(contact, hole=contact.place(pose), travel=0)
+            tip = evolve(contact, hole=contact.compute_point(pose), travel=0)
             line, direction, push = (
                 find_clamp_line(peg),
                 find_direction(peg),

@@ -420,14 +420,14 @@ class StatedSeating:
         return self.claim.fields
 
     @cached_property
-    def moving(self) -> list[bool]:
+    def is_moving_peg(self) -> list[bool]:
         """For each peg of the fixture, whether it moves."""
         return [any(self.judge.hardware.find_way(peg)) for peg in self.fixture.pegs]
 
     @cached_property
     def way(self) -> tuple[float, float]:
         """The unit vector along which the moving pegs move as their travel grows."""
-        return self.judge.hardware.find_way(self.fixture.pegs[self.moving.index(True)])
+        return self.judge.hardware.find_way(self.fixture.pegs[self.is_moving_peg.index(True)])
 
     @cached_property
     def on_wall(self) -> list[int]:
@@ -440,7 +440,7 @@ class StatedSeating:
         """The travel in mm of the moving carrier; a clamp's follows from where its tip is written."""
         if self.fixture.direction is None:
             return self.fixture.travel
-        tip = self.fixture.pegs[self.moving.index(True)]
+        tip = self.fixture.pegs[self.is_moving_peg.index(True)]
         return measure_travel(tip, self.judge.hardware.carriers[tip.carrier])
 
     @property
@@ -470,7 +470,7 @@ class StatedSeating:
             for words in self.find_seat_faults(seat, mine):
                 yield f"seat {number} {words}"
         yield from self.find_figure_faults(mine)
-        yield from self.pass_faults(mine)
+        yield from self.find_pass_faults(mine)
 
     def find_seat_faults(self, seat: Mapping[str, Any], own: Mapping[str, Any]) -> Iterator[str]:
         """Yield a verb phrase (such as "lies beyond the stop") for each fault of a seat.
@@ -523,7 +523,7 @@ class StatedSeating:
         toolkit's frame.
         """
         contacts = self.judge.hardware.make_contacts(self.fixture, self.judge.outline)
-        return [contact.place(BallPose.from_written(self.fixture.pose)) for contact in contacts]
+        return [contact.compute_point(BallPose.from_written(self.fixture.pose)) for contact in contacts]
 
     def name_seat(self, seat: Mapping[str, Any]) -> str:
         """Return the kind of a seat as its contacts imply it: "curved", "pocket", "corner" or "fixture"."""
@@ -576,7 +576,7 @@ class StatedSeating:
             return False
         return seating.most is None or seat["jaw_separation"] <= seating.most
 
-    def pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
+    def find_pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
         """Yield one clause for each fault of the stated pass, cage and placing.
 
         Cage: the poses from which the part still settles in its seat. Pass: the pose at which the part first
@@ -652,12 +652,12 @@ class StatedSeating:
 
         Fixed pegs do not move.
         """
-        peg, by = self.fixture.pegs[number], apart * self.moving[number]
+        peg, by = self.fixture.pegs[number], apart * self.is_moving_peg[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
     def find_freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
         """Yield a verb phrase where a peg overlaps the placed part, or the part enters a wall."""
-        numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
+        numbers = [number for number in range(len(self.is_moving_peg)) if number not in self.on_wall]
         pegs = np.array([self.find_peg_center(number, apart) for number in numbers])
         carriers = self.judge.hardware.carriers
         radii = np.array([carriers[self.fixture.pegs[number].carrier].peg_radius for number in numbers])
@@ -704,7 +704,7 @@ class StatedSeating:
             fx, fy = -nx - friction * ny, -ny + friction * nx
             x, y = (float(part.mid()) for part in one.at)
             moment = ((x - cx) * fy - (y - cy) * fx) / self.judge.rough.arm
-            borne = -self.clamping * (fx * self.way[0] + fy * self.way[1]) * self.moving[one.peg]
+            borne = -self.clamping * (fx * self.way[0] + fy * self.way[1]) * self.is_moving_peg[one.peg]
             columns.append((fx, fy, moment, borne))
         return np.array(columns).reshape(-1, 4).T
 

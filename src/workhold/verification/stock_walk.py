@@ -21,7 +21,7 @@ from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.verification.tool_walk import (
     ToolWalk,
-    do_cross,
+    are_crossing,
     make_walk,
     measure_pieces_to_point,
     measure_points_to_piece,
@@ -151,7 +151,7 @@ class StockGround:
                         measure_pieces_to_point(one, other, edge.end),
                     ]
                     apart = np.minimum.reduce(ends + others)
-                    near = np.where(do_cross(one, other, edge.start, edge.end), 0.0, apart) - sagitta
+                    near = np.where(are_crossing(one, other, edge.start, edge.end), 0.0, apart) - sagitta
                     far = np.maximum(*ends) + sagitta
                 low, high = np.minimum(low, near), np.minimum(high, far)
         return low, high

@@ -211,9 +211,9 @@ class StrapJudge:
         """Yield one sentence for each locator, strap or support to which a tool of the program comes too
         near.
         """
-        if self.query.passed is None:
+        if self.query.program_to_clear is None:
             return
-        program, height = self.query.passed
+        program, height = self.query.program_to_clear
         walk = make_walk(program)
         elements = [*list_elements(fixture, self.hardware, height), *self.list_strap_elements(fixture, hold)]
         for element in elements:
@@ -555,7 +555,7 @@ class StrapJudge:
                 force = load.force * cos(way + turn), load.force * sin(way + turn), load.upward
                 row = compute_wrenches(at, force)[0]
                 row[5] += load.moment / LENGTH
-                found = held.answer(row * factor + weight)
+                found = held.find_least_force(row * factor + weight)
                 if found is None:
                     return None
                 most = max(most, found[0])

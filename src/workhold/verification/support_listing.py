@@ -175,7 +175,7 @@ class SupportPlaces:
         for peg in self.fixture.pegs:
             carrier = toolkit.find_carrier(peg.carrier)
             for axis, number in enumerate((peg.column, peg.row)):
-                if carrier.stands_on in lines and carrier.counted[axis]:
+                if carrier.stands_on in lines and carrier.counted_axes[axis]:
                     lines[carrier.stands_on][axis].append(number)
         fits = True
         every_row = [row for one in lines.values() for row in one[1]]

@@ -107,7 +107,7 @@ class SupportsJudge(SupportPlaces):
         """
         toolkit, count = self.toolkit, len(self.fixture.pegs)
         bands = self.request.list_peg_bands(count)
-        rows = 6 + toolkit.travels
+        rows = 6 + toolkit.travel_count
         out = []
         for corner in product((0, 1), repeat=count):
             heights = bands[np.arange(count), corner]

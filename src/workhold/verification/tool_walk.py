@@ -277,7 +277,7 @@ class ToolWalk:
         ends = [measure_points_to_piece(one, start, end), measure_points_to_piece(other, start, end)]
         ends += [measure_pieces_to_point(one, other, start), measure_pieces_to_point(one, other, end)]
         least = np.minimum.reduce(ends)
-        return np.where(do_cross(one, other, start, end), 0.0, least)
+        return np.where(are_crossing(one, other, start, end), 0.0, least)
 
     def measure_box_distance(self, one: Array, other: Array, element: HoldingElement) -> float:
         """Return the distance in mm of a box from an element's middle line or half plane.
@@ -309,7 +309,7 @@ def measure_pieces_to_point(one: Array, other: Array, point: Array) -> Array:
     return np.asarray(np.hypot(*(point - one - np.clip(share, 0.0, 1.0)[:, None] * along).T))
 
 
-def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.bool_]:
+def are_crossing(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.bool_]:
     """Return (N,) booleans: whether each of N segments properly crosses the segment from ``start`` to
     ``end``.
 
@@ -317,12 +317,12 @@ def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.b
     not cross.
     """
 
-    def side(a: Array, b: Array, c: Array) -> Array:
+    def compute_side(a: Array, b: Array, c: Array) -> Array:
         """Return twice the signed area of the triangle a, b, c: positive where c is to the left of a to b."""
         return np.asarray((b - a)[..., 0] * (c - a)[..., 1] - (b - a)[..., 1] * (c - a)[..., 0])
 
-    apart = side(start, end, one) * side(start, end, other) < 0.0
-    return np.asarray(apart & (side(one, other, start) * side(one, other, end) < 0.0))
+    apart = compute_side(start, end, one) * compute_side(start, end, other) < 0.0
+    return np.asarray(apart & (compute_side(one, other, start) * compute_side(one, other, end) < 0.0))
 
 
 @lru_cache(maxsize=8)
@@ -337,9 +337,9 @@ def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     Two faults: a tool comes too near to the fixture; the written clearance is missing, superfluous or wrong.
     """
     said = fixture.quality.get(PROGRAM_FIGURE.key)
-    if query.passed is None:
+    if query.program_to_clear is None:
         return "" if said is None else f"its {PROGRAM_FIGURE.words} is given, and there is no program"
-    program, height = query.passed
+    program, height = query.program_to_clear
     walk, least = make_walk(program), NearestApproach(inf, inf, -1)
     elements = list(list_elements(fixture, hardware, height))
     for element in elements:
@@ -394,7 +394,7 @@ def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> It
     angle = radians(fixture.pose.theta_deg)
     cosine, sine = np.cos(angle), np.sin(angle)
 
-    def seen(x: float, y: float) -> tuple[float, float]:
+    def map_to_part(x: float, y: float) -> tuple[float, float]:
         """Return a point of the toolkit's frame in the part's frame."""
         dx, dy = x - fixture.pose.x, y - fixture.pose.y
         return float(cosine * dx + sine * dy), float(cosine * dy - sine * dx)
@@ -403,11 +403,11 @@ def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> It
         # Up in the toolkit is this way in the part.
         low, top = wall.heights or (0.0, height)
         up = float(sine), float(cosine)
-        yield HoldingElement(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
+        yield HoldingElement(f"the {wall.noun}", wall.noun, map_to_part(0.0, 0.0), up, 0.0, top, True, low)
     for name, peg in hardware.list_placed(fixture):
         carrier = hardware.carriers[peg.carrier]
         low, top = carrier.heights or (0.0, height)
-        ends = seen(peg.x, peg.y), seen(*find_far_end(peg, carrier))
+        ends = map_to_part(peg.x, peg.y), map_to_part(*find_far_end(peg, carrier))
         whole = HoldingElement(
             name, make_element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low
         )

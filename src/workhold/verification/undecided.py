@@ -82,7 +82,9 @@ def find_undecided_faults(entries: Sequence[UndecidedCandidate], query: Query) -
         outline = make_joint_outline(query.workpiece)
         for number, entry in enumerate(entries, 1):
             parts = (
-                split_into_single_entries(entry, query) if query.toolkit.travels > 1 else ((entry, query),)
+                split_into_single_entries(entry, query)
+                if query.toolkit.travel_count > 1
+                else ((entry, query),)
             )
             fault = next(filter(None, (find_entry_fault(*part, outline) for part in parts)), "")
             if fault:

@@ -318,7 +318,7 @@ def list_not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
 
     ``is_seated`` says whether the result states seating.
     """
-    left_out = "seats" if toolkit.travels > 1 else "fixtures"
+    left_out = "seats" if toolkit.travel_count > 1 else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
     yield (
         f"whether the query was wider: what is listed also meets one with {ToolkitRules(toolkit).wider_words}"

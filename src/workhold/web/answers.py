@@ -30,7 +30,7 @@ from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import convert_finite, describe_helps, describe_solid
 from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
-from workhold.presenting.zoomed_picture import draw_zoomed
+from workhold.presenting.zoomed_picture import draw_zoomable_picture
 from workhold.supports.straps import make_question
 from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings
 from workhold.units import MILLIMETRE
@@ -314,7 +314,7 @@ def describe_fixture(
         "normals": [list(normal) for _, normal in bench.contacts],
         "forces": [convert_finite(peg.force) for peg in fixture.pegs],
         "carriers": describe_carriers(stands, bench.shown),
-        "picture": draw_zoomed(bench, workpiece.name, size, placed),
+        "picture": draw_zoomable_picture(bench, workpiece.name, size, placed),
     }
 
 

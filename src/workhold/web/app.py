@@ -135,41 +135,41 @@ def make_error_response(status: int, sentence: str, headers: dict[str, str] | No
 def add_error_handlers(app: FastAPI) -> None:
     """Make the application answer every error with a status and one sentence."""
 
-    def on(error_class: type[Exception], status: int) -> None:
+    def add_handler(error_class: type[Exception], status: int) -> None:
         """Make the application answer errors of this class with ``status`` and the error's own sentence."""
 
-        async def handler(request: Request, error: Exception) -> Response:
+        async def handle_error(request: Request, error: Exception) -> Response:
             return make_error_response(status, str(error) or "The search was stopped.")
 
-        app.add_exception_handler(error_class, handler)
+        app.add_exception_handler(error_class, handle_error)
 
-    on(InputError, 400)
-    on(TooManyError, 429)
-    on(BusyError, 503)
-    on(FailedError, 503)
-    on(StoppedError, 409)
+    add_handler(InputError, 400)
+    add_handler(TooManyError, 429)
+    add_handler(BusyError, 503)
+    add_handler(FailedError, 503)
+    add_handler(StoppedError, 409)
 
-    async def refused(request: Request, error: Exception) -> Response:
+    async def handle_faulty_request(request: Request, error: Exception) -> Response:
         """Return 400 with the first fault that pydantic finds in a request."""
         assert isinstance(error, RequestValidationError)
         return make_error_response(400, explain_request_error(dict(error.errors()[0])))
 
-    async def plain(request: Request, error: Exception) -> Response:
+    async def handle_http_error(request: Request, error: Exception) -> Response:
         """Return the status of an HTTPException with its sentence."""
         assert isinstance(error, HTTPException)
         sentence = SENTENCES.get(str(error.detail), str(error.detail))
         return make_error_response(error.status_code, sentence, dict(error.headers or {}))
 
-    async def left(request: Request, error: Exception) -> Response:
+    async def handle_early_end(request: Request, error: Exception) -> Response:
         """Return 400 for a request that ended early."""
         return make_error_response(400, "The request ended before it was complete.")
 
-    async def fault(request: Request, error: Exception) -> Response:
+    async def handle_other_error(request: Request, error: Exception) -> Response:
         """Return 500 for an error that nothing else handles."""
         return make_error_response(500, "The program has a mistake, which is not yours; please report it.")
 
-    app.add_exception_handler(RequestValidationError, refused)
-    app.add_exception_handler(HTTPException, plain)
-    app.add_exception_handler(ClientDisconnect, left)
+    app.add_exception_handler(RequestValidationError, handle_faulty_request)
+    app.add_exception_handler(HTTPException, handle_http_error)
+    app.add_exception_handler(ClientDisconnect, handle_early_end)
     # The server's log says what it was.
-    app.add_exception_handler(Exception, fault)
+    app.add_exception_handler(Exception, handle_other_error)

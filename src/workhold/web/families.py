@@ -58,7 +58,7 @@ class FamilyForm(Form):
 
         load_solver()
         toolkit = self.toolkit.to_toolkit()
-        usual = RANKINGS[toolkit.travels]
+        usual = RANKINGS[toolkit.travel_count]
         ranking = read_asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.to_tolerance()
         parts = [form.to_workpiece(most_segments) for form in self.workpieces]
@@ -118,16 +118,16 @@ class FoundFamily:
 
 def find_family(payload: AskedQueries, order: TaskContext) -> FoundFamily:
     """Return the family of the queries' parts; progress is reported as ("progress", fraction, found)."""
-    from workhold.family.family import MemberRequest, make_family, write_family_json
+    from workhold.family.family import MemberRequest, format_family_json, make_family
 
-    def progress(fraction: float, found: int) -> None:
+    def report_progress(fraction: float, found: int) -> None:
         order.report(("progress", fraction, found))
 
     queries = payload.queries
     names = number_repeated_names([name for name, _ in queries])
     asked = [MemberRequest(name, query) for name, (_, query) in zip(names, queries, strict=True)]
-    family = make_family(asked, seconds=PROOF * order.seconds, progress=progress)
-    text, plans = write_family_json(family), family.plans
+    family = make_family(asked, seconds=PROOF * order.seconds, progress=report_progress)
+    text, plans = format_family_json(family), family.plans
     small = {
         id(one): evolve(
             one,

@@ -19,7 +19,7 @@ from workhold.files.declared_forms import add_declared_fields, collect_given_val
 from workhold.limits import MOST_LENGTH
 from workhold.model.result import Result
 from workhold.model.seating import Seating
-from workhold.presenting.zoomed_picture import draw_small
+from workhold.presenting.zoomed_picture import draw_small_picture
 from workhold.seating.clamping import HandLoading
 from workhold.units import Unit, find_unit
 from workhold.web.answers import USUAL_SIZE, describe_fixture
@@ -213,7 +213,7 @@ async def small(request: Request, name: str, rank: Rank, revision: Revision = No
         return Response(status_code=204)
     result = get_job_result(job)
     chosen = result[find_ranked_fixture(result, rank)]
-    content = await asyncio.to_thread(draw_small, chosen, result.workpiece, result.toolkit)
+    content = await asyncio.to_thread(draw_small_picture, chosen, result.workpiece, result.toolkit)
     return Response(content, media_type="image/svg+xml")
 
 

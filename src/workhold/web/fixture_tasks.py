@@ -49,7 +49,7 @@ __all__ = [
     "ClosingForm",
     "ClosingOrder",
     "PaperOrder",
-    "close",
+    "simulate_closing",
     "find_seating",
     "has_step",
     "make_paper",
@@ -140,9 +140,9 @@ def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
     if order.before is not None:
         asked["first_side"] = compare_with_first_side(order.fixture, order.result.query, *order.before)
     if order.question.material is not None:
-        from workhold.presenting.bent import bend_sheet
+        from workhold.presenting.bent import compute_sheet_bending
 
-        asked["bending"] = bend_sheet(order.fixture, asked, order.shape)
+        asked["bending"] = compute_sheet_bending(order.fixture, asked, order.shape)
     pages = draw_setup_sheet(order.result, order.rank, result_hash=digest, **asked)
     assert order.question.day is not None
     return make_pages_file(pages, Path(order.kind).suffix, order.question.day), digest
@@ -158,7 +158,7 @@ def compute_hash(result: Result) -> str:
     return digest.hexdigest()
 
 
-def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
+def make_setup_file(order: PaperOrder) -> tuple[bytes, str | None]:
     """Return (content of a set-up for CAM or of a list of pins, None)."""
     from workhold.presenting.papers import make_model_file
 
@@ -206,9 +206,9 @@ def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
     lengths = {name: getattr(order.question, name) for name in names}
     assembly = Assembly.from_fixture(order.fixture, order.result, lengths, chosen, order.shape)
     if order.question.material is not None and chosen is None:
-        from workhold.presenting.bent import bend_sheet, make_bent_glb
+        from workhold.presenting.bent import compute_sheet_bending, make_bent_glb
 
-        bending = bend_sheet(order.fixture, collect_declared_values(order.question), order.shape)
+        bending = compute_sheet_bending(order.fixture, collect_declared_values(order.question), order.shape)
         assert bending is not None
         return make_bent_glb(order.fixture, bending), None
     return assembly.make_file_content(".glb"), None
@@ -218,10 +218,10 @@ def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
 KINDS: dict[str, tuple[str, Callable[[PaperOrder], tuple[bytes, str | None]]]] = {
     "sheet.pdf": ("application/pdf", make_sheet_file),
     "sheet.svg": ("image/svg+xml", make_sheet_file),
-    "setup.dxf": ("image/vnd.dxf", set_up),
-    "setup.step": ("model/step", set_up),
+    "setup.dxf": ("image/vnd.dxf", make_setup_file),
+    "setup.step": ("model/step", make_setup_file),
     "picture.svg": ("image/svg+xml", make_picture_file),
-    "pins.csv": ("text/csv; charset=utf-8", set_up),
+    "pins.csv": ("text/csv; charset=utf-8", make_setup_file),
     "assembly.glb": ("model/gltf-binary", make_bodies_file),
 }
 
@@ -318,7 +318,7 @@ def describe_seating(held: Held, seating: Seating | HandLoading, unit: str) -> d
     }
 
 
-def close(payload: ClosingOrder, order: TaskContext) -> dict[str, Any] | None:
+def simulate_closing(payload: ClosingOrder, order: TaskContext) -> dict[str, Any] | None:
     """Return the path, the ending and the words of a simulated closing; None if it was cancelled.
 
     "way" has rows [degrees, x, y, opening] in mm; "seat" is an index in the seating's seats, or None.

@@ -196,7 +196,7 @@ class Guard:
 
         refusal = self.find_refusal(scope, headers)
         if refusal is not None:
-            await answer(send_guarded, *refusal)
+            await send_error(send_guarded, *refusal)
             return
         if is_api and self.origins.is_preflight(scope["method"], headers):
             # It brings no token: browsers send none before they have been let in.
@@ -210,12 +210,12 @@ class Guard:
         uploads = scope["method"] == "POST" and scope["path"] in UPLOADS
         client = scope["client"][0] if scope.get("client") else ""
         if uploads and self.arriving[client] >= self.limits.client_uploads:
-            await answer(
+            await send_error(
                 send_guarded, 429, "Too many of your files are arriving at the same time: send one by one."
             )
             return
         if uploads and self.arriving.total() >= self.limits.uploads:
-            await answer(
+            await send_error(
                 send_guarded, 503, "Too many files are arriving at the same time: try again in a moment."
             )
             return
@@ -272,7 +272,7 @@ async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
     query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
     offered = query.get("token", [""])[0]
     if scope["method"] not in ("GET", "HEAD") or not compare_digest(offered.encode(), token.encode()):
-        await answer(
+        await send_error(
             send, 401, "This server asks for a token: open the page with the address that it printed."
         )
         return
@@ -329,7 +329,7 @@ def explain_too_large(most: int) -> str:
     return f"The request is larger than {size}: send a drawing of the part's outline only."
 
 
-async def answer(send: Send, status: int, sentence: str) -> None:
+async def send_error(send: Send, status: int, sentence: str) -> None:
     """Send an error as JSON, in the form that the application's errors have."""
     body = json.dumps({"error": sentence, "place": None}).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]

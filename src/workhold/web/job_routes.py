@@ -71,7 +71,9 @@ WhenLeft = Annotated[
 ]
 
 
-async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str) -> JSONResponse:
+async def begin_job(
+    request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str
+) -> JSONResponse:
     """Begin the job that a form asks for; return its name and address with status 202."""
     state = get_state(request)
     address = get_client_address(request)
@@ -99,13 +101,13 @@ STATE_SO_FAR: dict[int | str, dict[str, Any]] = {202: {"model": JobAnswer}}
 @router.post("/jobs", status_code=202, summary="Search for every fixture", responses=BEGUN)
 async def submit(request: Request, form: JobForm, when_left: WhenLeft = "keep") -> Response:
     """Begin a search; its state and fixtures are at the address in the answer."""
-    return await begin(request, form, when_left)
+    return await begin_job(request, form, when_left)
 
 
 @router.post("/explore", status_code=202, summary="Compare toolkits", responses=BEGUN)
 async def explore(request: Request, form: ExploreForm, when_left: WhenLeft = "keep") -> Response:
     """Begin a comparison of toolkits; its rows appear in the job's ``table``."""
-    return await begin(request, form, when_left)
+    return await begin_job(request, form, when_left)
 
 
 @router.get("/jobs/{name}", summary="State of a job", responses=STATE)
@@ -346,7 +348,7 @@ async def submit_family(request: Request, form: FamilyForm, when_left: WhenLeft 
     """Begin a search for the set-ups of a family;
     its state is at the address in the answer, its curve at ``family`` below.
     """
-    return await begin(request, form, when_left)
+    return await begin_job(request, form, when_left)
 
 
 @router.get("/jobs/{name}/family", summary="The curve of a family")

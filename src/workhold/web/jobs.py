@@ -266,7 +266,7 @@ class JobRegistry:
         try:
             outcome = await self.pool.run(job.task)
             if isinstance(outcome, SearchOutcome):
-                self.keep(job, outcome)
+                self.keep_outcome(job, outcome)
             elif isinstance(outcome, FoundFamily):
                 job.family, job.fraction = outcome, 1.0
             elif len(job.table) < job.asked.count and not job.task.stop.is_set():
@@ -288,7 +288,7 @@ class JobRegistry:
         job.wake_watchers()
         self.make_room()
 
-    def keep(self, job: ServerJob, found: SearchOutcome) -> None:
+    def keep_outcome(self, job: ServerJob, found: SearchOutcome) -> None:
         """Keep the outcome of a search in its job, with the notes that the server adds."""
         result, notes = found.result, [*found.result.notes]
         if found.left_out:
@@ -378,11 +378,11 @@ class JobRegistry:
                 watcher.set()
 
     def free_memory(self) -> None:
-        """Schedule one :meth:`give_back` for the memory of deleted jobs, unless one is scheduled already."""
+        """Schedule one :meth:`return_memory_later` for the memory of deleted jobs, unless one is scheduled already."""
         if self.freeing is None or self.freeing.done():
-            self.freeing = asyncio.create_task(self.give_back())
+            self.freeing = asyncio.create_task(self.return_memory_later())
 
-    async def give_back(self) -> None:
+    async def return_memory_later(self) -> None:
         """Give freed memory back to the system after :data:`FREE_AFTER` seconds."""
         await asyncio.sleep(FREE_AFTER)
         await asyncio.to_thread(return_memory)

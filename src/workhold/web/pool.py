@@ -188,7 +188,7 @@ class WorkerPool:
 
     def open(self) -> None:
         """Start the workers."""
-        self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
+        self.slots = [asyncio.create_task(self.keep_slot_filled(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:
         """End the workers, and fail the tasks that wait."""
@@ -242,7 +242,7 @@ class WorkerPool:
             self.waiting.remove(task)
             task.settle(error=StoppedError())
 
-    def turn(self) -> PoolTask | None:
+    def choose_next_task(self) -> PoolTask | None:
         """Return the next task to run, without removing it from those waiting; None where none may run now.
 
         It belongs to the client with the fewest workers and, among equals, with the oldest last turn. Where
@@ -260,7 +260,7 @@ class WorkerPool:
 
         From then on one worker more counts as its client's.
         """
-        while (task := self.turn()) is None:
+        while (task := self.choose_next_task()) is None:
             self.bell.clear()
             await self.bell.wait()
         self.waiting.remove(task)
@@ -277,7 +277,7 @@ class WorkerPool:
         self.running += Counter()
         self.bell.set()
 
-    async def keep(self, slot: int) -> None:
+    async def keep_slot_filled(self, slot: int) -> None:
         """Keep a worker running in a slot and give it tasks,
         until cancelled; a worker that ends is replaced.
         """

@@ -280,5 +280,5 @@ def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
     if need is None:
         return None
     return need.to_dict() | {
-        "words": need.list_sentences(result.toolkit.moving.noun, MILLIMETRE, result.toolkit.travels)
+        "words": need.list_sentences(result.toolkit.moving.noun, MILLIMETRE, result.toolkit.travel_count)
     }

@@ -183,7 +183,7 @@ class CheckedRoute(APIRoute):
         """
         handler, form = super().get_route_handler(), self.find_form()
 
-        async def checked(request: Request) -> Response:
+        async def handle_checked_request(request: Request) -> Response:
             """Return the answer to a request, after a check of a large body."""
             if form is not None:
                 body = await request.body()
@@ -191,7 +191,7 @@ class CheckedRoute(APIRoute):
                     await run_at_desk(request, "check_body", (form, body, get_state(request).limits.segments))
             return await handler(request)
 
-        return checked
+        return handle_checked_request
 
     def find_form(self) -> type[Form] | None:
         """Return the form of the route's requests; None where they have no body, or the bytes of a file as

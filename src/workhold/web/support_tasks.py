@@ -119,18 +119,18 @@ def describe_set(found: Supports, triple: Triple) -> dict[str, Any]:
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
     moves = triple.travel is not None and abs(triple.travel - fixture.travel) > 1e-6
 
-    def placed(x: float, y: float) -> list[float]:
+    def map_to_toolkit(x: float, y: float) -> list[float]:
         """Return a point of the part in the toolkit's frame."""
         return [float(value) for value in fixture.pose.apply(x, y)]
 
     return {
         "holes": list_standing_holes(found, triple)[1],
         "carriers": found.query.toolkit.find_carrier_numbers(pad.carrier for pad in triple.supports),
-        "pads": [placed(pad.x, pad.y) for pad in triple.supports],
-        "at": placed(*clamp.at),
+        "pads": [map_to_toolkit(pad.x, pad.y) for pad in triple.supports],
+        "at": map_to_toolkit(*clamp.at),
         "clamped_height": found.request.find_clamped_height(clamp.at),
         "at_part": list(clamp.at),
-        "nearest": placed(*find_nearest_on_border(corners, np.array(clamp.at))),
+        "nearest": map_to_toolkit(*find_nearest_on_border(corners, np.array(clamp.at))),
         "clamp_force": clamp.clamp_needed if loaded else None,
         "support_force": clamp.support_force if loaded else None,
         "arm": clamp.arm,

@@ -15,7 +15,7 @@ from workhold.model.result import Result
 from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
-from workhold.web.fixture_tasks import close, find_seating, make_paper
+from workhold.web.fixture_tasks import find_seating, make_paper, simulate_closing
 from workhold.web.part_tasks import check_part, describe_builtin_part, find_shape, read_part, survey_part
 from workhold.web.program_forms import look_at_program
 from workhold.web.request_forms import check_body
@@ -183,7 +183,7 @@ TASKS: Tasks = {
     "resist": rank_by_load_reaction,
     "paper": make_paper,
     "seating": find_seating,
-    "closing": close,
+    "closing": simulate_closing,
     "supports": find_supports,
     "shape": find_shape,
     "family": find_family,

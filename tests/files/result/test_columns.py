@@ -104,7 +104,7 @@ def rewritten(path: Path, result: Result, head: Callable[[str], str], **changed:
     text, columns = map_archive(path, describe_columns(1), HEAD)
     with path.with_suffix(".new").open("wb") as stream:
         archive = ArchiveWriter(stream, describe_columns(1), len(result))
-        archive.add([changed.get(name, values) for name, values in columns.items()])
+        archive.append_rows([changed.get(name, values) for name, values in columns.items()])
         archive.close(HEAD, head(text), "mark")
     return path.with_suffix(".new")
 
@@ -190,7 +190,7 @@ def test_an_error_on_the_way_leaves_the_earlier_file(tmp_path: Path, monkeypatch
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(ArchiveWriter, "add", full)
+    monkeypatch.setattr(ArchiveWriter, "append_rows", full)
     with pytest.raises(InputError, match=r"a\.npz cannot be written: No space left on device"):
         write_columns(fake_result(3), path)
     assert path.read_text() == "old" and list(tmp_path.iterdir()) == [path]

@@ -76,7 +76,7 @@ def test_each_part_of_a_plan_lies_as_its_own_list_says(name: str, tmp_path: Path
     lists = []
     for (solid, shape), axis in [(one, axis) for one in SOLIDS.items() for axis in ("z", "-z")]:
         part = load(tmp_path / f"{solid}.step", axis=axis, peg_height=7, heights=toolkit.heights)
-        result = answer(Query(part, toolkit, rank_by=RANKINGS[toolkit.travels]), threads=1)
+        result = answer(Query(part, toolkit, rank_by=RANKINGS[toolkit.travel_count]), threads=1)
         lists.append((turn_axis_up(shape, axis), part, result))
     assert [one["fixtures"] for one in found["parts"]] == [len(result) for _, _, result in lists]
     held = [one for plan in found["curve"] for setup in plan["plan"] for one in setup["parts"]]

@@ -13,7 +13,7 @@ from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.contact.record import FEATURES, PEG_FEATURE, PEG_LENGTH
-from workhold.kernels.contact.rules import hold_along_lines
+from workhold.kernels.contact.rules import are_on_parallel_lines
 from workhold.proof.degenerate import hold_nothing
 from workhold.search.cells import run_blocks
 from workhold.search.toolkit_search import ToolkitSearch
@@ -35,7 +35,7 @@ def test_three_parallel_lines_are_seen(count: int) -> None:
             )
             for three in combinations(some, 3)
         )
-        assert hold_along_lines(pegs, count, rows) == wanted
+        assert are_on_parallel_lines(pegs, count, rows) == wanted
         seen.add(wanted)
     assert seen == {True, False}
 

@@ -144,7 +144,7 @@ def moving_peg_off(name: str) -> Callable[[Random, Kernel], float]:
 
 
 CONSTANTS = [
-    Constant("crossing, 4 half units", roots.solve, rest_rounded, symbol="ROUNDINGS", draws=400),
+    Constant("crossing, 4 half units", roots.solve_for_target, rest_rounded, symbol="ROUNDINGS", draws=400),
     Constant(
         "sliding pair, 4e-15",
         sliding_pairs.bound_orientation_error,

@@ -10,7 +10,7 @@ import pytest
 
 from sharpness import changed
 from workhold.kernels.seating import free_space, obstacles, two_contact_curves
-from workhold.kernels.seating.free_space import find_direction_left
+from workhold.kernels.seating.free_space import find_free_direction
 
 # Columns of a piece: arc, place, axis, half its extent, radius, sign.
 LINE = np.array([0.0, 3.0, -2.0, 0.8, 0.6, 4.0, 0.0, 1.0, 0.0, 0.0])
@@ -114,7 +114,7 @@ def test_a_peg_goes_along_what_it_touches_and_not_into_it():
 @pytest.mark.thorough
 def test_what_ranges_leave_is_found():
     """And nothing where they leave nothing: against many directions."""
-    rng, seen, left = np.random.default_rng(5), [], changed(find_direction_left)
+    rng, seen, left = np.random.default_rng(5), [], changed(find_free_direction)
     every = np.linspace(-pi, pi, 20_001)
     for _ in range(300):
         ranges = np.stack([rng.uniform(-9.0, 9.0, 12), rng.uniform(0.0, 2.4, 12)], axis=1)

@@ -7,7 +7,12 @@ import pytest
 
 from loose_sets import NOWHERE, laid_out, straight
 from workhold.kernels.seating.columns import Manifolds
-from workhold.kernels.seating.gathering import BESIDE, write_beyond, write_each_once, write_first_manifolds
+from workhold.kernels.seating.gathering import (
+    BESIDE,
+    write_distinct_sets,
+    write_first_manifolds,
+    write_starts_beyond_ends,
+)
 
 STEP = 0.01
 
@@ -16,7 +21,7 @@ def beyond(families: Manifolds, size: float) -> list[np.ndarray]:
     """Where ways off each set begin."""
     count = len(families.rows)
     configs, whose = np.empty((2 * count, 4)), np.empty(2 * count, np.int64)
-    end = write_beyond(families, size, STEP, configs, whose)
+    end = write_starts_beyond_ends(families, size, STEP, configs, whose)
     return [configs[:end][whose[:end] == number] for number in range(count)]
 
 
@@ -30,7 +35,7 @@ def first_of(configs: np.ndarray, families: Manifolds, asked: list[int]) -> list
 def once(families: Manifolds) -> Manifolds:
     """Each set once."""
     out = Manifolds.allocate(len(families.rows), len(families.configs))
-    return out.take_first(write_each_once(families, 1.0, 1e-6, out))
+    return out.take_first(write_distinct_sets(families, 1.0, 1e-6, out))
 
 
 def test_ways_off_a_bent_set_begin_where_its_ends_lead():

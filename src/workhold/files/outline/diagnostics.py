@@ -107,7 +107,7 @@ def refuse_nothing_closed(strays: Sequence[OpenChain], remarks: Sequence[str]) -
     if not strays:
         hint = f" ({' '.join(remarks)})" if remarks else ""
         raise InputError(f"the drawing holds no lines or arcs that could be an outline{hint}.")
-    raise InputError(f"no outline is closed: {open_ends(strays)}")
+    raise InputError(f"no outline is closed: {describe_open_ends(strays)}")
 
 
 def refuse_open_outline(part: DrawnPart, strays: Sequence[OpenChain]) -> None:
@@ -119,13 +119,13 @@ def refuse_open_outline(part: DrawnPart, strays: Sequence[OpenChain]) -> None:
         gap, size = dist(stray.chain.points[0], stray.chain.points[-1]), dist(box[:2], box[2:])
         if surrounds_box(box, part.bounds) and gap < NEARLY_CLOSED * size:
             raise InputError(
-                f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part "
+                f"the outline around {part} is not closed: {describe_open_ends([stray])} To use the inner part "
                 f"anyway, give {PART_NUMBER} {part.number}."
             )
     enough = find_gap_around_part(part, strays)
     if enough is not None:
         raise InputError(
-            f"the outline around {part} is not closed: {open_ends(strays, enough)} To use the inner part "
+            f"the outline around {part} is not closed: {describe_open_ends(strays, enough)} To use the inner part "
             f"anyway, give {PART_NUMBER} {part.number}."
         )
 
@@ -160,7 +160,7 @@ def surrounds_box(a: Sequence[float], b: Sequence[float]) -> bool:
     return a[0] < b[0] and a[1] < b[1] and a[2] > b[2] and a[3] > b[3]
 
 
-def open_ends(strays: Sequence[OpenChain], enough: float | None = None) -> str:
+def describe_open_ends(strays: Sequence[OpenChain], enough: float | None = None) -> str:
     """Return a text that names the open ends nearest to another one, and
     the join tolerance that would close the gap.
 

@@ -99,7 +99,7 @@ def group_by_pairs(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
     """
     parent = list(range(count))
 
-    def root(item: int) -> int:
+    def find_root(item: int) -> int:
         """Return the smallest item in the group of an item, as far as groups are merged yet."""
         while parent[item] != item:
             parent[item] = parent[parent[item]]
@@ -107,10 +107,10 @@ def group_by_pairs(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
         return item
 
     for i, j in pairs.tolist():
-        a, b = root(i), root(j)
+        a, b = find_root(i), find_root(j)
         if a != b:
             parent[max(a, b)] = min(a, b)
-    return np.array([root(k) for k in range(count)], dtype=np.int64)
+    return np.array([find_root(k) for k in range(count)], dtype=np.int64)
 
 
 # A chain may close on itself only over a gap this much shorter than the chain, or every short line would.

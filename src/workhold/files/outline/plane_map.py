@@ -151,7 +151,7 @@ def make_plane_map(
             kept, place = twins[twin]
             twins[twin] = PlaneEdge(one, other, kept.bulge, (*kept.owners, *owners)), place
     found = [edge for twins in edges.values() for edge, _ in twins]
-    return places, close_gaps(places, found, tolerance)
+    return places, close_dead_ends(places, found, tolerance)
 
 
 def find_ends_on_segments(
@@ -210,7 +210,7 @@ def compute_bulge_between(carrier: CutCurve, low: float, high: float) -> float:
     return float(np.tan((high - low) / 4)) if isinstance(carrier.segment, Arc) else 0.0
 
 
-def close_gaps(places: NDArray[np.float64], edges: list[PlaneEdge], tolerance: float) -> list[PlaneEdge]:
+def close_dead_ends(places: NDArray[np.float64], edges: list[PlaneEdge], tolerance: float) -> list[PlaneEdge]:
     """Return the edges with each dead end moved onto its nearest other
     node, where that is within a tolerance in mm.
 
@@ -390,20 +390,20 @@ def make_cluster(
             for half in walk:
                 inner[half // 2] += 1
 
-    def ends(k: int) -> tuple[Point, Point]:
+    def get_ends(k: int) -> tuple[Point, Point]:
         """Return both nodes of an edge as points."""
         return place[edges[k].first], place[edges[k].last]
 
-    shared = tuple((labels[edges[k].owners[0]], *ends(k)) for k in members if inner[k] == 2)
+    shared = tuple((labels[edges[k].owners[0]], *get_ends(k)) for k in members if inner[k] == 2)
     doubled = []
     for k in members:
         owners = edges[k].owners
         if len(owners) > 1:
-            doubled.append((labels[owners[0]], labels[owners[1]], *ends(k)))
+            doubled.append((labels[owners[0]], labels[owners[1]], *get_ends(k)))
     corners = np.array([place[node] for k in members for node in (edges[k].first, edges[k].last)])
     return CurveCluster(
         tuple(faces),
-        tuple(open_chains(place, [edges[k] for k in members if k not in used], labels)),
+        tuple(join_edges_to_chains(place, [edges[k] for k in members if k not in used], labels)),
         frozenset(numbers[owner] for k in members for owner in edges[k].owners),
         shared,
         tuple(doubled),
@@ -424,7 +424,9 @@ def make_loop_from_walk(
     return JoinedLoop(np.array(rows, dtype=np.float64), tuple(names))
 
 
-def open_chains(place: Sequence[Point], edges: Sequence[PlaneEdge], labels: Sequence[str]) -> Iterable[Chain]:
+def join_edges_to_chains(
+    place: Sequence[Point], edges: Sequence[PlaneEdge], labels: Sequence[str]
+) -> Iterable[Chain]:
     """Yield the given edges as chains; edges are joined at each node where exactly two of them meet.
 
     Edges that form a closed ring, with no other edge at it, are left out.

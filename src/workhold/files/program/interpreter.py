@@ -108,7 +108,7 @@ class Interpreter:
         """State of the control."""
         return self.path.modes
 
-    def read(self, block: ProgramBlock) -> None:
+    def run_block(self, block: ProgramBlock) -> None:
         """Execute a block: update the state and add its moves to ``path``.
 
         Raises
@@ -141,13 +141,13 @@ class Interpreter:
         once = codes.get("once")
         if values.keys() & OTHER_AXES:
             self.drop_further_axes(codes, values)
-        if (whole or pointed) and once != "4" and not (codes and self.looks_ahead(codes)):
+        if (whole or pointed) and once != "4" and not (codes and self.has_look_ahead_code(codes)):
             self.pointed = self.pointed or pointed
             if whole:
                 self.count_whole(whole, codes, values)
         count = len(self.path.rows)
         used = self.set_up(codes, functions, values)
-        used |= self.move(codes, values)
+        used |= self.run_block_move(codes, values)
         if self.away and any(row[2] for row in self.path.rows[count:]):
             raise InputError(
                 f"the tool cuts while {min(self.away)} is at a place of the machine's own: write where it turns "
@@ -200,7 +200,7 @@ class Interpreter:
                     "three axes."
                 )
 
-    def looks_ahead(self, codes: dict[str, str]) -> bool:
+    def has_look_ahead_code(self, codes: dict[str, str]) -> bool:
         """Return whether a block has a code for look-ahead or smoothing, so that
         numbers in the block may belong to that code.
         """
@@ -321,7 +321,7 @@ class Interpreter:
             self.path.forget_position([2], why)
             modes.length = length
 
-    def move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
+    def run_block_move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Make the move of a block, if it has one, and return the letters that have a meaning."""
         used: set[str] = set()
         once = codes.get("once")

@@ -76,7 +76,7 @@ class PathWriter:
     offset_used: str | None = None
     budget: Budget = field(factory=lambda: Budget(LIMITS["program"]))
 
-    def scale(self) -> float:
+    def get_unit_scale(self) -> float:
         """Return the millimetres in the unit in force.
 
         Raises
@@ -99,7 +99,7 @@ class PathWriter:
         InputError
             For a number before the program says its unit, and for a length that is too large.
         """
-        found = round(value * self.scale(), DIGITS)
+        found = round(value * self.get_unit_scale(), DIGITS)
         if abs(found) > MOST_LENGTH:
             raise InputError(f"the length {value:g} is beyond {MOST_LENGTH:g} mm: correct it.")
         return found
@@ -195,15 +195,15 @@ class PathWriter:
         end = (x, y, z)
         if from_x is None or from_y is None or from_z is None:
             self.arrivals.append(self.line)
-            self.add(cutting, end, end, 0.0)
+            self.append_move(cutting, end, end, 0.0)
         elif before != place or self.has_other_tool():
-            self.add(cutting, (from_x, from_y, from_z), end, bulge)
+            self.append_move(cutting, (from_x, from_y, from_z), end, bulge)
 
     def has_other_tool(self) -> bool:
         """Return whether the tool in the spindle is not the tool of the last row."""
         return bool(self.rows) and self.rows[-1][1] != self.modes.tool and self.modes.tool is not None
 
-    def add(self, cutting: bool, start: Place, end: Place, bulge: float) -> None:
+    def append_move(self, cutting: bool, start: Place, end: Place, bulge: float) -> None:
         """Append the row of a move from ``start`` to ``end`` in mm, with tool, feed and speed in force.
 
         Raises

@@ -126,7 +126,7 @@ def read_program_with_calls(
     try:
         content = read_limited(path, LIMITS["program"])
         listing = expand_calls(parse_program_text(decode_program(content)))
-        control = run(
+        control = interpret_program(
             listing,
             None if unit is None else UNITS[unit],
             begin,
@@ -206,7 +206,7 @@ def decode_program(content: bytes) -> str:
         return content.decode("latin-1")
 
 
-def run(
+def interpret_program(
     listing: ProgramText, unit: Unit | None, start: Place | None = None, in_thousandths: bool = False
 ) -> Interpreter:
     """Return the interpreter after it has read all blocks.
@@ -233,7 +233,7 @@ def run(
         control.modes.place = list(start)
     for block in listing.blocks:
         try:
-            control.read(block)
+            control.run_block(block)
         except InputError as error:
             raise InputError(f"line {block.line}: {error}") from error
     if not path.rows:
@@ -289,7 +289,7 @@ def list_tools_used(
     """Return (1) the tools with which the program moves, by number, and (2)
     notes on what is not known of these tools.
 
-    Rapid moves before any tool is called may be removed from ``control``, see :func:`drop_unknown`. Raises
+    Rapid moves before any tool is called may be removed from ``control``, see :func:`drop_moves_without_tool`. Raises
     InputError for a tool without a known diameter.
 
     Parameters
@@ -311,7 +311,7 @@ def list_tools_used(
             notes.append(
                 f"The table of tools does not say its unit, so it is read in {unit.name} like the program."
             )
-    notes += drop_unknown(path, control, known)
+    notes += drop_moves_without_tool(path, control, known)
     used = sorted({row[1] for row in control.path.rows})
     if used[0] < 0:
         # Nothing is called before the first move: the tool in the spindle is the table's 0, or its only one.
@@ -332,7 +332,7 @@ def list_tools_used(
     return {number: known[number] for number in sorted(set(used))}, notes
 
 
-def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) -> list[str]:
+def drop_moves_without_tool(path: Path, control: Interpreter, known: Mapping[int, Tool]) -> list[str]:
     """Remove rapid moves without a tool, before any call or with
     T0, from ``control``; return a list with a note on them.
 

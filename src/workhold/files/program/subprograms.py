@@ -54,7 +54,7 @@ class RunningSubprogram:
     call: str
     program: int | None
 
-    def refuse_endless(self) -> InputError:
+    def make_endless_error(self) -> InputError:
         """Return the error for a subprogram without M99."""
         return InputError(f"{self.call} a subprogram without an end: write M99 behind its last block.")
 
@@ -93,7 +93,7 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
         except InputError as error:
             raise InputError(f"line {block.line}: {error}") from error
         if running and block.program != running[-1].program:
-            raise running[-1].refuse_endless()
+            raise running[-1].make_endless_error()
         try:
             if block.functions & CALLS.keys():
                 call = begin_call(blocks, starts, block, index)
@@ -123,7 +123,7 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
         if not last.left:
             running.pop()
     if running:
-        raise running[-1].refuse_endless()
+        raise running[-1].make_endless_error()
 
 
 def begin_call(

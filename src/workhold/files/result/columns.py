@@ -69,14 +69,14 @@ class ColumnsSink:
         counts = Counter[str]()
         bends = result.query.knows_heights
         figures = len(FIGURES) if bends else BEFORE_PINS
-        columns = describe_columns(result.toolkit.travels, result.query.program is not None, figures)
+        columns = describe_columns(result.toolkit.travel_count, result.query.program is not None, figures)
         with write_binary_file(self.path) as stream:
             archive = ArchiveWriter(stream, columns, listed)
             for table in tables:
                 counts.update(result.toolkit.count_arrangements(table.arrangement))
                 table = table.with_figure_columns(columns["quality"].shape[0])
                 for start in range(0, len(table), BLOCK):
-                    archive.add(round_columns_for_file(table.take(slice(start, start + BLOCK))))
+                    archive.append_rows(round_columns_for_file(table.take(slice(start, start + BLOCK))))
             if archive.done < listed:
                 result = result.mark_cut_short(archive.done)
             text = make_head(result, with_pieces=False)

@@ -142,7 +142,7 @@ def make_fixture_template(
     It takes its numbers in the order of :meth:`WrittenBlock.list_line_columns`; ``band`` is the template of a
     peg's band, or "".
     """
-    tips, travels = toolkit.tips, toolkit.travels
+    tips, travels = toolkit.tip_count, toolkit.travel_count
     carriers = [toolkit.carriers[number] for number in arrangement.carriers]
     pegs = ", ".join(
         f"{{{make_peg_template(one, travels)}{band}}}" for one in carriers if one.contact.is_placed
@@ -276,9 +276,9 @@ class WrittenBlock:
 
     def list_line_columns(self) -> list[list[Any]]:
         """Return the columns of values in the order in which a line's template takes them."""
-        table, toolkit, tips = self.table, self.toolkit, self.toolkit.tips
+        table, toolkit, tips = self.table, self.toolkit, self.toolkit.tip_count
         force, quality, ratio = table.force[:, :, None], table.quality, list[list[Any]]()
-        if toolkit.travels > 1:
+        if toolkit.travel_count > 1:
             force, quality = round_to_twelve_digits(table.force) + 0.0, round_to_twelve_digits(quality) + 0.0
             low, high = (round_to_twelve_digits(ends).tolist() for ends in compute_force_ratios(force))
             ratio = [low, ["null" if isnan(end) else repr(end) for end in high]]
@@ -315,7 +315,7 @@ def list_column_names(result: Result) -> list[str]:
     """Return the column names of a result's CSV table."""
     toolkit = result.toolkit
     pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
-    moved = TRAVEL_COLUMNS[toolkit.travels]
+    moved = TRAVEL_COLUMNS[toolkit.travel_count]
     figures = [figure.key for figure in list_known_figures(result.table)]
     placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
     flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
@@ -354,7 +354,7 @@ def write_result_csv(result: Result) -> Iterator[str]:
         yield from write_hold_csv(result)
         return
     yield ",".join(list_column_names(result)) + "\n"
-    moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
+    moved, flats = 3 + toolkit.travel_count, FLAT_PIN in toolkit.contacts
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
     number, seated = 0, list_seating_values(result) if result.seating else []
     for kinds, rows in list_fixture_rows(result.table, toolkit, result.workpiece):

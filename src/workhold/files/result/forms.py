@@ -199,7 +199,7 @@ class FitPart(FormPart):
     position_assumed: bool = False
     standard: str = Field(default="", max_length=LONGEST_STANDARD)
 
-    def fit(self) -> DowelFit:
+    def to_fit(self) -> DowelFit:
         """Return the fit as an object of the model."""
         (low, high), hole = self.pin, self.hole
         return DowelFit((low, high), (hole[0], hole[1]), self.position, self.position_assumed, self.standard)
@@ -215,7 +215,7 @@ class TolerancePart(FormPart):
 
     def to_tolerance(self) -> Tolerance:
         """Return the tolerance as an object of the model."""
-        return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
+        return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.to_fit(), self.departure)
 
 
 class LoadPart(FormPart):

@@ -29,7 +29,7 @@ __all__ = [
     "make_hold_entry",
     "write_hold_lines",
     "list_hold_rows",
-    "is_hold",
+    "is_friction_fixture",
     "make_need_entry",
 ]
 
@@ -56,7 +56,7 @@ def make_hold_entry(fixture: Fixture) -> dict[str, Any]:
     if not isinstance(hold, JawHold):
         return make_strapped_entry(fixture)
 
-    def patch_entry(patch: JawPatch) -> dict[str, Any]:
+    def make_patch_entry(patch: JawPatch) -> dict[str, Any]:
         """Return the JSON object of a patch, which is the area that a jaw touches."""
         rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
@@ -69,8 +69,8 @@ def make_hold_entry(fixture: Fixture) -> dict[str, Any]:
         "parallels": round_length_for_file(hold.parallels),
         **(moved if hold.has_moved_parallels else {}),
         "stop": hold.stop,
-        "fixed": patch_entry(hold.fixed),
-        "moving": patch_entry(hold.moving),
+        "fixed": make_patch_entry(hold.fixed),
+        "moving": make_patch_entry(hold.moving),
         "pose": {
             "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
             "x": round_length_for_file(pose.x),
@@ -88,7 +88,7 @@ def write_hold_lines(result: Result) -> Iterator[str]:
     return (json.dumps(make_hold_entry(fixture)) for fixture in result)
 
 
-def is_hold(fixture: Any) -> bool:
+def is_friction_fixture(fixture: Any) -> bool:
     """Return whether a fixture, as parsed from a file, is one that holds by friction."""
     return is_strapped(fixture) or (
         isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture

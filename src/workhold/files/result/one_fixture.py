@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from workhold.archive import is_archive
 from workhold.errors import InputError
 from workhold.files.result.fixture_forms import add_seatings
-from workhold.files.result.hold_text import is_hold
+from workhold.files.result.hold_text import is_friction_fixture
 from workhold.files.result.parts import (
     OtherLayoutError,
     check_head,
@@ -77,7 +77,7 @@ def read_one(path: str | Path, rank: int) -> Result:
             if is_archive(path):
                 raise OtherLayoutError
             data, found = read_lines(path, partial(pick_fixture, rank=rank))
-            if found.texts and is_hold(parse_fixture_text(found.texts[-1])):
+            if found.texts and is_friction_fixture(parse_fixture_text(found.texts[-1])):
                 raise OtherLayoutError
             columns = collect_columns(map(parse_fixture_text, found.texts), path, found.first)
     except OtherLayoutError:

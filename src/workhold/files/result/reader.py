@@ -22,7 +22,7 @@ from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
 from workhold.files.result.fixture_forms import add_seatings, check_seating
-from workhold.files.result.hold_text import is_hold
+from workhold.files.result.hold_text import is_friction_fixture
 from workhold.files.result.holds import AnyHoldPart, make_jaw_holds, make_table_of_holds, read_holds
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
@@ -124,7 +124,11 @@ def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> FixtureArrays |
     iterator = iter(fixtures)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
-    return read_holds(together, path) if first and is_hold(first[0]) else collect_columns(together, path)
+    return (
+        read_holds(together, path)
+        if first and is_friction_fixture(first[0])
+        else collect_columns(together, path)
+    )
 
 
 def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> FixtureArrays:
@@ -298,11 +302,11 @@ def check_table(columns: FixtureArrays, query: Query, path: Path, first: int = 0
     theta_deg, x, y, separation, pairs = columns.placing.T
     for ends in toolkit.ends_on_walls:
         face[:, ends] = find_faces_on_wall(query, np.radians(theta_deg), np.stack([x, y], axis=1), path)
-    tips = range(toolkit.peg_count - toolkit.tips, toolkit.peg_count)
+    tips = range(toolkit.peg_count - toolkit.tip_count, toolkit.peg_count)
     strokes = [compute_clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in tips]
-    travels, force = strokes or [separation], contact[:, :, 2 : 2 + toolkit.travels]
+    travels, force = strokes or [separation], contact[:, :, 2 : 2 + toolkit.travel_count]
     # With one thing that moves there is no axis for it.
-    alone = ... if toolkit.travels > 1 else 0
+    alone = ... if toolkit.travel_count > 1 else 0
     table = FixtureTable(
         arrangement=arrangement,
         column=column,
@@ -391,7 +395,7 @@ def add_missing_figures(table: FixtureTable, query: Query) -> FixtureTable:
         query.toolkit,
         *asked,
         jaw_force=query.jaw_force,
-        passed=query.passed,
+        passed=query.program_to_clear,
         pressed_up_to=query.pressed_up_to,
     )
     return evolve(table, quality=np.where(wanted, figures, table.quality))

@@ -84,7 +84,7 @@ def write_result_text(result: Result) -> Iterator[str]:
             add_entry_to_line(line, "seating", one.to_fields())
             for line, one in zip(lines, seatings, strict=False)
         ]
-        if result.query.passed is not None:
+        if result.query.program_to_clear is not None:
             lines = add_clearances(lines, result, slice(count, count + len(lines)))
         yield separator + ",\n".join(lines)
         separator, count = ",\n", count + len(lines)
@@ -106,10 +106,10 @@ def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
     # Other files are written without what measures.
     from workhold.statics.program_clearance import find_nearest_moves, name_element
 
-    assert result.query.passed is not None
-    program = result.query.passed[0]
+    assert result.query.program_to_clear is not None
+    program = result.query.program_to_clear[0]
     toolkit, (_, table) = result.toolkit, round_table_for_file(result.table.take(rows))
-    near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
+    near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.program_to_clear)
     out = []
     for number, line in enumerate(lines):
         if near.line[number] >= 0:

@@ -204,7 +204,7 @@ def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozen
         count = min(PER_PIECE * edge.curve.NbKnots(), MOST_POINTS)
         parameters = np.union1d(parameters, np.linspace(parameters[0], parameters[-1], count))
 
-    def slope(kind: int, parameter: float) -> float:
+    def compute_slope(kind: int, parameter: float) -> float:
         """Return the tangent's component along the segment (kind 0) or upward (kind 1) at a parameter."""
         return compute_slopes(edge, segment, parameter)[kind]
 
@@ -215,7 +215,7 @@ def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozen
             low, high = float(parameters[k]), float(parameters[k + 1])
             for _ in range(HALVINGS):
                 middle = (low + high) / 2
-                if slope(kind, middle) * values[k, kind] > 0:
+                if compute_slope(kind, middle) * values[k, kind] > 0:
                     low = middle
                 else:
                     high = middle
@@ -229,11 +229,11 @@ def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozen
             low, high = float(parameters[k - 1]), float(parameters[k + 1])
             for _ in range(HALVINGS):
                 a, b = low + (high - low) / 3, high - (high - low) / 3
-                if abs(slope(0, a)) < abs(slope(0, b)):
+                if abs(compute_slope(0, a)) < abs(compute_slope(0, b)):
                     high = b
                 else:
                     low = a
-            if abs(slope(0, (low + high) / 2)) <= STEEP:
+            if abs(compute_slope(0, (low + high) / 2)) <= STEEP:
                 upright.add((low + high) / 2)
     known = np.union1d(parameters, np.array(sorted(turns[0] | turns[1] | upright)))
     found = evolve(edge, parameters=known, points=compute_points_along(edge.curve, known))
@@ -375,7 +375,7 @@ class EdgeBranch:
         """
         if self.level is not None:
             return self.level
-        places, heights = self.listed
+        places, heights = self.listed_points
         if place <= places[0]:
             return heights[0]
         if place >= places[-1]:
@@ -390,7 +390,7 @@ class EdgeBranch:
         return self.known[place]
 
     @cached_property
-    def listed(self) -> tuple[list[float], list[float]]:
+    def listed_points(self) -> tuple[list[float], list[float]]:
         """Positions and heights of the branch as lists of floats, because elements of
         lists are read much faster than those of arrays.
         """
@@ -410,7 +410,7 @@ class EdgeBranch:
         if isinstance(carrier, Line):
             (px, py), (tx, ty) = carrier.middle, carrier.tangent
 
-            def value(parameter: float) -> float:
+            def measure_offset(parameter: float) -> float:
                 """Return the position of a point of the curve along the line,
                 minus the wanted position, in mm.
                 """
@@ -419,7 +419,7 @@ class EdgeBranch:
 
         else:
 
-            def value(parameter: float) -> float:
+            def measure_offset(parameter: float) -> float:
                 """Return the position of a point of the curve around the circle,
                 minus the wanted position, in radians.
                 """
@@ -429,7 +429,7 @@ class EdgeBranch:
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
         return self.clamp_height(
-            k, compute_curve_point(self.edge.curve, find_zero_crossing(value, ends[0], ends[1]))[2]
+            k, compute_curve_point(self.edge.curve, find_zero_crossing(measure_offset, ends[0], ends[1]))[2]
         )
 
     def clamp_height(self, k: int, z: float) -> float:
@@ -789,7 +789,7 @@ def find_clear_place(piece: BorderPiece, branches: Sequence[EdgeBranch]) -> floa
     """
     ends = np.array([branch.places[[0, -1]] for branch in branches]).ravel()
 
-    def room(position: float) -> float:
+    def measure_room(position: float) -> float:
         """Return the distance of a position from the nearest
         end of an edge piece; inf where there are none.
         """
@@ -799,4 +799,6 @@ def find_clear_place(piece: BorderPiece, branches: Sequence[EdgeBranch]) -> floa
         return float(np.abs(away).min(initial=np.inf))
 
     places = [piece.low + share * (piece.high - piece.low) for share in SHARES]
-    return next((one for one in places if room(one) > piece.carrier.slack), max(places, key=room))
+    return next(
+        (one for one in places if measure_room(one) > piece.carrier.slack), max(places, key=measure_room)
+    )

@@ -223,7 +223,7 @@ def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
         cx, cy = carrier.center
         along, off = np.unwrap(np.arctan2(y - cy, x - cx)), np.hypot(x - cx, y - cy) - carrier.radius
     most = float(np.abs(off).max())
-    if most > DISGUISE or (most <= EXACT_ON and is_one(edge.segment, carrier, most)):
+    if most > DISGUISE or (most <= EXACT_ON and is_on_wall_curve(edge.segment, carrier, most)):
         return edge
     low, high = float(along.min()), float(along.max())
     if isinstance(carrier, Line):
@@ -243,7 +243,7 @@ def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     return evolve(edge, segment=segment, is_other=False, parameters=parameters, points=points)
 
 
-def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
+def is_on_wall_curve(segment: Segment | None, carrier: Segment, off: float) -> bool:
     """Return whether a segment has the same line or circle as a wall within rounding.
 
     ``carrier`` is a segment of the wall's line or circle; ``off`` is the distance in mm of the edge from that

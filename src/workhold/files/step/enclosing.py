@@ -29,7 +29,7 @@ from workhold.files.step.projected import (
 )
 from workhold.files.step.regions import convert_edge_to_pieces
 from workhold.geometry.hull import compute_convex_hull
-from workhold.geometry.rational import Pieces, cut
+from workhold.geometry.rational import Pieces, cut_between_parameters
 from workhold.geometry.segment import Line, Point, Segment
 
 __all__ = ["Enclosure", "enclose_curves", "split_near_chords"]
@@ -208,7 +208,7 @@ def split_each_piece(pieces: Pieces, safe: float) -> Iterator[Array]:
             continue
         if found + len(waiting) > MOST_PIECES:
             raise InputError("a curve of a level face bends too sharply.")
-        waiting += [cut(piece, 0.5, 1.0), cut(piece, 0.0, 0.5)]
+        waiting += [cut_between_parameters(piece, 0.5, 1.0), cut_between_parameters(piece, 0.0, 0.5)]
 
 
 def enclose_curves(

@@ -41,7 +41,7 @@ from workhold.files.step.projected import (
     list_projected_curves,
     refuse_others,
 )
-from workhold.files.step.strips import Strip, make_strips, run_rows
+from workhold.files.step.strips import Strip, make_run_rows, make_strips
 from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Arc, Line, Segment, are_parallel_lines
 from workhold.geometry.subdivision import (
@@ -115,9 +115,9 @@ class HeightOutline:
     def runs(self) -> tuple[RunRows, ...]:
         """For every segment, the range of heights covered by walls that contains the segment's band.
 
-        Rows are those of :func:`run_rows`; the whole tuple is () when the rows of all segments are empty.
+        Rows are those of :func:`make_run_rows`; the whole tuple is () when the rows of all segments are empty.
         """
-        found = tuple(run_rows(strip) for loop in self.ordered for strip in loop)
+        found = tuple(make_run_rows(strip) for loop in self.ordered for strip in loop)
         return found if any(found) else ()
 
     @property
@@ -418,21 +418,21 @@ def tabulate_peg_heights(solid: StandingSolid, room: float, least: float) -> lis
     for low, high in pairwise([least, *heights]):
         is_whole = bool(whole and rows and rows[-1].high == low and whole.has_area(rows[-1].area))
         border = whole.border if whole and is_whole else ()
-        if whole and is_whole and is_like(rows[-1], whole.row):
+        if whole and is_whole and has_equal_outline(rows[-1], whole.row):
             # Of one outline pegs that reach farther touch no less.
             rows[-1] = evolve(whole.row, low=rows[-1].low)
             break
         for row in list_height_rows_between(solid, low, high, room, least, whole, is_whole):
-            if rows and rows[-1].high == row.low and is_like(rows[-1], row):
+            if rows and rows[-1].high == row.low and has_equal_outline(rows[-1], row):
                 rows[-1] = evolve(row, low=rows[-1].low)
                 continue
             # Just before a wall is high enough, all is as it was before.
             reached = [round(z + least, 6) for z in sorted(starts) if row.low < z + least - BEFORE < row.high]
             for height in reached if rows and rows[-1].touchable < row.touchable else ():
                 before = make_height_row(solid, row.low, height, room, least, BEFORE, border)
-                if before is None or is_like(before, row):
+                if before is None or has_equal_outline(before, row):
                     continue
-                if rows and rows[-1].high == before.low and is_like(rows[-1], before):
+                if rows and rows[-1].high == before.low and has_equal_outline(rows[-1], before):
                     rows[-1] = evolve(before, low=rows[-1].low)
                 else:
                     rows.append(before)
@@ -575,7 +575,7 @@ def list_height_rows_between(
             yield row
 
 
-def is_like(a: HeightRow, b: HeightRow) -> bool:
+def has_equal_outline(a: HeightRow, b: HeightRow) -> bool:
     """Return whether area, border and touchable length of two ranges agree to a millionth."""
     pairs = ((a.area, b.area), (a.border, b.border), (a.touchable, b.touchable))
     return all(abs(one - other) <= 1e-6 * max(one, 1.0) for one, other in pairs)

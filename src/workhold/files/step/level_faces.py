@@ -193,13 +193,13 @@ def make_level_top(
             bounds, cuts = find_bounds_between(solid, height, solid.height + 1.0, is_above)
             rising = trace_region(bounds.lines, lambda point: bounds.may_hold(point) or is_above(point), cuts)
 
-            def inside(point: Point) -> bool:
+            def is_on_top(point: Point) -> bool:
                 """Return whether a point is on one of the faces with surely nothing of the solid above."""
                 return is_on(point) and not bounds.may_hold(point) and not is_above(point)
 
             if any(boxes_overlap(one.box, box) for one in above):
                 open_ = trace_region(
-                    [*list_border_segments(face_borders), *list_lines_near(bounds, box)], inside
+                    [*list_border_segments(face_borders), *list_lines_near(bounds, box)], is_on_top
                 )
             else:
                 open_ = trace_region_of_faces(face_borders)
@@ -225,7 +225,7 @@ def make_rises_above_test(
     """
     are_above = solid.make_inside_test(height, solid.height + 1.0)
 
-    def rises(point: Point) -> bool:
+    def rises_above(point: Point) -> bool:
         """Return whether the solid has material above the height over a point."""
         places.spend()
         if are_above([point])[0]:
@@ -233,7 +233,7 @@ def make_rises_above_test(
         intervals = solid.material.find_material_intervals(point)
         return bool(intervals) and intervals[-1][1] > height + JUST_ABOVE and not is_on(point)
 
-    return rises
+    return rises_above
 
 
 def find_bounds_between(

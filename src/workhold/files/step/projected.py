@@ -473,13 +473,15 @@ def cut_turned_surface(surface: Any, z: float) -> list[Found]:
     parameters, points = curve.sample_points()
     away = np.array([get_height(point) - z for point in points])
 
-    def passed(k: int) -> float:
+    def find_crossing(k: int) -> float:
         """Return the parameter at which the curve crosses z between the samples k and k + 1."""
         sign = 1.0 if away[k] < 0 else -1.0
         low, high = ((float(parameters[m]), sign * float(away[m])) for m in (k, k + 1))
         return find_zero_crossing(lambda t: sign * (get_height(compute_curve_point(curve, t)) - z), low, high)
 
-    return curve.make_circles([passed(int(k)) for k in np.flatnonzero((away[:-1] < 0) != (away[1:] < 0))])
+    return curve.make_circles(
+        [find_crossing(int(k)) for k in np.flatnonzero((away[:-1] < 0) != (away[1:] < 0))]
+    )
 
 
 class OtherCurveError(InputError):

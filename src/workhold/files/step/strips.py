@@ -31,7 +31,7 @@ from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band, RunRows, interpolate_run
 
-__all__ = ["Strip", "run_rows", "make_strips"]
+__all__ = ["Strip", "make_run_rows", "make_strips"]
 
 # Ends of runs that differ by less, in mm, go on from piece to piece.
 SAME_BAND = 1e-5
@@ -122,7 +122,7 @@ def list_runs_at_end(covered: CoveredPiece, end: int) -> list[tuple[Band, float,
     position, carrier = covered.ends[end], covered.piece.carrier
     inward = 1.0 if position == covered.low else -1.0
 
-    def beside(steps: float) -> float:
+    def step_inward(steps: float) -> float:
         """Return the position ``steps`` point tolerances inward from the end,
         but not farther than a quarter of the piece.
         """
@@ -130,9 +130,9 @@ def list_runs_at_end(covered: CoveredPiece, end: int) -> list[tuple[Band, float,
 
     found: list[tuple[Band, float, bool]] = []
     for run in covered.runs:
-        here, there = run.compute_heights_at(position), run.compute_heights_at(beside(STEP))
+        here, there = run.compute_heights_at(position), run.compute_heights_at(step_inward(STEP))
         jumps = any(
-            one.is_steep_at(position, beside(BESIDE), AT_JOINT * carrier.slack)
+            one.is_steep_at(position, step_inward(BESIDE), AT_JOINT * carrier.slack)
             for one in (run.lower, run.upper)
         )
         moved = max(abs(a - b) for a, b in zip(here, there, strict=True))
@@ -148,7 +148,7 @@ def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
     whole if the heights common to all its points suffice, or if no part of it may be touched.
     """
     if (
-        is_enough(pieces, find_common_band(pieces), least)
+        is_band_long_enough(pieces, find_common_band(pieces), least)
         or max(map(bound_run_length, pieces)) < least - SAME_HEIGHT
     ):
         yield pieces
@@ -218,23 +218,25 @@ def split_touched_pieces(one: CoveredPiece, least: float) -> list[tuple[CoveredP
     ):
         return [(one, True)]
 
-    def spare(position: float) -> float:
+    def measure_spare_height(position: float) -> float:
         """Return by how many mm the longest range of covered heights at a position exceeds ``least``."""
         return one.measure_longest_run_at(position) - (least - ONE_HEIGHT)
 
     nodes = [one.low, *one.list_inner_positions(), one.high]
-    peaks = list(find_threshold_positions(one, nodes, spare, least))
+    peaks = list(find_threshold_positions(one, nodes, measure_spare_height, least))
     nodes = sorted({*nodes, *peaks})
     # What lacks no more than rounding is long enough, if it is so for a while.
-    signs = [spare(node) >= ONE_HEIGHT - SAME_HEIGHT for node in nodes]
+    signs = [measure_spare_height(node) >= ONE_HEIGHT - SAME_HEIGHT for node in nodes]
     cuts = []
     for (a, b), (first, last) in zip(pairwise(nodes), pairwise(signs), strict=True):
         if first != last:
             sign = 1.0 if last else -1.0
-            ends = bisect_condition(a, b, partial(is_past, spare, sign), (a, b), HALVINGS)
+            ends = bisect_condition(a, b, partial(has_sign_at, measure_spare_height, sign), (a, b), HALVINGS)
             cuts.append(ends[1] if last else ends[0])
     parts = one.cut_at(cuts)
-    return [(part, spare((part.low + part.high) / 2) >= ONE_HEIGHT - SAME_HEIGHT) for part in parts]
+    return [
+        (part, measure_spare_height((part.low + part.high) / 2) >= ONE_HEIGHT - SAME_HEIGHT) for part in parts
+    ]
 
 
 def find_threshold_positions(
@@ -261,7 +263,7 @@ def find_threshold_positions(
             yield find_extreme_place(spare, a, b, 1.0)
 
 
-def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
+def has_sign_at(value: Callable[[float], float], sign: float, position: float) -> bool:
     """Return whether a function times ``sign`` is 0 or more at a position."""
     return sign * value(position) >= 0.0
 
@@ -328,7 +330,7 @@ def intersect_bands(a: Band, b: Band) -> Band:
     return max(a[0], b[0]), min(a[1], b[1])
 
 
-def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
+def is_band_long_enough(stretch: Stretch, band: Band, least: float) -> bool:
     """Return whether a band is at least ``least`` mm long and at least half as
     long as the longest covered range over the pieces.
     """
@@ -340,23 +342,23 @@ def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
 
 def halve_stretch(stretch: Stretch, least: float) -> list[Strip]:
     """Return the strips over touchable pieces, halved until
-    the band of each is long enough, see :func:`is_enough`.
+    the band of each is long enough, see :func:`is_band_long_enough`.
 
     Strips shorter than ``SHORTEST_STRIP`` are not made; there the band may be None.
     """
     band = find_common_band(stretch)
-    if is_enough(stretch, band, least):
+    if is_band_long_enough(stretch, band, least):
         return make_strips_over_stretch(stretch, band)
     carrier = stretch[0].piece.carrier
     size = sum(one.size for one in stretch)
     unit = carrier.segment.radius if isinstance(carrier.segment, Arc) else 1.0
     if size * unit < 2 * SHORTEST_STRIP:
         return make_strips_over_stretch(stretch, band if measure_band(band) >= least - SAME_HEIGHT else None)
-    first, second = cut_at(stretch, size / 2)
+    first, second = split_stretch(stretch, size / 2)
     return [*halve_stretch(first, least), *halve_stretch(second, least)]
 
 
-def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
+def split_stretch(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
     """Return (1) the parts of consecutive pieces up to a place and (2) the parts from that place on.
 
     ``size`` is the place's distance from the start, in mm on a line and in radians on a circle.
@@ -412,7 +414,7 @@ def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]
     faces = tuple(sorted({index for one in stretch for index in one.faces})) if band is not None else ()
     halves = [stretch]
     if isinstance(carrier.segment, Arc) and size > pi:
-        halves = list(cut_at(stretch, size / 2))
+        halves = list(split_stretch(stretch, size / 2))
     step = (size if forward else -size) / len(halves)
     bulge = tan(step / 4) if isinstance(carrier.segment, Arc) else 0.0
     ends = [carrier.compute_point(begin + step * k) for k in range(len(halves) + 1)]
@@ -422,7 +424,7 @@ def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]
     ]
 
 
-def run_rows(strip: Strip) -> RunRows:
+def make_run_rows(strip: Strip) -> RunRows:
     """Return the covered range of heights that contains a strip's
     band, as rows (share, z0, z1) along the strip; z in mm.
 

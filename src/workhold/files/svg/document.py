@@ -163,13 +163,13 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
     # The same text for the same name, however often it is there.
     names: dict[str, str] = {}
 
-    def expanded(name: str) -> str:
+    def expand_name(name: str) -> str:
         """Return expat's name of a tag or an attribute in ElementTree's form, ``{namespace}name``."""
         if name not in names:
             names[name] = "{" + name if "}" in name else name
         return names[name]
 
-    def started(name: str, attributes: dict[str, str]) -> None:
+    def handle_start(name: str, attributes: dict[str, str]) -> None:
         """Handle a start tag."""
         budget.enter(lambda: f"<{format_element_name(name)}>")
         # What ten attributes take is what an element takes.
@@ -180,21 +180,23 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
                 raise InputError(
                     f"<{format_element_name(name)}> on line {line} has {len(value):,} letters in its {key}: correct it."
                 )
-        element = builder.start(expanded(name), {expanded(key): value for key, value in attributes.items()})
+        element = builder.start(
+            expand_name(name), {expand_name(key): value for key, value in attributes.items()}
+        )
         lines[element] = line
 
-    def ended(name: str) -> None:
+    def handle_end(name: str) -> None:
         """Handle an end tag."""
         budget.leave()
-        builder.end(expanded(name))
+        builder.end(expand_name(name))
 
-    def declared(*_: object) -> None:
+    def refuse_entity(*_: object) -> None:
         """Refuse the declaration of an entity."""
         raise InputError("the SVG file declares XML entities, which are not read: save it as plain SVG.")
 
     given = count = 0
 
-    def attribute_declared(_: str, name: str, __: str, default: str | None, ___: int) -> None:
+    def refuse_default_value(_: str, name: str, __: str, default: str | None, ___: int) -> None:
         """Refuse declarations of attributes with a default value, except
         for declarations of a few namespaces.
         """
@@ -208,7 +210,7 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
                 "it as plain SVG."
             )
 
-    def named(prefix: str | None, space: str | None) -> None:
+    def refuse_long_namespace(prefix: str | None, space: str | None) -> None:
         """Refuse the declaration of a namespace with a very long name."""
         if len(space or "") > LONGEST_NAME:
             raise InputError(
@@ -216,7 +218,7 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
                 f"{LONGEST_NAME} letters: save the file as plain SVG."
             )
 
-    def typed(name: str, system: str | None, public: str | None, subset: object) -> None:
+    def refuse_external_type(name: str, system: str | None, public: str | None, subset: object) -> None:
         """Refuse entities of an external document type."""
         # With an external document type, which is not read, expat drops unknown entities in attributes in
         # silence.
@@ -226,21 +228,21 @@ def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) ->
                 f"the SVG file uses the XML entity {shorten_text(unknown.group().decode())}: save it as plain SVG."
             )
 
-    def instructed(target: str, _: str) -> None:
+    def refuse_style_sheet(target: str, _: str) -> None:
         """Refuse a style sheet in another file."""
         if target == "xml-stylesheet":
             raise InputError(
                 "the SVG file takes styles from another file (<?xml-stylesheet): embed them, or remove it."
             )
 
-    parser.StartElementHandler = started
-    parser.EndElementHandler = ended
+    parser.StartElementHandler = handle_start
+    parser.EndElementHandler = handle_end
     parser.CharacterDataHandler = builder.data
-    parser.EntityDeclHandler = declared
-    parser.AttlistDeclHandler = attribute_declared
-    parser.StartNamespaceDeclHandler = named
-    parser.StartDoctypeDeclHandler = typed
-    parser.ProcessingInstructionHandler = instructed
+    parser.EntityDeclHandler = refuse_entity
+    parser.AttlistDeclHandler = refuse_default_value
+    parser.StartNamespaceDeclHandler = refuse_long_namespace
+    parser.StartDoctypeDeclHandler = refuse_external_type
+    parser.ProcessingInstructionHandler = refuse_style_sheet
     try:
         parser.Parse(content, True)
     except expat.ExpatError as error:

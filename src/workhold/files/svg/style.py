@@ -117,7 +117,7 @@ def compute_style(
     Raises InputError for values that are not supported and decide whether the element is seen.
     """
 
-    def value(name: str, parse: Callable[[str], Value | None], inherited: Value, initial: Value) -> Value:
+    def get_value(name: str, parse: Callable[[str], Value | None], inherited: Value, initial: Value) -> Value:
         """Return the first valid declared value of a property, or else the inherited one."""
         for given in declarations.get(name, ()):
             text = given.text.lower() if "url(" not in given.text.lower() else given.text
@@ -134,27 +134,27 @@ def compute_style(
                 )
         return inherited
 
-    def painted(text: str) -> str | None:
+    def parse_paint(text: str) -> str | None:
         """Return "none", "seen" or "currentcolor" for a paint; None for a text that is not a paint."""
         return resolve_paint(text, styles)
 
-    display = value("display", lambda text: text if DISPLAYS.match(text) else None, "inline", "inline")
+    display = get_value("display", lambda text: text if DISPLAYS.match(text) else None, "inline", "inline")
     if display == "contents":
         raise InputError(f"{label} has display: contents, which is not read: remove it.")
     return ComputedStyle(
-        displayed=display != "none" and value("opacity", is_positive_opacity, True, True),
-        shown=value(
+        displayed=display != "none" and get_value("opacity", is_positive_opacity, True, True),
+        shown=get_value(
             "visibility", {"visible": True, "hidden": False, "collapse": False}.get, around.shown, True
         ),
-        fill=value("fill", painted, around.fill, INITIAL.fill),
-        stroke=value("stroke", painted, around.stroke, INITIAL.stroke),
-        fill_opaque=value("fill-opacity", is_positive_opacity, around.fill_opaque, True),
-        stroke_opaque=value("stroke-opacity", is_positive_opacity, around.stroke_opaque, True),
-        stroke_wide=value("stroke-width", is_positive_width, around.stroke_wide, True),
-        stroke_drawn=value("stroke-dasharray", is_dash_pattern, around.stroke_drawn, True),
-        color_opaque=value("color", is_opaque, around.color_opaque, True),
-        even_odd=value("fill-rule", {"evenodd": True, "nonzero": False}.get, around.even_odd, False),
-        markers=any(value(name, lambda text: text != "none", around.markers, False) for name in MARKERS),
+        fill=get_value("fill", parse_paint, around.fill, INITIAL.fill),
+        stroke=get_value("stroke", parse_paint, around.stroke, INITIAL.stroke),
+        fill_opaque=get_value("fill-opacity", is_positive_opacity, around.fill_opaque, True),
+        stroke_opaque=get_value("stroke-opacity", is_positive_opacity, around.stroke_opaque, True),
+        stroke_wide=get_value("stroke-width", is_positive_width, around.stroke_wide, True),
+        stroke_drawn=get_value("stroke-dasharray", is_dash_pattern, around.stroke_drawn, True),
+        color_opaque=get_value("color", is_opaque, around.color_opaque, True),
+        even_odd=get_value("fill-rule", {"evenodd": True, "nonzero": False}.get, around.even_odd, False),
+        markers=any(get_value(name, lambda text: text != "none", around.markers, False) for name in MARKERS),
     )
 
 

@@ -129,7 +129,7 @@ class SvgWalk:
             placement = placement.compose_after(
                 Placement(e=figure.read_length("x"), f=figure.read_length("y"))
             )
-        refuse_absurd(placement, label)
+        refuse_huge_placement(placement, label)
         look = tuple(
             figure.declarations[name][0].text if name in figure.declarations else around
             for name, around in zip(LOOKS, nest.look, strict=True)
@@ -396,7 +396,7 @@ class SvgWalk:
             own = ShapeElement(part, self.document.name(part), values, nest.viewport, self.budget)
             refuse_effects(evolve(own, label=label))
             placement = placement.compose_after(read_transform(own))
-            refuse_absurd(placement, label)
+            refuse_huge_placement(placement, label)
         if len(shapes) != 1 or not self.document.is_svg_element(shapes[0]):
             raise error
         tag = get_local_name(shapes[0])
@@ -426,7 +426,7 @@ class SvgWalk:
         return remarks
 
 
-def refuse_absurd(placement: Placement, label: str) -> None:
+def refuse_huge_placement(placement: Placement, label: str) -> None:
     """Raise InputError for a map to mm with factors or shifts too large for arithmetic."""
     numbers = (placement.a, placement.b, placement.c, placement.d)
     if not (

@@ -33,7 +33,7 @@ def sort_rows(rows: Array, column: int, sign: float, keys: Array, order: IntArra
 
 
 @inner
-def eliminate(matrix: Array, inverse: Array) -> float:
+def write_inverse(matrix: Array, inverse: Array) -> float:
     """Write the inverse of a (4, 4) matrix to ``inverse`` by Gauss-Jordan elimination with row pivoting.
 
     ``matrix`` is overwritten.

@@ -19,7 +19,7 @@ class Capacity:
     def __init__(self, rows: int) -> None:
         self.rows = rows
 
-    def give(self, write: Callable[[int], Made | None]) -> Made:
+    def call_with_room(self, write: Callable[[int], Made | None]) -> Made:
         """Return the first result of ``write(rows)`` that is not None, calling it with ever more rows.
 
         ``rows`` begins with the number of rows of the last success, and is doubled after each None.

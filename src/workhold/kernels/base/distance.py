@@ -125,21 +125,10 @@ def measure_winding_angle(x: float, y: float, row: Array) -> float:
 
 @compiled
 def measure_winding(x: float, y: float, rows: Matrix) -> float:
-    """Return the angle in radians that (N, 10) segments turn around a point; :func:`sum_winding_angles` for
-    Python.
+    """Return the angle in radians by which the ray from a point to (N, 10) segments turns in all.
 
+    It is 2 pi inside a closed counter-clockwise outline and 0 outside. The point must not lie on a segment.
     See ``base.feature`` for the layout of ``rows``.
-    """
-    return sum_winding_angles(x, y, rows)
-
-
-@inner
-def sum_winding_angles(x: float, y: float, rows: Array) -> float:
-    """Return the sum in radians of :func:`measure_winding_angle` over (N, 10) segments, about a point on none
-    of them.
-
-    It is 2 pi inside a closed counter-clockwise outline and 0 outside. See ``base.feature`` for the layout of
-    ``rows``.
     """
     total = 0.0
     for k in range(rows.shape[0]):
@@ -147,14 +136,13 @@ def sum_winding_angles(x: float, y: float, rows: Array) -> float:
     return total
 
 
-@compiled
-def is_inside(x: float, y: float, rows: Matrix) -> bool:
+def is_inside(x: float, y: float, rows: Array) -> bool:
     """Return whether the point (x, y), not on the outline, lies in the material that (N, 10) segments bound.
 
     The segments form closed loops with the material on their left. See ``base.feature`` for the layout of
     ``rows``.
     """
-    return sum_winding_angles(x, y, rows) > pi
+    return measure_winding(x, y, rows) > pi
 
 
 # Two straight pieces whose directions have a smaller cross product meet at an end of one, if at all.

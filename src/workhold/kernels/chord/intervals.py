@@ -40,7 +40,7 @@ from workhold.kernels.chord.coincidences import (
     find_touching_side,
 )
 from workhold.kernels.chord.evaluation import compute_chord, find_parameter
-from workhold.kernels.chord.shallow import compute_tangent_offset, enclose_arcs_cosine, is_turned
+from workhold.kernels.chord.shallow import compute_tangent_offset, does_shallow_chord_fit, enclose_arcs_cosine
 
 MOST_EVENTS = 16
 # The column of an event that says whether the branch exists behind it.
@@ -250,7 +250,7 @@ def carriers_meet(a: Array, b: Array, d: float, alpha: float) -> bool:
     """
     wx, wy = d * cos(alpha), d * sin(alpha)
     if is_shallow(a) or is_shallow(b):
-        return is_turned(a, b, wx, wy)
+        return does_shallow_chord_fit(a, b, wx, wy)
     if a[IS_ARC] == 0.0 and b[IS_ARC] != 0.0:
         return abs(a[AXIS_Y] * (a[X] + wx - b[X]) - a[AXIS_X] * (a[Y] + wy - b[Y])) < b[RADIUS]
     if a[IS_ARC] != 0.0 and b[IS_ARC] == 0.0:
@@ -320,7 +320,7 @@ def reaches(row: Array, x: float, y: float) -> bool:
 
 
 @inner
-def exists(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
+def has_chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
     """Return whether a chord of length d, direction alpha and a branch lies on both features.
 
     See ``base.feature`` for the layout of ``a`` and ``b``.
@@ -332,7 +332,7 @@ def exists(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool:
 
 
 @inner
-def is_alive(
+def may_branch_exist(
     a: Array, b: Array, d: float, branch: float, low: float, high: float, kind_low: float, kind_high: float
 ) -> bool:
     """Return whether a branch may exist between two neighbouring events at ``low`` and ``high``.
@@ -342,7 +342,7 @@ def is_alive(
     """
     middle = (low + high) / 2.0
     if high - low > NARROW:
-        return exists(a, b, d, middle, branch)
+        return has_chord(a, b, d, middle, branch)
     if not carriers_meet(a, b, d, middle):
         return False
     if high - low > 3.0 * SLIVER:
@@ -382,7 +382,7 @@ def write_chord_intervals(a: Array, b: Array, d: float, events: Array, out: Arra
     for k in range(branches):
         branch = 1.0 if k == 0 else -1.0
         if count == 0:
-            if exists(a, b, d, 0.5, branch):
+            if has_chord(a, b, d, 0.5, branch):
                 out[found, 0], out[found, 1], out[found, 2] = 0.0, TURN, branch
                 out[found, 3], out[found, 4] = 0.0, 0.0
                 found += 1
@@ -404,7 +404,7 @@ def write_branch_intervals(
     for i in range(count):
         low = events[i, 0]
         high = events[i + 1, 0] if i + 1 < count else events[0, 0] + TURN
-        alive = is_alive(a, b, d, branch, low, high, events[i, 1], events[(i + 1) % count, 1])
+        alive = may_branch_exist(a, b, d, branch, low, high, events[i, 1], events[(i + 1) % count, 1])
         events[i, ALIVE] = 1.0 if alive else 0.0
         if not alive:
             start = i

@@ -111,7 +111,7 @@ def compute_tangent_offset(line: Array, arc: Array) -> float:
 
 
 @inner
-def is_turned(a: Array, b: Array, wx: float, wy: float) -> bool:
+def does_shallow_chord_fit(a: Array, b: Array, wx: float, wy: float) -> bool:
     """Return whether a chord w fits between the whole lines or circles of two features, one of them a shallow
     arc.
 

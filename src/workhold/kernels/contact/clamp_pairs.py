@@ -366,7 +366,7 @@ def list_pairs(seats: IntArray, halves: IntArray, clamps: Clamps, hardware: Hard
         count = write_pairs(seats, halves, clamps, hardware, every, np.empty(4, np.int64), out)
         return None if count < 0 else out[:count].copy()
 
-    return PAIR_CAPACITY.give(write)
+    return PAIR_CAPACITY.call_with_room(write)
 
 
 @compiled

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from math import cos, hypot, inf, nan, pi, sin
 
-from workhold.kernels.base.arrays import eliminate
+from workhold.kernels.base.arrays import write_inverse
 from workhold.kernels.base.compiling import (
     Array,
     IntMatrix,
@@ -130,7 +130,7 @@ def write_contact_matrices(
             matrix[i, 3] = moves[k, i] * (
                 (nx * cosine - ny * sine) * axes[k, 0] + (nx * sine + ny * cosine) * axes[k, 1]
             )
-        if not known or (count == 4 and not eliminate(matrix, inverses[k]) > 0.0):
+        if not known or (count == 4 and not write_inverse(matrix, inverses[k]) > 0.0):
             for i in range(count):
                 ends[k, i] = edges[k, i] = nan
                 for j in range(4):

@@ -43,7 +43,7 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from workhold.kernels.base.arrays import eliminate
+from workhold.kernels.base.arrays import write_inverse
 from workhold.kernels.base.compiling import Array, IntArray, inner
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -134,7 +134,7 @@ WORK_LENGTH = 19
 
 
 @inner
-def take_pegs(record: Array, lattice: Lattice, w: Array) -> None:
+def read_record(record: Array, lattice: Lattice, w: Array) -> None:
     """Copy a record (19,) to the work space ``w``: its unknowns, which pegs move, and the pegs' lattice
     places in mm.
 
@@ -184,7 +184,7 @@ def write_contact_equations(record: Array, features: Array, length: float, w: Ar
 
 
 @inner
-def invert(w: Array) -> float:
+def invert_jacobian(w: Array) -> float:
     """Invert the Jacobian in ``w`` (rows SLOPES) to its rows INVERSE,
     and write the Newton step to its row NEWTON.
 
@@ -199,7 +199,7 @@ def invert(w: Array) -> float:
     for i in range(4):
         for j in range(4):
             w[REST + i, j] = w[SLOPES + i, j]
-    determinant = eliminate(w[REST : REST + 4], w[INVERSE : INVERSE + 4])
+    determinant = write_inverse(w[REST : REST + 4], w[INVERSE : INVERSE + 4])
     for i in range(4):
         w[NEWTON, i] = 0.0
         for j in range(4):

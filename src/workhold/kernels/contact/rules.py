@@ -116,7 +116,7 @@ def is_within(row: Array, x: float, y: float, margin: float, radius: float) -> b
 
 
 @inner
-def hold_along_lines(pegs: Array, count: int, rows: Array) -> bool:
+def are_on_parallel_lines(pegs: Array, count: int, rows: Array) -> bool:
     """Return whether three of the first ``count`` pegs (3 or 4) touch parallel lines.
 
     The forces of these three then have one direction, and nothing balances the fourth force. ``pegs`` (4, 6)
@@ -194,7 +194,7 @@ def is_fixture(
     separation = first_moving - first_standing
     if leftmost_moving - rightmost_standing < limits.gap - GAP_SLACK - 2.0 * (radius + length * reach):
         return (1, separation)
-    if hold_along_lines(pegs, 4 if limits.pairing == 0.0 else 3, rows):
+    if are_on_parallel_lines(pegs, 4 if limits.pairing == 0.0 else 3, rows):
         return (1, separation)
     size = write_minors(points, normals, length, null)
     band = bound_minor_error(swing, radius, length)
@@ -222,7 +222,7 @@ def is_fixture(
 
 
 @inner
-def is_listed(verdict: int, counting: bool, count: int, limits: Limits) -> bool:
+def is_to_be_listed(verdict: int, counting: bool, count: int, limits: Limits) -> bool:
     """Return whether four contacts with this verdict of :func:`is_fixture` are to be written to the records.
 
     Contacts that may be a fixture (verdict 2) are. When ``counting``, those with verdict 1 are as well, but

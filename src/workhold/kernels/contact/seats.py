@@ -125,7 +125,7 @@ def bound_amplification(one: Array, other: Array, first: float, last: float) -> 
 
 
 @inner
-def widen(out: Array, one: Array, other: Array, work: Array, wants_margin: bool) -> None:
+def widen_bounds(out: Array, one: Array, other: Array, work: Array, wants_margin: bool) -> None:
     """Widen the bounds ``out`` (3,) of a seat in place so that they also hold for one pair of clamps.
 
     A pair that cannot close changes nothing. ``one`` and ``other`` are the clamps' (5,) rows of forces, see
@@ -186,6 +186,6 @@ def write_pair_bounds(
         for i in range(starts[n], starts[n + 1]):
             for j in range(i + 1, starts[n + 1]):
                 if asked[directions[i], directions[j]] != 0:
-                    widen(row, forces[i], forces[j], work, wants_margin)
+                    widen_bounds(row, forces[i], forces[j], work, wants_margin)
                 elif asked[directions[j], directions[i]] != 0:
-                    widen(row, forces[j], forces[i], work, wants_margin)
+                    widen_bounds(row, forces[j], forces[i], work, wants_margin)

@@ -40,7 +40,7 @@ from workhold.kernels.contact.record import (
     place_peg,
     write_record,
 )
-from workhold.kernels.contact.rules import bound_minor_error, is_fixture, is_listed
+from workhold.kernels.contact.rules import bound_minor_error, is_fixture, is_to_be_listed
 from workhold.kernels.curves.piece_bounds import compute_tail
 from workhold.kernels.curves.roots import MOST_ROOTS, STACK_DEPTH, STACK_LENGTH
 
@@ -312,7 +312,7 @@ def add_listed(
     stats[CANDIDATES] += 1
     if verdict > 0 and once:
         stats[CONTACTS] += 1
-    if not is_listed(verdict, work.counting, count, limits):
+    if not is_to_be_listed(verdict, work.counting, count, limits):
         return count
     if standing == 2.0 and is_far_off(angle, work):
         return count
@@ -340,6 +340,6 @@ def add_seat(out: Array, count: int, angle: Angle, reach: float, work: BlockWork
 
 
 @inner
-def moves_nothing(features: Features) -> bool:
+def has_no_moving_peg(features: Features) -> bool:
     """Return whether only three standing pegs are sought: no feature is touched by moving pegs."""
     return features.moving[0] == features.moving[1]

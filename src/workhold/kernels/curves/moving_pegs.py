@@ -30,7 +30,13 @@ from workhold.kernels.base.tables import Limits
 from workhold.kernels.contact.location_bounds import is_beyond
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
 from workhold.kernels.contact.rules import bound_minor_error, compute_outward_normal
-from workhold.kernels.curves.block_work import BlockWork, add_listed, add_seat, limits_errors, moves_nothing
+from workhold.kernels.curves.block_work import (
+    BlockWork,
+    add_listed,
+    add_seat,
+    has_no_moving_peg,
+    limits_errors,
+)
 from workhold.kernels.curves.piece_bounds import HAIR
 
 # mm. Points this far beyond an arc's ends count as points of it: more than ``END_SLACK`` and rounding.
@@ -313,7 +319,7 @@ def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: Bl
     New number of records, or NO_ROOM_FOR_RECORDS (-1)
     """
     pegs, triple, lattice, limits, features = work.pegs, work.triple, work.lattice, work.limits, work.features
-    if moves_nothing(features):
+    if has_no_moving_peg(features):
         return add_seat(out, count, angle, reach, work)
     _, cx, cy = angle
     pitch_y, length, rows = lattice.pitch_y, limits.wrench_length, features.rows

@@ -180,13 +180,13 @@ def add_pieces(
             row[SLOPE_ERROR_HIGH] = at_high[EDGE_SLOPE_ERROR]
             steady = steady and isfinite(row[SLOPE_ERROR_LOW]) and isfinite(row[SLOPE_ERROR_HIGH])
             if circles and steady:
-                unwind(row, a, b, curve)
+                unwind_positions(row, a, b, curve)
             if steady:
                 write_steady(row, a, curve, at_low, at_high, stretch, right - left, cell.share, mode)
             else:
                 write_beside(row, a, b, curve, stretch, tangent_low, tangent_high, mode)
                 if circles:
-                    unwind(row, a, b, curve)
+                    unwind_positions(row, a, b, curve)
             row[X_STANDING] += max(step, 0.0)
             row[X_MOVING] += min(step, 0.0)
             for n in range(EDGE_LENGTH):
@@ -202,7 +202,7 @@ def add_pieces(
 
 
 @inner
-def unwind(row: Array, a: Array, b: Array, curve: Array) -> None:
+def unwind_positions(row: Array, a: Array, b: Array, curve: Array) -> None:
     """Shift the positions at both ends of a piece on a whole circle in place by whole turns, to join those in
     between.
 

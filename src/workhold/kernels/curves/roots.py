@@ -108,7 +108,7 @@ def guess_root(
 
 
 @inner
-def solve(
+def solve_for_target(
     low: float,
     high: float,
     f_low: float,
@@ -187,7 +187,7 @@ def find_targets(low: float, high: float, offset: float, period: float) -> tuple
 
 
 @inner
-def bound_by_disc(
+def bound_values_by_disc(
     low: float, high: float, curve: int, features: Array, curves: Curves, mode: float
 ) -> tuple[float, float]:
     """Return (low, high) bounds of a curve's values over the range [low, high] of psi, whatever its slopes.
@@ -396,7 +396,7 @@ def write_monotone_roots(
     while k <= last:
         target = asked.offset + k * asked.period
         start = guess_root(low, high, f_low - target, f_high - target, slope_low, slope_high)
-        psi, rest = solve(
+        psi, rest = solve_for_target(
             low,
             high,
             f_low,
@@ -444,10 +444,10 @@ def bound_span(
     blind1 = not (isfinite(bottom1) and isfinite(top1))
     blind2 = not (isfinite(bottom2) and isfinite(top2))
     if width <= WIDEST_DISC and (blind1 or splits >= MANY_SPLITS):
-        least, most = bound_by_disc(low, high, asked.one, asked.features, asked.curves, asked.mode)
+        least, most = bound_values_by_disc(low, high, asked.one, asked.features, asked.curves, asked.mode)
         bottom1, top1 = (least, most) if blind1 else (max(bottom1, least), min(top1, most))
     if width <= WIDEST_DISC and (blind2 or splits >= MANY_SPLITS):
-        least, most = bound_by_disc(low, high, asked.two, asked.features, asked.curves, asked.mode)
+        least, most = bound_values_by_disc(low, high, asked.two, asked.features, asked.curves, asked.mode)
         bottom2, top2 = (least, most) if blind2 else (max(bottom2, least), min(top2, most))
     if width <= WIDEST_DISC and (blind1 or blind2):
         smallest = NARROWEST_DISC

@@ -259,7 +259,7 @@ def is_tail_inside(row: Array, sliding_pair: Array, x: float, y: float, radius: 
 
 
 @inner
-def add_lines(
+def add_curve_fixtures(
     out: Array,
     count: int,
     pair: PlacedPair,
@@ -323,7 +323,7 @@ def add_lines(
 
 
 @inner
-def add_third_peg(
+def add_fixtures_with_third_peg(
     out: Array,
     count: int,
     pair: PlacedPair,
@@ -335,7 +335,7 @@ def add_third_peg(
     """Append the fixtures of three standing pegs and one moving peg to ``out``.
 
     The standing pegs are those of a sliding pair and the head of a curve's chord, whose tail is the pair's
-    tail. Parameters and result are those of :func:`add_lines`.
+    tail. Parameters and result are those of :func:`add_curve_fixtures`.
     """
     whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
     features, curves, pegs, wide = work.features, work.curves, work.pegs, 2.0 * pair.reach + SLIVER
@@ -433,7 +433,7 @@ def may_be_third(slides: IntArray, member: IntArray, near: NearSpots) -> bool:
 
 
 @inner
-def add_of_pair(
+def add_fixtures_of_pair(
     out: Array,
     count: int,
     pair: PlacedPair,
@@ -478,9 +478,9 @@ def add_of_pair(
             continue
         inside = pair.angle if there == psi else make_angle(there)
         if standing == 2:
-            count = add_lines(out, count, pair, curve, inside, sliding_pairs, work)
+            count = add_curve_fixtures(out, count, pair, curve, inside, sliding_pairs, work)
         else:
-            count = add_third_peg(out, count, pair, curve, inside, sliding_pairs, work)
+            count = add_fixtures_with_third_peg(out, count, pair, curve, inside, sliding_pairs, work)
         if count < 0:
             break
     return count
@@ -524,7 +524,7 @@ def write_sliding_fixtures(
         pair = place_pair(number, sliding_pairs, features.loose)
         if asks_spots:
             write_slide_spots(pair, sliding_pairs, features, space.slides)
-        count = add_of_pair(
+        count = add_fixtures_of_pair(
             space.out, count, pair, standing, sliding_pairs, members, spots, space.slides, work
         )
         if count < 0:

@@ -138,7 +138,9 @@ def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots,
 
 
 @inner
-def slides_near(a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair: Array, d: float) -> bool:
+def trim_sliding_range(
+    a: Array, b: Array, ends: tuple[int, int], near: NearSpots, pair: Array, d: float
+) -> bool:
     """Cut the range of a sliding pair in place to the part in which ``near`` allows both contacts.
 
     Return whether there is any such part. ``pair`` begins with SLIDE_FROM, SLIDE_TO, DIRECTION; ``ends`` are
@@ -289,7 +291,7 @@ def write_tail_curves(
                 continue
             slides = 0
             for k in range(write_sliding_pairs(a, b, d, sliding)):
-                if slides_near(a, b, (tail, head), near, sliding[k], d):
+                if trim_sliding_range(a, b, (tail, head), near, sliding[k], d):
                     for column_of in range(3):
                         sliding[slides, column_of] = sliding[k, column_of]
                     slides += 1

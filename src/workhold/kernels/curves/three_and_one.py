@@ -54,9 +54,9 @@ from workhold.kernels.curves.block_work import (
     STOPPED,
     BlockSpace,
     BlockWork,
+    has_no_moving_peg,
     is_among,
     make_block_work,
-    moves_nothing,
     place_triple,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, find_height_range
@@ -314,7 +314,7 @@ def write_three_and_one(
         if stats[STOPPED] != 0:
             break
         low, high, farthest = edges[cell], edges[cell + 1], np.inf
-        if not counting and not moves_nothing(features):
+        if not counting and not has_no_moving_peg(features):
             farthest = find_farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
         number = write_pieces(
             low,

@@ -16,7 +16,7 @@ from workhold.kernels.base.compiling import (
     inner,
 )
 from workhold.kernels.base.tables import Setting
-from workhold.kernels.contact.record import NULL, take_pegs, write_contact_equations
+from workhold.kernels.contact.record import NULL, read_record, write_contact_equations
 from workhold.kernels.proof.newton_kantorovich import compute_clamping, write_wrenches
 
 
@@ -49,7 +49,7 @@ def write_contacts(
     """
     length, null = setting.limits.wrench_length, w[NULL]
     for n in range(records.shape[0]):
-        take_pegs(records[n], setting.lattice, w)
+        read_record(records[n], setting.lattice, w)
         write_contact_equations(records[n], rows, length, w, pairs[0])
         write_wrenches(records[n], rows, length, w, pairs)
         total = null[0] + null[1] + null[2] + null[3]

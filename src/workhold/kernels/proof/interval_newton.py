@@ -48,7 +48,7 @@ from workhold.kernels.contact.record import (
     TAIL_Y,
     UNKNOWNS,
     WORK_LENGTH,
-    take_pegs,
+    read_record,
     write_contact_equations,
 )
 from workhold.kernels.contact.rules import ROUNDING
@@ -67,7 +67,7 @@ from workhold.kernels.proof.variation import (
     NUMBERS,
     TILT,
     is_broken,
-    move_to,
+    move_to_part_middle,
     write_variation,
 )
 
@@ -309,7 +309,7 @@ def find_solutions(
     length = setting.limits.wrench_length
     w, pairs, b, slopes, stack = space.w, space.pairs, space.numbers, space.slopes, space.stack
     place, bounds = space.place, space.bounds
-    take_pegs(record, setting.lattice, w)
+    read_record(record, setting.lattice, w)
     for j in range(4):
         space.start[j] = w[UNKNOWNS, j]
     write_whole_box(record, frame, length, stack[0])
@@ -320,7 +320,7 @@ def find_solutions(
         waiting -= 1
         for j in range(4):
             place[0, j], place[1, j] = stack[waiting, 0, j], stack[waiting, 1, j]
-        move_to(space.start, place, frame, length, w)
+        move_to_part_middle(space.start, place, frame, length, w)
         write_contact_equations(record, features, length, w, pairs[0])
         size, _ = measure_sizes(record, features, pairs[0])
         least = ROUNDINGS * (size + length)
@@ -409,7 +409,7 @@ def write_jacobians(
     of ``features``.
     """
     for n in range(records.shape[0]):
-        take_pegs(records[n], setting.lattice, w)
+        read_record(records[n], setting.lattice, w)
         write_contact_equations(records[n], features, setting.limits.wrench_length, w, points)
         for i in range(4):
             for j in range(4):

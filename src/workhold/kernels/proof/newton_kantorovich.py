@@ -70,8 +70,8 @@ from workhold.kernels.contact.record import (
     REACH,
     SLOPES,
     UNKNOWNS,
-    invert,
-    take_pegs,
+    invert_jacobian,
+    read_record,
     write_contact_equations,
 )
 from workhold.kernels.contact.rules import bound_minor_error, compute_outward_normal, write_minors
@@ -98,7 +98,7 @@ def polish_unknowns(record: Array, features: Array, length: float, w: Array, poi
     """
     for _ in range(ROUNDS):
         write_contact_equations(record, features, length, w, points)
-        if invert(w) > SINGULAR:
+        if invert_jacobian(w) > SINGULAR:
             largest = 0.0
             for k in range(4):
                 largest = max(largest, abs(w[NEWTON, k]))
@@ -151,7 +151,7 @@ def certify_contacts(
     (radius: within this distance in mm a solution exists; unique: within this distance there is no other),
         inf and 0 without a certificate
     """
-    if not invert(w) > SINGULAR:
+    if not invert_jacobian(w) > SINGULAR:
         return (inf, 0.0)
     error = ROUNDINGS * size + backward_error
     norm = step = defect = 0.0
@@ -368,7 +368,7 @@ def certify_records(
     length, points = setting.limits.wrench_length, pairs[0]
     for n in range(records.shape[0]):
         record = records[n]
-        take_pegs(record, setting.lattice, w)
+        read_record(record, setting.lattice, w)
         polish_unknowns(record, features, length, w, points)
         size, smallest = measure_sizes(record, features, points)
         radius, unique = certify_contacts(w, size, smallest, length, setting.backward_error)

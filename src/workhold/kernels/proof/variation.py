@@ -39,7 +39,7 @@ NUMBERS = 10
 
 
 @inner
-def move_to(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
+def move_to_part_middle(z: Array, place: Array, frame: Array, length: float, w: Array) -> None:
     """Set the unknowns in ``w`` to the middle of a part of a box.
 
     The middle is ``z`` (4,), that of the whole box, plus ``frame[1]`` (4, 4) times ``place[0]`` (4,), in the

@@ -206,7 +206,7 @@ def write_roots_between(
 
 
 @inner
-def write_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
+def write_cell_in_pattern(number: int, jaw: JawCells, out: Array) -> None:
     """Write the cell ``number`` of a jaw to ``out`` (7,), converted from the jaw's own frame to the pattern
     of both jaws.
 
@@ -243,7 +243,7 @@ def write_two_pairs(
     p, others, lifted = two_cells[0], right.cells, right.height
     count = known = begun = 0
     for i in range(left.cells.shape[0]):
-        write_in_pattern(i, left, p)
+        write_cell_in_pattern(i, left, p)
         # Few right cells began before this one and reach into it; then come those that begin in it.
         kept = 0
         for k in range(known):
@@ -262,7 +262,7 @@ def write_two_pairs(
                 break
             if others[number, BOTTOM] - lifted > p[TOP] or others[number, TOP] - lifted < p[BOTTOM]:
                 continue
-            write_in_pattern(number, right, two_cells[1])
+            write_cell_in_pattern(number, right, two_cells[1])
             count = write_roots_between(APART, p, two_cells[1], -1, -1, given, stack, out, count)
             if count < 0:
                 return -1

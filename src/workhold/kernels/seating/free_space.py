@@ -360,7 +360,7 @@ def add_peg(
 
 
 @inner
-def find_direction_left(ranges: Array, count: int) -> float:
+def find_free_direction(ranges: Array, count: int) -> float:
     """Return a direction in radians that lies in none of some open ranges, or NaN when they cover all
     directions.
 
@@ -403,7 +403,7 @@ def find_escape_direction(config: Array, obstacles: Obstacles, axes: Array, rang
         (x, y), side = compute_turned_place(config, cosine, sine, obstacles, peg), obstacles.right[peg]
         first, end = obstacles.parts[side, 0], obstacles.parts[side, 1]
         count = add_peg(x, y, obstacles.rows, axes, first, end, ranges, count)
-    return find_direction_left(ranges, count)
+    return find_free_direction(ranges, count)
 
 
 @compiled

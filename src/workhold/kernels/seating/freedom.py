@@ -250,7 +250,7 @@ def write_touching(config: Array, clear: Array, touched: IntArray, around: Obsta
 
 
 @inner
-def write_clear(
+def write_run_clearances(
     motions: SelfMotions, w: int, begin: int, touched: IntArray, around: Obstacles, seen: Array, clear: Array
 ) -> tuple[int, int]:
     """Write the clearances of all pegs and the wall along self-motion
@@ -286,7 +286,7 @@ def write_clear(
 
 
 @inner
-def write_along(
+def write_free_run(
     motions: SelfMotions,
     w: int,
     begin: int,
@@ -354,7 +354,7 @@ def write_free_runs(
     for w in range(motions.counts.shape[0]):
         size = motions.counts[w]
         if low < motions.configs[begin, 3] < high:
-            good, bad = write_clear(motions, w, begin, touched, around, seen, clear)
+            good, bad = write_run_clearances(motions, w, begin, touched, around, seen, clear)
             start, length = begin, 0
             # Of what is closed the last and the first are neighbours.
             shift = bad - begin if motions.closed[w] != 0 and bad >= 0 else 0
@@ -366,7 +366,7 @@ def write_free_runs(
                 elif length > 0:
                     middle = find_middle(clear, begin, size, start, length)
                     write_touching(motions.configs[middle], clear[middle], touched, around, out.rows[count])
-                    write_along(motions, w, begin, start, length, touched, around, work, seen, out, count)
+                    write_free_run(motions, w, begin, start, length, touched, around, work, seen, out, count)
                     out.across[count, 0], out.across[count, 1] = motions.across[w, 0], motions.across[w, 1]
                     count, length = count + 1, 0
         begin += size

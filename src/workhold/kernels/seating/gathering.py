@@ -225,7 +225,7 @@ def write_set(manifolds: Manifolds, number: int, out: Manifolds, at: int) -> Non
 
 
 @compiled
-def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifolds) -> int:
+def write_distinct_sets(manifolds: Manifolds, arm: float, most: float, out: Manifolds) -> int:
     """Write the sets to ``out``, except those whose middle lies in another set with as many contacts or more;
     return the number of sets written.
 
@@ -250,7 +250,9 @@ def write_each_once(manifolds: Manifolds, arm: float, most: float, out: Manifold
 
 
 @compiled
-def write_beyond(manifolds: Manifolds, arm: float, step: float, configs: Matrix, whose: IntVector) -> int:
+def write_starts_beyond_ends(
+    manifolds: Manifolds, arm: float, step: float, configs: Matrix, whose: IntVector
+) -> int:
     """Write configurations just past both ends of each equilibrium manifold to ``configs``; return their
     number.
 

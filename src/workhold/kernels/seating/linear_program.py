@@ -110,7 +110,7 @@ def write_shortest_step_out(count: int, work: DescentWorkSpace) -> None:
 
 
 @inner
-def find_direction_left(work: DescentWorkSpace, size: int, aim: Four) -> Four:
+def project_aim(work: DescentWorkSpace, size: int, aim: Four) -> Four:
     """Return the projection of the aim on the directions orthogonal to
     the first ``size`` rows of the basis, not normalized.
     """
@@ -193,7 +193,7 @@ def write_best_step(count: int, trust: float, work: DescentWorkSpace, aim: Four)
     step, members = (0.0, 0.0, 0.0, 0.0), work.members
     size, taken = 0, 0
     for _ in range(60):
-        way = find_direction_left(work, size, aim)
+        way = project_aim(work, size, aim)
         if way[0] * way[0] + way[1] * way[1] + way[2] * way[2] + way[3] * way[3] < 1e-14:
             dropped = find_strongest_normal(work, size, aim)
             if dropped < 0:

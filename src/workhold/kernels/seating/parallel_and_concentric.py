@@ -269,7 +269,7 @@ def is_touched(piece: Array, theta: float, dx: float, dy: float) -> bool:
 
 
 @inner
-def add_about(
+def add_about_one_center(
     p: int,
     b: int,
     q: int,
@@ -368,7 +368,9 @@ def write_about_one_center(given: HeldPart, stop: float, widest: float, out: Mat
                                 continue
                             for sides in range(1 if given.rows[f, IS_ARC] == 0.0 else 2):
                                 side = 1.0 - 2.0 * sides
-                                count = add_about(p, b, q, a, f, c, side, given, stop, widest, out, count)
+                                count = add_about_one_center(
+                                    p, b, q, a, f, c, side, given, stop, widest, out, count
+                                )
                                 if count < 0:
                                     return -1
     return count

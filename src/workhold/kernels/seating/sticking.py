@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import copysign, hypot, inf, sqrt
 
-from workhold.kernels.base.arrays import eliminate
+from workhold.kernels.base.arrays import write_inverse
 from workhold.kernels.base.compiling import (
     Array,
     IntArray,
@@ -115,7 +115,7 @@ def find_root_between(p: Cubic, low: float, high: float) -> float:
 
 
 @inner
-def is_pressing(
+def are_pressing(
     straight: Array, across: Array, right: IntArray, i: int, j: int, k: int, fi: float, fj: float, fk: float
 ) -> bool:
     """Return whether three contacts i, j, k balance with non-negative forces that close the jaw, at edges of
@@ -184,7 +184,7 @@ def find_friction_of_three(
                 bend = abs(p[2] + 3.0 * p[3] * end)
                 if abs(f_high) <= bend * (APART * (1.0 + end)) ** 2:
                     root = end
-            if root < least and is_pressing(
+            if root < least and are_pressing(
                 straight, across, right, i, j, k, si * root, sj * root, sk * root
             ):
                 least = root
@@ -218,13 +218,13 @@ def find_friction_of_two(points: Array, normals: Array, right: IntArray, least: 
 
 
 @inner
-def is_each_pushing(matrix: Array, inverse: Array) -> bool:
+def are_all_pushing(matrix: Array, inverse: Array) -> bool:
     """Return whether four forces balance with none negative.
 
     The forces are those whose wrenches add up to zero and that close the jaw with force 1. ``matrix`` (4, 4)
     holds the equations and is overwritten, as is ``inverse``.
     """
-    if not eliminate(matrix, inverse) > SINGULAR:
+    if not write_inverse(matrix, inverse) > SINGULAR:
         return False
     # The right-hand side is (0, 0, 0, -1).
     return max(inverse[0, 3], inverse[1, 3], inverse[2, 3], inverse[3, 3]) <= 0.0
@@ -255,7 +255,7 @@ def is_balanced(
                         matrix[e, count] = along * straight[contact, e] + beside * across[contact, e]
                     matrix[3, count] = matrix[0, count] * right[contact]
                     count += 1
-                if is_each_pushing(matrix, inverse):
+                if are_all_pushing(matrix, inverse):
                     return True
     return False
 

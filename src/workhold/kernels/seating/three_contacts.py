@@ -86,7 +86,7 @@ def may_balance(s: PairState, nx: float, ny: float, ray: Ray, turn: float) -> bo
 
 
 @inner
-def write_off_level(
+def write_point_heights(
     discs: Array, s: PairState, cosine: float, sine: float, speed: float, reach: float, off: Array
 ) -> None:
     """Write the heights above the first peg that points in given discs of the part may have over a range of
@@ -131,7 +131,7 @@ def is_behind(
     Parameters
     ----------
     disc : (3,) centre x, centre y and radius in mm.
-    speed, reach : see :func:`write_off_level`.
+    speed, reach : see :func:`write_point_heights`.
     beyond : place of the third peg along x from the first at the stop, in mm.
     push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
     """
@@ -398,7 +398,7 @@ def write_three_contacts(
         k, tail, reach = int(pair[SOURCE]), int(pair[FIRST_PEG]), (cell[HIGH] - cell[LOW]) / 2.0
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
         s, ray, cosine, sine = read_pair_state(middle), read_ray(middle), middle[COSINE], middle[SINE]
-        write_off_level(work[:3], s, cosine, sine, cell[SPEED], reach, work[3:])
+        write_point_heights(work[:3], s, cosine, sine, cell[SPEED], reach, work[3:])
         for third in range(given.pegs.shape[0]):
             if given.right[third] == given.right[tail]:
                 continue

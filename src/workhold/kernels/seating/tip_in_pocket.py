@@ -122,7 +122,7 @@ def make_distance_waves(
 
 
 @inner
-def write_pocketed(
+def write_pocket_candidate(
     stood: StandingPart, m: int, pocket: Array, pieces: IntArray, found: Array, row: Array
 ) -> tuple[float, float]:
     """Write the candidate of a part on a wall with the tip in a pocket at an orientation to ``row`` (24,).
@@ -180,7 +180,7 @@ def write_tip_in_pocket(
                     return -1
                 for k in range(many):
                     row = out[count]
-                    x, y = write_pocketed(stood, m, pockets[v], pieces[v], found[k], row)
+                    x, y = write_pocket_candidate(stood, m, pockets[v], pieces[v], found[k], row)
                     if upright:
                         c, s = cos(found[k, 0]), sin(found[k, 0])
                         wx, wy = stood.pegs[LOCATOR, 0] - x, stood.pegs[LOCATOR, 1] - y

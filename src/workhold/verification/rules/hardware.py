@@ -260,7 +260,7 @@ class ToolkitRules:
         pair = None if fixture.pair is None else evolve(fixture.pair, travels=(moved[0], moved[1]))
         return evolve(fixture, travel=moved[0], pair=pair)
 
-    def place(self, peg: Peg) -> Point:
+    def compute_hole_center(self, peg: Peg) -> Point:
         """Return the centre of a peg's hole without any travel, in the toolkit's frame in mm."""
         carrier = self.carriers[peg.carrier]
         (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
@@ -279,7 +279,9 @@ class ToolkitRules:
         carrier = self.carriers[peg.carrier]
         body = None if carrier.flat is None else arb(carrier.peg_radius)
         radius = compute_standoff(side, carrier.peg_radius, carrier.flat)
-        return BallContact(self.place(peg), make_exact_point(*self.find_way(peg)), side, radius, body=body)
+        return BallContact(
+            self.compute_hole_center(peg), make_exact_point(*self.find_way(peg)), side, radius, body=body
+        )
 
     def make_contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
         """Return the contacts of all pegs of a fixture, in the order of the pegs.
@@ -330,7 +332,7 @@ class ToolkitRules:
         if self.jaw is None:
             return
         ends = [
-            (share, contact.place(pose)[0])
+            (share, contact.compute_point(pose)[0])
             for contact, share in zip(contacts, shares, strict=True)
             if isinstance(contact, WallContact)
         ]
@@ -363,7 +365,7 @@ class ToolkitRules:
             travel = moved[1] if len(moved) > 1 and k == len(fixture.pegs) - 1 else moved[0]
             noun = "line" if find_direction(peg) else "hole"
             for axis, written, hole, way in zip(
-                "xy", (peg.x, peg.y), self.place(peg), self.find_way(peg), strict=True
+                "xy", (peg.x, peg.y), self.compute_hole_center(peg), self.find_way(peg), strict=True
             ):
                 off = abs(hole + arb(travel) * way - written)
                 words = f"the {axis} of {name} is {format_middle(off)} mm from that of its {noun}"
@@ -473,12 +475,12 @@ class ToolkitRules:
             ((name, peg, _),) = clamps
             noun, axis = ("column", 0) if is_along_x(peg) else ("row", 1)
             numbers = [getattr(one, noun) for one in fixture.pegs if one.carrier == self.lattices[0].name]
-            if self.fits(noun, [*numbers, getattr(peg, noun) - round(self.find_way(peg)[axis])]):
+            if self.has_numbers(noun, [*numbers, getattr(peg, noun) - round(self.find_way(peg)[axis])]):
                 yield from self.stroke.judge_nearest_hole(
                     name, -pose.travels[0], self.lattices[0].pitch[axis]
                 )
 
-    def fits(self, noun: str, numbers: Sequence[int]) -> bool:
+    def has_numbers(self, noun: str, numbers: Sequence[int]) -> bool:
         """Return whether the fixed carrier has columns or rows (``noun``) of these numbers.
 
         Where they are counted from the lowest in use, only their span must fit.

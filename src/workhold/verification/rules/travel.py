@@ -187,7 +187,7 @@ class ClampStroke:
 
         ``locators`` are (name, contact); ``name`` is the clamp's name in messages.
         """
-        tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
+        tip, stroke = clamp.compute_point(pose), -pose.travels[clamp.travel]
         if self.wall:
             above = tip[1] - clamp.radius
             words = f"{name} enters the {self.wall} by {format_middle(-above)} mm"
@@ -250,7 +250,7 @@ class ClampStroke:
         """Yield a finding where two clamps overlap; each is the strip from hole to tip, out to the clamp's
         radius.
         """
-        tips = one.place(pose), other.place(pose)
+        tips = one.compute_point(pose), other.compute_point(pose)
         holes = tips if self.span is None else (one.hole, other.hole)
         apart = measure_piece_distance(*zip(tips, holes, strict=True)) - one.radius - other.radius
         yield from judge_slack(

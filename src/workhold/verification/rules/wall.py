@@ -98,7 +98,7 @@ class WallContact(BallContact):
         (x, y), (across, down) = self.piece.center, self.compute_outward_normal(pose)
         return x + self.piece.bow * across, y + self.piece.bow * down
 
-    def place(self, pose: BallPose) -> Point:
+    def compute_point(self, pose: BallPose) -> Point:
         """Return the point that touches the wall, in the toolkit's frame in mm."""
         return self.piece.find_lowest_point(pose)
 
@@ -336,7 +336,7 @@ def check_flush(
     ``ends`` are (name, peg, contact) of the whole contact. ``stated`` are the contacts that the file states,
     limited to what the wall covers; None means those of ``ends``. ``noun`` names the wall in messages.
     """
-    (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
+    (left, _), (right, _) = [contact.compute_point(pose) for _, _, contact in ends]
     yield from judge_slack(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
     for piece in list_supports(outline, pose):
         (x, low), face = piece.find_lowest_point(pose), piece.faces[0]
@@ -349,7 +349,7 @@ def check_flush(
             yield Finding(bool(low < -FLUSH), words)
     said = [contact for *_, contact in ends] if stated is None else stated
     for (name, peg, _), contact in zip(ends, said, strict=True):
-        place = contact.place(pose)
+        place = contact.compute_point(pose)
         if peg.face != min(contact.faces):
             yield Finding(True, f"{name} touches face {min(contact.faces)}, and not {peg.face}")
         for axis, written, derived in zip("xy", (peg.x, peg.y), place, strict=True):
