@@ -9,7 +9,7 @@ Where several fixtures are left the one with the least location error is taken, 
 Glossary
 --------
 picked : the fixture that the rule leaves.
-gain : the figure of the picked one over the least of the complete list; 1 is no gain.
+gain : the figure of the picked one over the least of the complete list; 1 is not a gain.
 dominated : the list has a fixture with less location error and less force than the picked one, by 5 % each.
 """
 

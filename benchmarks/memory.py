@@ -116,7 +116,7 @@ def run(quick: bool, seconds: float | None = None) -> Section:
     section = Section(
         "memory", f"A search too large to list, interrupted after {seconds:g} s", COLUMNS
     ).begin()
-    # Compiling is no part of what is watched.
+    # Compiling is not part of what is watched.
     measured("designs.warm")
     with tempfile.TemporaryDirectory() as folder:
         part, out = Path(folder) / "ragged.json", Path(folder) / "r.json"

@@ -102,7 +102,9 @@ def find_unknown_targets() -> Iterator[str]:
     targets = set(re.findall(r"^([a-z-]+):", read_project_file("Makefile"), flags=re.M))
     for page in PAGES:
         named = set(re.findall(r"(?:`|^ {4})make ([a-z-]+)", page.read_text(), flags=re.M))
-        yield from (f"{page.name} names make {word}, which is no target." for word in sorted(named - targets))
+        yield from (
+            f"{page.name} names make {word}, which is not a target." for word in sorted(named - targets)
+        )
 
 
 def find_missing_files() -> Iterator[str]:
@@ -134,6 +136,20 @@ def is_there(root: Path, names: list[str]) -> bool:
     return within.exists() and re.search(rf"\b{names[-1]}\b", within.read_text()) is not None
 
 
+def find_unknown_names() -> Iterator[str]:
+    """What a cell of a table names behind a module is defined in that module."""
+    roots = [SOURCES, SOURCES / "kernels"]
+    for page in PAGES:
+        for module, names in re.findall(r"\| `((?:\w+\.)+\w+)`((?:, `\w+`)+)", page.read_text()):
+            paths = [root.joinpath(*module.split(".")).with_suffix(".py") for root in roots]
+            text = "".join(path.read_text() for path in paths if path.exists())
+            for name in re.findall(r"\w+", names) if text else ():
+                if not (SOURCES / name).is_dir() and not re.search(
+                    rf"^\s*(?:def |class )?{name}\b *[(:=]", text, flags=re.M
+                ):
+                    yield f"{page.name} names {name} in {module}, where it is not defined."
+
+
 def find_incomplete_theorems() -> Iterator[str]:
     """Each has its reason, its place in the code, and tests that exist, and the page's table leads to it."""
     page = read_project_file("docs", "method-theorems.md")
@@ -145,7 +161,7 @@ def find_incomplete_theorems() -> Iterator[str]:
             continue
         named = re.findall(r"^- `(tests/[\w/]+\.py)::(test_\w+)`$", text[places[-1] :], flags=re.M)
         if len(named) < text[places[-1] :].count("\n- ") or not named:
-            yield f"theorem {title}: something that holds it is no test."
+            yield f"theorem {title}: something that holds it is not a test."
         for path, name in named:
             if not (ROOT / path).exists() or f"\ndef {name}(" not in read_project_file(path):
                 yield f"theorem {title}: there is no {path}::{name}."
@@ -261,7 +277,7 @@ OF_OPTIONS = {"spelled", "typed"}
 
 
 def list_texts(source: str) -> Iterator[str]:
-    """The texts of a module that are no docstrings; those with values in them with a space for each.
+    """The texts of a module that are not docstrings; those with values in them with a space for each.
 
     What a declaration says of its option alone is left out.
     """
@@ -283,6 +299,7 @@ CHECKS = (
     find_unknown_targets,
     find_missing_files,
     find_unknown_modules,
+    find_unknown_names,
     find_incomplete_theorems,
     find_outdated_benchmarks,
     find_misordered_layers,

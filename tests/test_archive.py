@@ -1,4 +1,4 @@
-"""Archives of columns: NumPy opens them, nothing is read before it is looked at, and what is no archive is refused."""
+"""Archives of columns: NumPy opens them, nothing is read before it is looked at, and what is not an archive is refused."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def clamp_claim(data: dict[str, Any], quick: bool) -> None:
             data["files"]["clamp.json"] = text
             data["clamp_number"] = number
             data["clamp_behind"] = max(p.x for p in lost.pegs[:-1]) - lost.pegs[-1].x
-            data["pictures"]["clamp"] = made.picture(result, lost, "a translating clamp that is no vise")
+            data["pictures"]["clamp"] = made.picture(result, lost, "a translating clamp that is not a vise")
 
 
 def roots_claim(data: dict[str, Any]) -> None:

@@ -52,7 +52,7 @@ class Number:
 
 @frozen
 class Marked:
-    """Words that may hold digits because they are no results."""
+    """Words that may hold digits because they are not results."""
 
     kind: Literal["code", "quote", "label", "reference", "formula"]
     text: str

@@ -2,7 +2,7 @@
 
 - FreeCAD 1.0 calls the Path workbench CAM, and its modules lie in the package ``Path`` (``Path.Main.Job``).
 - FreeCAD 1.0 keeps the colour of a body in a list of materials, ``ShapeAppearance``.
-- PySide6 has buttons that are no numbers; FreeCAD's module ``PySide`` stands for either.
+- PySide6 has buttons that are not numbers; FreeCAD's module ``PySide`` stands for either.
 - The file that a job was post-processed into may be named by its property of the last output only.
 """
 

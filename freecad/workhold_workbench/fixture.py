@@ -267,7 +267,7 @@ def put_in(obj, shape, seen, folder):
 def add_body(obj, name, shape):
     """Adds a body to the group, under its name, or with the fixture's where another fixture has one of that name.
 
-    FreeCAD would make them differ by a number, and A2001 is no hole.
+    FreeCAD would make them differ by a number, and A2001 is not a hole.
     """
     taken = obj.Document.getObjectsByLabel(name)
     body = obj.Document.addObject("Part::Feature", "Body")

@@ -148,7 +148,7 @@ def face_places(path, shape, names):
         try:
             face = shape.getElement(name)
         except Exception:
-            # FreeCAD 0.20 raises what is no class of Python's own.
+            # FreeCAD 0.20 raises what is not a class of Python's own.
             face = None
         if not isinstance(face, Part.Face):
             raise Refusal("The part has no face {} as it is now: choose the faces again.".format(name))

@@ -61,7 +61,7 @@ def verify(
     Raises
     ------
     InputError
-        When a file cannot be read, is no result file, or describes no usable workpiece or toolkit.
+        When a file cannot be read, is not a result file, or describes no usable workpiece or toolkit.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def find_differences(listing: WrittenListing, result: Result) -> Iterator[str]:
     """Yield the differences between a listing and a new search
     of its query, one sentence each, without a full stop.
 
-    In a listing that says it is incomplete, missing fixtures and too small counts are no differences.
+    In a listing that says it is incomplete, missing fixtures and too small counts are not differences.
     """
     if listing.query.toolkit.strap_set is not None:
         yield from find_seat_differences(listing, result)

@@ -47,7 +47,7 @@ def make_printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " if letter.isspace() else "?" for letter in text)
 
 
-# What Python makes of bytes in a file's name that are no UTF-8, and other halves of letters.
+# What Python makes of bytes in a file's name that are not UTF-8, and other halves of letters.
 HALVES = re.compile("[\ud800-\udfff]")
 FIRST_BYTE = 0xDC00
 

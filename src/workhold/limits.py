@@ -50,7 +50,7 @@ def convert_real(value: Any, name: str = "a number") -> float:
     """Return a number as a float; inf or -inf for a whole number too large for a float.
 
     Anything with ``__float__`` and no dimensions counts as a number, also NumPy scalars, NaN and inf. These
-    are no numbers: text (also of digits), bytes, bool, None, and arrays that have a dimension.
+    are not numbers: text (also of digits), bytes, bool, None, and arrays that have a dimension.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def make_real_array(values: Any, name: str) -> NDArray[np.float64]:
 
     array = np.array(values)
     if array.ndim == 0:
-        raise TypeError("one value is no array of numbers")
+        raise TypeError("one value is not an array of numbers")
     if array.dtype.kind not in "iuf":
         for value in np.array(values, dtype=object).flat:
             convert_real(value, name)

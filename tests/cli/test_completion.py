@@ -29,7 +29,7 @@ done
 @pytest.mark.thorough
 @pytest.mark.skipif(BASH is None, reason="there is no bash")
 def test_bash_completes_commands_and_options(tmp_path: Path) -> None:
-    """With the script that the command prints; after a word that is no command there are the options of all."""
+    """With the script that the command prints; after a word that is not a command there are the options of all."""
     starter = tmp_path / "workhold"
     starter.write_text(f"#!{sys.executable}\nfrom workhold.__main__ import run\nrun()\n")
     starter.chmod(0o755)

@@ -69,7 +69,7 @@ def test_a_vise_by_name_has_its_holes(run: Any, tmp_path: Path) -> None:
     [
         (("-o", "a.pdf"), "names no drawing of plates"),
         (("-o", "a.dxf", "--bolts", "10,10"), "bolts need --bolts and --bolt-diameter"),
-        (("-o", "a.dxf", "--bolts", "10", "--bolt-diameter", "5"), "--bolts '10' is no list of places"),
+        (("-o", "a.dxf", "--bolts", "10", "--bolt-diameter", "5"), "--bolts '10' is not a list of places"),
         (("-o", "a.dxf", "--bolts", "0,0", "--bolt-diameter", "5"), "runs into dowel hole L-A1"),
         (("-o", "a.dxf", "--edge", "-2"), "--edge '-2' is not above 0"),
     ],

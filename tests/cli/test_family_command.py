@@ -188,9 +188,9 @@ def test_both_sides_and_the_zero(run: Any, drawings: Path, monkeypatch: pytest.M
     [
         (("none.dxf", *VISE), "file not found"),
         (("widget",), "distance between holes is not given"),
-        (("widget", *VISE, "--max-loss", "0.9"), "--max-loss '0.9' is no loss"),
+        (("widget", *VISE, "--max-loss", "0.9"), "--max-loss '0.9' is not a loss"),
         (("widget", *VISE, "--limit", "location-error"), "is no limit: give a figure and its value"),
-        (("widget", *VISE, "--limit", "beauty=3"), "'beauty' is no figure"),
+        (("widget", *VISE, "--limit", "beauty=3"), "'beauty' is not a figure"),
         (("widget", *VISE, "--setups", "0"), "--setups"),
         (("widget", *VISE, "--time-limit", "-1"), "not a positive number"),
         (("widget", *VISE, "--rank-by", "beauty"), "is no figure to rank by"),

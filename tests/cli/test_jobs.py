@@ -89,7 +89,7 @@ def test_words_are_those_of_the_command_line(folder: Path, name: str) -> None:
             '[[job]]\npart = "a"\nfoolproof = "maybe"\n',
             "job 1: foolproof is neither true nor false",
         ),
-        ("j.toml", "job = 3\n", "its jobs are no tables"),
+        ("j.toml", "job = 3\n", "its jobs are not tables"),
         ("j.toml", "[[job]\n", "not valid TOML"),
         ("j.csv", "part\n", "has no jobs"),
         ("j.csv", "part,avoid\na,3,7\n", "row 1 has 3 cells under 2 names"),

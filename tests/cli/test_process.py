@@ -30,7 +30,7 @@ def answer(query, *, cancel, **options):
     print("searching", flush=True)
     {behaviour}
 
-# What would have to be compiled is no part of what is tested.
+# What would have to be compiled is not part of what is tested.
 import workhold.kernels.base.libraries as libraries
 libraries.is_built = lambda rooms=(): True
 module = types.ModuleType("workhold.search.design")

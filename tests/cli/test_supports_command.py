@@ -189,7 +189,7 @@ def test_supports_of_a_result_in_python() -> None:
 
 @pytest.mark.thorough
 def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run: Run) -> None:
-    """The table stays as it is; without loads, and for what is no coefficient, a sentence says so."""
+    """The table stays as it is; without loads, and for what is not a coefficient, a sentence says so."""
     words = ("supports", result_file, "1", "--thickness", "20", "--load", "at=40,25 force=200 axial=-30..60")
     plain, more = run(*words), run(*words, "--friction", "0.2")
     assert more.exit_code == 0 and more.stdout.startswith(plain.stdout.rstrip())

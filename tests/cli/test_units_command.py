@@ -242,7 +242,7 @@ def test_a_toolkit_in_inches_is_shown_in_inches(
 
 
 def test_inches_are_told_by_the_holes() -> None:
-    """Eighths of an inch that are no whole or half millimetres."""
+    """Eighths of an inch that are not whole or half millimetres."""
     for name in list_preset_names():
         assert load_toolkit(name).toolkit.is_in_inches == (load_toolkit(name).unit is INCH)
 

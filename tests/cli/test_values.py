@@ -59,7 +59,7 @@ def test_a_pitch_may_mix_units(run: Any, searched: dict[str, Any]) -> None:
 
 
 def test_fractions_have_signs(run: Any, searched: dict[str, Any]) -> None:
-    """Of the whole of them; a division by zero is no number."""
+    """Of the whole of them; a division by zero is not a number."""
     assert run(*VISE, "--angle=-1-1/2..+1 1/4", "--angle=-1/2").exit_code == 0
     assert searched["asked"].restrictions.angles == ((-1.5, 1.25), (-0.5, -0.5))
     assert "is no range of angles" in run(*VISE, "--angle", "1/0").stderr

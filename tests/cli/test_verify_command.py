@@ -77,7 +77,7 @@ def test_refuted_fixtures_end_with_exit_code_2(run: Any, result_file: Path) -> N
 
 
 def test_only_the_first_are_listed(run: Any, tmp_path: Path) -> None:
-    """What was made up is no fixture of anything."""
+    """What was made up is not a fixture of anything."""
     save(fake_result(9), tmp_path / "r.json")
     outcome = run("verify", tmp_path / "r.json")
     assert outcome.exit_code == 2

@@ -99,7 +99,7 @@ def test_its_sheet_says_how_to_set_it_up() -> None:
     ],
 )
 def test_its_sheet_says_which_way_it_is_turned(theta: float, told: str) -> None:
-    """The shorter way where that is no eighth of a turn, and nothing of what nobody sees."""
+    """The shorter way where that is not an eighth of a turn, and nothing of what nobody sees."""
     held = evolve(HELD, pose=Pose(theta, 0.0, 0.0))
     pages = draw_sheet(held, HOUSE, TOOLKIT, SheetDetails(1, 1, date(2026, 1, 1), "", "0"))
     words = " ".join(word for page in pages for word in texts(page))

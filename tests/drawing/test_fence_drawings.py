@@ -83,7 +83,7 @@ def test_the_bar_lies_below_the_part_and_the_plate_goes_on_below_it() -> None:
 
 
 def test_dxf_has_the_bar_on_a_layer_and_one_locator() -> None:
-    """The wall's ends are no pegs."""
+    """The wall's ends are not pegs."""
     result = held(KITE, travel=(4, 30))
     drawing = ezdxf.read(StringIO(make_setup_dxf(result[0], result.workpiece, result.toolkit).decode()))
     (bar,) = drawing.modelspace().query('*[layer=="FENCE"]')
@@ -92,7 +92,7 @@ def test_dxf_has_the_bar_on_a_layer_and_one_locator() -> None:
 
 
 def test_the_list_of_pins_has_the_locator_alone_and_a_spreadsheet_all_contacts() -> None:
-    """A fence is no pin."""
+    """A fence is not a pin."""
     result = held(KITE)
     assert len(write_pin_list(result[0], result.toolkit, MILLIMETRE, None, None).splitlines()) == 2
     header, first, *_ = "".join(write_result_csv(result)).splitlines()

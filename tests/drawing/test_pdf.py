@@ -169,7 +169,7 @@ def test_what_would_be_lost_is_refused(what: str) -> None:
 
 
 def test_groups_keep_their_views() -> None:
-    """The map to millimetres is no style and is passed over."""
+    """The map to millimetres is not a style and is passed over."""
     scene = empty()
     scene.group("part", View(1.0, 0.0, 0.0)).add_circle((50, 30), 5, BLACK)
     assert dark_box(scene) == pytest.approx((45, 25, 55, 35), abs=0.5)

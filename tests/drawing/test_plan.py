@@ -44,7 +44,7 @@ def test_the_arc_of_an_angle_ends_at_its_arrow_head(theta: float) -> None:
     ],
 )
 def test_an_angle_is_written_beside_its_arc(theta: float, words: str) -> None:
-    """In front of the arc, whichever way it goes, where nothing else stands near; and nothing is no turn clockwise."""
+    """In front of the arc, whichever way it goes, where nothing else stands near; and nothing is not a turn clockwise."""
     side, held = 300.0, HELD[0]
     part = Workpiece.from_loops("wide", [[[0, 0, 0], [side, 0, 0], [side, side, 0], [0, side, 0]]])
     pegs = tuple(evolve(peg, face=number, beside=None) for number, peg in enumerate(held.fixture.pegs))

@@ -163,7 +163,7 @@ def check_drawing(path: Path) -> None:
                 return
             points = np.array([(point.x, point.y) for point in primitive.path.flattening(1e-4)])
             if not np.isfinite(points).all():
-                # A height that is no number makes places of the plan that are none.
+                # A height that is not a number makes places of the plan that are none.
                 return
             rows += [line_row(start, end) for start, end in pairwise(points) if (start != end).any()]
     # ezdxf draws arcs as Bézier curves, which are off by 2.7e-4 of the radius.

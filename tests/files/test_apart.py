@@ -116,7 +116,7 @@ def test_to_prepare_takes_its_time(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_mistake_of_the_program_stays_one(work: str) -> None:
-    """It is no fault of the file's, and its traceback is told."""
+    """It is not a fault of the file's, and its traceback is told."""
     with pytest.raises(RuntimeError, match="a mistake"):
         run_apart(work, b"fault", {}, "the file")
 

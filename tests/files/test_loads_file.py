@@ -109,7 +109,7 @@ def test_bad_files_are_refused_in_one_sentence(tmp_path: Path, text: str, said: 
 
 
 def test_files_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
-    """A missing file, bytes that are no text, and JSON that is no table."""
+    """A missing file, bytes that are not text, and JSON that is not a table."""
     with pytest.raises(InputError, match=r"there is no file of that name\.$"):
         read_loads(tmp_path / "none.toml")
     (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")

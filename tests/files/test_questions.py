@@ -29,7 +29,7 @@ MARKS = [
 ]
 FLAG = re.compile(r"(?<![\w-])--[a-z]")
 OF_OPTIONS = {"spelled", "typed"}
-# Serving is a command alone, and pip's own option is no word of ours.
+# Serving is a command alone, and pip's own option is not a word of ours.
 # The report of many parts is written by a command, and has the command for each sheet.
 OWN = ("web/serve.py", "files/step/library.py", "batch/report.py")
 TWO_SQUARES = b"""<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="40mm" viewBox="0 0 90 40">
@@ -67,7 +67,7 @@ def test_names_are_those_of_options_and_arguments() -> None:
     """Whoever reads a name finds it in the help of each command that reads a part, or in the signature in Python."""
     for command in ("design", "explore", "features"):
         text = CliRunner().invoke(app, [command, "--help"]).output
-        # Heights of a toolkit's own are no question about the part.
+        # Heights of a toolkit's own are not a question about the part.
         options = [name for name in ON_THE_COMMAND_LINE.values() if name.startswith("--")]
         assert len(options) == len(MARKS) - 1
         assert all(re.search(rf"  {name} ", text) for name in options)

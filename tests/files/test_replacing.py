@@ -238,7 +238,7 @@ def test_outputs_are_refused_before_any_work_is_done_for_them(tmp_path: Path) ->
     with pytest.raises(InputError, match="b is also an input"):
         (tmp_path / "a").touch()
         refuse_output_folder(tmp_path, ["a", "b"], iter([tmp_path / "b"]), True)
-    # The name of something else than a file is no input that could be replaced.
+    # The name of something else than a file is not an input that could be replaced.
     refuse_output(tmp_path / "a", ["a\0b", None])
 
 

@@ -69,7 +69,7 @@ def test_a_point_that_was_asked_for_is_there_once(tmp_path: Path) -> None:
 
 
 def test_zones_are_circles_polygons_or_loops(tmp_path: Path) -> None:
-    """Two arcs that are no half circles are no circle."""
+    """Two arcs that are not half circles are not a circle."""
     zones = (
         circle_zone(300, 200, 12.5),
         polygon_zone([(200, 0), (220, 0), (210, 20)]),

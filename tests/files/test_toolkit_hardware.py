@@ -112,10 +112,10 @@ def test_a_file_says_what_supports_and_clamp_there_are_and_they_are_the_usual_on
         ("[top-clamp]\nreach = 5\n", "top-clamp: reach cannot be used: give a list of rings"),
         (
             "[top-clamp]\nreach = [[0, 0, 9, 5]]\n",
-            "top-clamp: reach is no list of rings: give for each ring x, y",
+            "top-clamp: reach is not a list of rings: give for each ring x, y",
         ),
-        ("[top-clamp]\nreach = [[0, 0, 9]]\n", "top-clamp: reach is no list of rings"),
-        ("[top_clamp]\ntip_radius = 4\n", '"top_clamp" is no entry of a plate: did you mean top-clamp?'),
+        ("[top-clamp]\nreach = [[0, 0, 9]]\n", "top-clamp: reach is not a list of rings"),
+        ("[top_clamp]\ntip_radius = 4\n", '"top_clamp" is not an entry of a plate: did you mean top-clamp?'),
         ("top-clamp = true\n", "top-clamp is not what it should be: write a table, such as"),
     ],
 )

@@ -85,7 +85,7 @@ def test_vertices_on_a_side_go_when_they_are_on_it() -> None:
 
 
 def test_a_line_that_runs_back_is_kept() -> None:
-    """Points of a line that are out of order are no line."""
+    """Points of a line that are out of order are not a line."""
     assert merged([(0, 0), (40, 0), (30, 0.0002), (60, 0), (60, 40), (0, 40)]).merged == 0
 
 
@@ -152,7 +152,7 @@ def test_a_chain_that_turns_back_is_no_run(along: str) -> None:
         turns = [pi / 360 * k for k in range(181)]
         before, after = ([(50 * sin(a), 50 - 50 * cos(a)) for a in some] for some in (turns[:91], turns[91:]))
         rest, here, away = [(50.0, 80.0), (0.0, 80.0)], before[-1], pi / 4
-    # An ellipse, which is no arc to the digits of a file.
+    # An ellipse, which is not an arc to the digits of a file.
     a, b, c, s = 0.2, 0.12, cos(away), sin(away)
     around = [(a * sin(2 * pi * k / 40), b * (1 - cos(2 * pi * k / 40))) for k in range(1, 41)]
     curl = [(here[0] + c * x - s * y, here[1] + s * x + c * y) for x, y in around]

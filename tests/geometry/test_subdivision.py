@@ -187,7 +187,7 @@ def test_border_that_does_not_close() -> None:
 @pytest.mark.parametrize("apart", [2e-5, 6e-5])
 @pytest.mark.parametrize("side", range(4))
 def test_cuts_beside_a_corner_leave_one_loop(side: int, apart: float) -> None:
-    """Pieces shorter than the gaps that are closed are no loops, wherever they come first."""
+    """Pieces shorter than the gaps that are closed are not loops, wherever they come first."""
     square = sides((0, 0, 4, 4))
     cut = square[side]
     points = [cut.compute_point(sign * (cut.half_extent - apart)) for sign in (-1.0, 1.0)]

@@ -58,7 +58,7 @@ def test_known_parts():
 
 
 def test_parallelograms_turn_but_kites_do_not():
-    """A mirror symmetry is no rotation."""
+    """A mirror symmetry is not a rotation."""
     assert len(group([[0, 0, 0], [30, 0, 0], [40, 20, 0], [10, 20, 0]])) == 2
     assert len(group([[0, 0, 0], [10, -5, 0], [30, 0, 0], [10, 5, 0]])) == 1
 

@@ -111,7 +111,7 @@ def test_names_are_read_as_people_write_them() -> None:
 @pytest.mark.parametrize(
     ("names", "words"),
     [
-        (["beauty"], "'beauty' is no figure to rank by: choose among closure-margin"),
+        (["beauty"], "'beauty' is not a figure to rank by: choose among closure-margin"),
         (["end-distance", "end distance"], "name one twice"),
         (["load-reaction"], "no load"),
         ([], "name at least one"),

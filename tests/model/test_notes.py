@@ -38,7 +38,7 @@ def test_a_note_prints_as_its_sentence() -> None:
 
 
 def test_texts_become_remarks() -> None:
-    """Whoever gives a result a sentence gets it back as one; braces in it are no fields."""
+    """Whoever gives a result a sentence gets it back as one; braces in it are not fields."""
     result = fake_result(3, notes=("so {much}", BestOnly(3)))
     assert result.notes == (Remark("so {much}"), BestOnly(3)) and str(result.notes[0]) == "so {much}"
     assert pickle.loads(pickle.dumps(result)).notes == result.notes

@@ -121,14 +121,14 @@ def test_one_word_is_not_taken_for_its_letters() -> None:
         ({"best": 0}, "best 0 is not a positive whole number"),
         ({"best": 1.5}, "best 1.5 is not a positive whole number"),
         ({"rank_by": ["load-reaction"], "loads": []}, "there is no load to rank by"),
-        ({"rank_by": ["beauty"]}, "'beauty' is no figure to rank by"),
-        ({"rank_by": 5}, "the names are no list, but 5"),
+        ({"rank_by": ["beauty"]}, "'beauty' is not a figure to rank by"),
+        ({"rank_by": 5}, "the names are not a list, but 5"),
         ({"workpiece": "widget"}, "the workpiece cannot be 'widget': give a Workpiece"),
         ({"toolkit": {"pitch": 10}}, "the toolkit cannot be .*: give a toolkit, such as workhold.Vise"),
         ({"restrictions": [3]}, "the restrictions cannot be .3.: give Restrictions"),
         ({"tolerance": 0.02}, "the tolerance cannot be 0.02: give a Tolerance"),
         ({"loads": ["x"]}, "a load cannot be 'x': give Load objects"),
-        ({"loads": 200}, "the loads are no list, but 200"),
+        ({"loads": 200}, "the loads are not a list, but 200"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(change: dict[str, Any], words: str) -> None:

@@ -220,8 +220,8 @@ def test_only_the_stretch_within_the_stock_presses(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("stock", "said"),
     [
-        ({"side": -1}, "the stock's side -1 is no length"),
-        ({"top": float("nan")}, "the stock's top nan is no length"),
+        ({"side": -1}, "the stock's side -1 is not a length"),
+        ({"top": float("nan")}, "the stock's top nan is not a length"),
         ({"shape": "ball"}, "the shape cannot be 'ball': choose outline or block"),
         ({"sides": 3}, "the stock has no 'sides': give side, top or shape"),
         ("ball", "the shape cannot be 'ball'"),

@@ -225,7 +225,7 @@ def test_size_and_place_do_not_matter(piece, change):
     ],
 )
 def test_loops_of_another_form_are_refused(loops: Any, words: str) -> None:
-    """Arrays of all dimensions, and what is no list."""
+    """Arrays of all dimensions, and what is not a list."""
     with pytest.raises(InputError, match=words):
         Workpiece.from_loops("part", loops)
 

@@ -13,7 +13,7 @@ import pypdfium2
 from attrs import define, field, frozen
 from pypdfium2 import raw
 
-# Elements whose digits are no results: commands, quotations, labels, references, formulas and pictures.
+# Elements whose digits are not results: commands, quotations, labels, references, formulas and pictures.
 MARKED = {"code", "q", "b", "cite", "var", "svg", "style", "title", "h1", "small"}
 VOID = {"meta", "br", "rect", "circle", "path", "img"}
 

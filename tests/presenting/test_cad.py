@@ -98,7 +98,7 @@ def test_an_axis_is_named_by_what_people_have(up: Any, name: str) -> None:
 
 @pytest.mark.parametrize(
     ("up", "words"),
-    [((1, 1, 0), r"along none of x, y and z"), ((0, 0, 0), "along none"), (3, "int is no direction")],
+    [((1, 1, 0), r"along none of x, y and z"), ((0, 0, 0), "along none"), (3, "int is not a direction")],
 )
 def test_a_direction_along_no_axis_is_refused(up: Any, words: str) -> None:
     with pytest.raises(InputError, match=words):

@@ -70,7 +70,7 @@ def test_what_double_precision_leaves_open_is_decided_without_the_families_as_wi
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Contacts that merge at a fold, as the arcs of this part have, are escalated, and none is left undecided. Those of a
-    family that holds nothing need not be, and every stage after agrees that they are no fixtures."""
+    family that holds nothing need not be, and every stage after agrees that they are not fixtures."""
     part, vise = load("oblongPart"), Vise(pitch=10, columns=2, peg_radius=3)
     lenient = design(part, vise)
     monkeypatch.setattr(deciding, "hold_nothing", lambda records, _: np.zeros(len(records), np.bool_))

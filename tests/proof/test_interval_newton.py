@@ -87,7 +87,7 @@ def test_a_box_without_solutions_is_discarded(rest: float, turn: float) -> None:
 
 @pytest.mark.parametrize("reach", [1e-8, 1e-6, 1e-4])
 def test_an_exact_double_root_is_discarded(reach: float) -> None:
-    """Its clamping force is 0: it is no fixture, and nothing is left undecided."""
+    """Its clamping force is 0: it is not a fixture, and nothing is left undecided."""
     assert find_solutions(box(-2.5, 0.0, reach), LIMITS) == BoxOutcome((), "")
 
 

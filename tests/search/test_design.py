@@ -99,7 +99,7 @@ def test_best_are_the_first_of_all(free: Result) -> None:
 
 @pytest.mark.thorough
 def test_ranked_by_closure_margin(free: Result) -> None:
-    """The closure margin falls along the list, but for what is no fixture for a workshop, which comes last."""
+    """The closure margin falls along the list, but for what is not a fixture for a workshop, which comes last."""
     ranked = design(free.workpiece, free.toolkit, rank_by=["closure margin"])
     margins, last = (
         np.round(ranked.table.null_vector.min(axis=1), 9),

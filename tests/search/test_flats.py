@@ -150,7 +150,7 @@ def test_everything_listed_is_proven_and_written(toolkit: Toolkit, tmp_path: Pat
 
 
 def test_wrong_angles_in_a_file_are_refuted(tmp_path: Path) -> None:
-    """Another angle, one too many, one too few, and what is no list of angles."""
+    """Another angle, one too many, one too few, and what is not a list of angles."""
     path = tmp_path / "r.json"
     workhold.save(design(part(NOTCHED), TOOLKITS[0], best=5), path)
     data = json.loads(path.read_text())

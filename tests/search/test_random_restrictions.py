@@ -73,7 +73,7 @@ def on_part(fixture: Fixture) -> list[tuple[Any, tuple[float, float]]]:
 
 
 def in_range(theta: float, low: float, high: float) -> bool:
-    """Whether an angle in degrees lies in a range that is no turn."""
+    """Whether an angle in degrees lies in a range that is not a turn."""
     return (theta - low) % 360.0 <= high - low
 
 

@@ -262,7 +262,7 @@ def test_what_needs_seating_is_refused_without_it() -> None:
 def test_with_two_clamps_fixtures_stay_in_order_and_a_note_says_that_the_part_is_put_in_by_hand(
     tmp_path: Path,
 ) -> None:
-    """In one go and through a file; what is read from the file holds, and asking is no search for figures that are none."""
+    """In one go and through a file; what is read from the file holds, and asking does not search for figures."""
     part = Workpiece.from_loops("square", [[[0, 0, 0], [70, 0, 0], [70, 45, 0], [0, 45, 0]]])
     plate, heard = Plate(pitch=20, peg_radius=3, clamps=2, columns=4, rows=3), list[float]()
     plain, asked = workhold.design(part, plate, best=3), Query(part, plate, best=3, seating=2)

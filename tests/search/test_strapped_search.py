@@ -59,7 +59,7 @@ def is_among(one, others):
     ids=lambda one: getattr(one, "name", None),
 )
 def test_seats_are_those_of_a_slow_enumeration(part, pitch, size):
-    """Each that is found there, and is no contact at an end and no double root, is listed, and nothing else is."""
+    """Each that is found there, and is not a contact at an end and no double root, is listed, and nothing else is."""
     found, ours = seats_of(part, pitch, size, size)
     assert not found.proof.undecided
     theirs = list(slow_seats(part, 3.0, pitch, size, size))
@@ -105,7 +105,7 @@ COUNTED = (
     ("part", "radius", "pitch", "holes", "count"), COUNTED, ids=[one[0].name for one in COUNTED]
 )
 def test_seats_of_straight_sides_are_those_of_closed_forms(part, radius, pitch, holes, count):
-    """One by one: each whose locators are inside their sides and that is no double root, and nothing else."""
+    """One by one: each whose locators are inside their sides and that is not a double root, and nothing else."""
     table = find_seats(
         Query(part, StrapPlate(pitch, radius, *holes, bolt_pitch=pitch, bolt_offset=(3, 0)))
     ).table

@@ -102,7 +102,7 @@ def end_at_home(name: str, rank: int, share: float, which: list[int]) -> bool:
             off = np.abs(config - own)
             off[0] = abs((off[0] + pi) % tau - pi)
             home = off[3] < 1e-3 and off[0] * size + off[1] + off[2] < 0.05
-            # Between two parallel faces the part slides at one S, until it goes on down: that is no rest.
+            # Between two parallel faces the part slides at one S, until it goes on down: that is not a rest.
             slides = len(obstacle.near(config, 1e-6)) == 2
             if home or slides:
                 break

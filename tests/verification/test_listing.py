@@ -1,4 +1,4 @@
-"""Files that are no results are refused in one sentence that says why."""
+"""Files that are not results are refused in one sentence that says why."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ EDITS: list[tuple[Callable[[Data], object], str]] = [
     (lambda data: data["vise"].update(peg_radius=5), "overlap in neighbouring holes"),
     (lambda data: data["vise"].pop("columns"), "the key vise.columns is missing"),
     (lambda data: data.update(contact_margin=-1), "contact margin -1 is not a length"),
-    (lambda data: data["fixtures"].append(3), "number 13 in fixtures: it is no fixture"),
+    (lambda data: data["fixtures"].append(3), "number 13 in fixtures: it is not a fixture"),
     (lambda data: data["fixtures"][1].pop("pose"), "number 2 in fixtures: it has no pose"),
     (lambda data: data["fixtures"][1]["pegs"].pop(), "number 2 in fixtures: it does not have four pegs"),
     (lambda data: data["fixtures"][1].update(type="III"), "its type is not I or II"),

@@ -49,7 +49,7 @@ def test_no_contacts_at_another_orientation(widget_result: Result, change: float
     for fixture in widget_result:
         entry = as_undecided(fixture)
         other = attrs.evolve(entry, theta_deg=(entry.theta_deg + change) % 360.0)
-        assert "of the proof is no place where" in faults(other, widget_result)[0]
+        assert "of the proof is not a place where" in faults(other, widget_result)[0]
         if abs(change) < 1.0:
             assert faults(attrs.evolve(other, reach_deg=2e-3), widget_result) == []
 
@@ -89,7 +89,7 @@ def test_chords_that_are_none(widget_result: Result) -> None:
         ({"type": "III"}, "is of type III, which is not asked for"),
         ({"reason": "because"}, "for a reason that is none"),
         ({"reach_deg": None}, "does not say how far"),
-        ({"faces": (0, 1, 2, 777)}, "names a segment that is no face"),
+        ({"faces": (0, 1, 2, 777)}, "names a segment that is not a face"),
         ({"columns": (0, 9, 0, 0)}, "spans 10 columns of a jaw with 2"),
         ({"columns": (1, 0, 0, 0)}, "does not count its holes from the first peg"),
     ],

@@ -212,7 +212,7 @@ QtCore.QTimer.singleShot(1000, go)
     )
     assert answer["up"] == "z" and answer["part"] == "Arm" and answer["rows"] == 20
     assert answer["state"] == "Fixture 2 of 20." and answer["bodies"] == 8 and answer["last"] == 20
-    # What is no prism is said in the panel.
+    # What is not a prism is said in the panel.
     assert answer["ball"].startswith("Ball: ") and "upright" in answer["ball"]
     second, clicked = answer["clicked"]
     assert second == clicked > 1

@@ -82,7 +82,7 @@ def test_a_body_is_painted_in_either_way(compat: Any) -> None:
 
 
 def test_the_file_of_a_job_is_found(compat: Any, tmp_path: Path) -> None:
-    """By its name, or where that is a pattern by that of the last output; several are no program."""
+    """By its name, or where that is a pattern by that of the last output; several are not a program."""
     first, second = tmp_path / "a.nc", tmp_path / "b.nc"
     first.write_text("M30\n")
     second.write_text("M30\n")

@@ -125,7 +125,7 @@ class SearchQuestion:
     )
     strapped: int | None = declare(
         "count",
-        "Of a plate with straps: for so many of the best seats the straps are sought; 20 if not given.",
+        "For a plate with straps: number of the best seats for which straps are sought; 20 if not given.",
         section=LOADS,
         most=1_000,
         metavar="M",

@@ -116,7 +116,7 @@ class SheetQuestion:
     )
     material: str | None = declare(
         "text",
-        "What the part is of, such as aluminium-6061 or mild-steel: the sheet then shows how far clamping "
+        "Material of the part, such as aluminium-6061 or mild-steel: the sheet then shows how far clamping "
         "bends it. This takes the extra bending, and some seconds.",
         PageLabel("Material, to see it bend", "not bent"),
         section=BODIES,

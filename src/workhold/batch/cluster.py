@@ -268,7 +268,7 @@ def check_address(address: str) -> str:
     is_port = port.isascii() and port.isdigit() and int(port[:6]) < 1 << 16
     if kind not in ("", "tcp", "tls", "ws", "wss", "ucx") or not (host and is_port):
         raise InputError(
-            f"{address!r} is no address of a scheduler: give the address that the scheduler printed, "
+            f"{address!r} is not an address of a scheduler: give the address that the scheduler printed, "
             "such as tcp://10.0.0.5:8786."
         )
     return f"{kind or 'tcp'}://{place}"

@@ -133,7 +133,7 @@ def parse_entry(text: str, usual: str) -> Submission:
         raise InputError("there is no list of fixtures in it: give an object with the key fixtures.")
     name = content.get("set", usual)
     if not isinstance(name, str):
-        raise InputError("the set is no name: give it as a text.")
+        raise InputError("the set is not a name: give it as a text.")
     return Submission(
         name, tuple(read_numbered_fixture(n, one) for n, one in enumerate(content["fixtures"], 1))
     )
@@ -187,7 +187,7 @@ def read_finite(value: Any) -> float:
     """Return a number from JSON or CSV as a float; ValueError for anything that is not a finite number."""
     number = nan if isinstance(value, bool) else read_number(value)
     if not isfinite(number):
-        raise ValueError(f"{str(value)[:40]!r} is no number")
+        raise ValueError(f"{str(value)[:40]!r} is not a number")
     refuse_long("the number", number)
     return number
 

@@ -47,7 +47,7 @@ def find_bending_figure(name: str) -> Figure:
         if figure.key == key:
             return figure
     known = " or ".join(figure.option for figure in BENDING_FIGURES)
-    raise InputError(f"{name[:40]!r} is no figure of bending to rank by: choose {known}.")
+    raise InputError(f"{name[:40]!r} is not a figure of bending to rank by: choose {known}.")
 
 
 @frozen

@@ -45,8 +45,8 @@ class BendWords:
     material: str = make_option(
         PART,
         "NAME",
-        "What the part is of: aluminium-6061, aluminium-7075, mild-steel, steel-4140, stainless-304, brass, cast-iron, pom, "
-        "pa6 or peek; or Young's modulus in MPa and Poisson's ratio, such as 69000,0.33.",
+        "Material of the part: aluminium-6061, aluminium-7075, mild-steel, steel-4140, stainless-304, brass, cast-iron, "
+        "pom, pa6 or peek; or Young's modulus in MPa and Poisson's ratio, such as 69000,0.33.",
         default="aluminium-6061",
     )
     thickness: str | None = make_option(
@@ -67,7 +67,7 @@ class BendWords:
     jaw: str = make_option(
         CLAMPING,
         "screw|constant|NUMBER",
-        "What keeps the jaw closed under loads, as of design.",
+        "What keeps the jaw closed under loads; see workhold sheet.",
         default="screw",
     )
 

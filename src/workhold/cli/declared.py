@@ -157,7 +157,7 @@ def read_angle(option_name: str, text: str) -> tuple[float, float]:
     least, most = (read_number(word.strip()) for word in ((low, high) if dots else (low, low)))
     if not (isfinite(least) and isfinite(most)):
         raise InputError(
-            f"{option_name} {text!r} is no range of angles: give it in degrees, such as -10..10."
+            f"{option_name} {text!r} is not a range of angles: give it in degrees, such as -10..10."
         )
     return least, most
 
@@ -179,7 +179,7 @@ def read_zone(option_name: str, text: str, unit: Unit) -> Zone:
         return circle_zone(*points[0])
     if kind == "polygon" and all(len(point) == 2 for point in points):
         return polygon_zone(points)
-    raise InputError(f"{option_name} {text!r} is no zone: give circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y.")
+    raise InputError(f"{option_name} {text!r} is not a zone: give circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y.")
 
 
 POWER_WORDS = re.compile(r"\s*(?P<number>.*?)\s*(?P<unit>kW|hp)?\s*", re.IGNORECASE | re.DOTALL)

@@ -412,11 +412,11 @@ def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
 
 
 def read_largest_loss(text: str) -> float:
-    """Return a largest loss; raise InputError for what is no number of 1 or more."""
+    """Return a largest loss; raise InputError for what is not a number of 1 or more."""
     value = read_number(text)
     if not (isfinite(value) and value >= 1.0):
         raise InputError(
-            f"--max-loss {text!r} is no loss: give 1 (the best each part has) or more, such as 1.25."
+            f"--max-loss {text!r} is not a loss: give 1 (the best each part has) or more, such as 1.25."
         )
     return value
 
@@ -430,6 +430,6 @@ def read_threshold(text: str) -> FigureThreshold:
     name, equals, value = text.partition("=")
     if not equals or not isfinite(read_number(value)):
         raise InputError(
-            f"--limit {text!r} is no limit: give a figure and its value, such as location-error=0.05."
+            f"--limit {text!r} is not a limit: give a figure and its value, such as location-error=0.05."
         )
     return make_threshold(name, read_number(value))

@@ -112,7 +112,7 @@ def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
     content = parse_toml(text)
     jobs = content.pop("job", [])
     if not isinstance(jobs, list) or not all(isinstance(job, dict) for job in jobs):
-        raise InputError("its jobs are no tables: write [[job]] above each.")
+        raise InputError("its jobs are not tables: write [[job]] above each.")
     if len(content) > MOST_COLUMNS:
         # Each job has a copy of them.
         raise InputError(

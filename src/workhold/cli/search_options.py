@@ -110,7 +110,7 @@ class LoadOptions:
         return asked | {"loads": read_asked_loads(self.load, self.loads, unit)}
 
 
-# What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are no fields.
+# What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are not fields.
 OF_RESTRICTIONS = list_declarations(RestrictionQuestion)
 OF_SEARCHES = list_declarations(SearchQuestion, (RULING_OUT, LOADS, RANKING))
 OF_SEATING = list_declarations(SearchQuestion, (SEATING,))
@@ -268,7 +268,7 @@ class SeatingOptions:
         Raises
         ------
         InputError
-            For words that are no number or length, and for rules of seating where seating is not asked for.
+            For words that are not a number or length, and for rules of seating where seating is not asked for.
         """
         asked = read_words(OF_SEATING, self, unit)
         if asked["seating"] is None and any(asked.values()):

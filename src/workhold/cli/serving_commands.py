@@ -80,20 +80,20 @@ class ServerOptions:
     )
 
     def read_port(self) -> int:
-        """Return the port; raise InputError for what is no port."""
+        """Return the port; raise InputError for what is not a port."""
         at = read_whole_number("--port", self.port)
         if not 0 <= at <= HIGHEST_PORT:
-            raise InputError(f"--port {self.port} is no port: give a number from 0 to {HIGHEST_PORT}.")
+            raise InputError(f"--port {self.port} is not a port: give a number from 0 to {HIGHEST_PORT}.")
         return at
 
     def read_proxies(self) -> list[str]:
-        """Return the addresses of trusted proxies; raise InputError for what is no IP address."""
+        """Return the addresses of trusted proxies; raise InputError for what is not an IP address."""
         for proxy in self.trust_proxy or ():
             try:
                 ip_address(proxy)
             except ValueError:
                 raise InputError(
-                    f"--trust-proxy {proxy!r} is no address: give a number such as 10.0.0.2."
+                    f"--trust-proxy {proxy!r} is not an address: give a number such as 10.0.0.2."
                 ) from None
         return self.trust_proxy or []
 

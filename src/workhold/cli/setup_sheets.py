@@ -131,7 +131,7 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
 
 
 def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | None, force: bool) -> None:
-    """Raise InputError for a setup sheet that cannot be written; None is no sheet."""
+    """Raise InputError for a setup sheet that cannot be written; None means no sheet."""
     if sheet is None:
         return
     path = Path(sheet)

@@ -47,7 +47,9 @@ class StrapOptions:
     reach: str = make_option(
         STRAPS, "LEAST:MOST", "Distance of the tip from the middle of the bolt's hole.", default="20mm:60mm"
     )
-    strap_force: str | None = make_option(STRAPS, "FORCE", "What each strap is rated for, to warn of more.")
+    strap_force: str | None = make_option(
+        STRAPS, "FORCE", "Rated force of each strap; a larger force gives a warning."
+    )
     keep_out_above: list[str] | None = make_option(
         STRAPS, "ZONE", "A place on which no tip may stand, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
     )
@@ -88,7 +90,9 @@ class StrapOptions:
         "Coefficients of friction of tip and plate, such as tip=0.15,plate=0.15; else usual ones.",
     )
     safety: str | None = make_option(LOADS, "NUMBER", "Safety factor on the loads; 2 if not given.")
-    weight: str | None = make_option(LOADS, "FORCE", "Weight of the part; it helps where it is given.")
+    weight: str | None = make_option(
+        LOADS, "FORCE", "Weight of the part; if given, it helps to hold the part."
+    )
     jaw_force: str | None = make_option(
         LOADS,
         "FORCE",

@@ -61,7 +61,7 @@ class Table:
         return [*fitted.headings, *fitted.lines]
 
     def fit_to_width(self, width: int | None) -> FittedTable:
-        """Return the table as lines of at most ``width`` characters; None is no limit.
+        """Return the table as lines of at most ``width`` characters; None means no limit.
 
         A table that is too wide is narrowed in this order: wrap headings; leave out spare columns, which a
         last line says; wrap columns of words, the widest first; leave out columns from the right, but never

@@ -208,7 +208,7 @@ READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
 }
 
 
-# How the entries of a list look, by the form of a field. What is no number is not varied.
+# How the entries of a list look, by the form of a field. What is not a number is not varied.
 ENTRIES: dict[Form, str] = {
     PITCH.form: "such as 8,10,12.5 or 10x12.5.",
     COLUMNS.form: "such as 1,2,4.",

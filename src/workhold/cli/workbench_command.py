@@ -106,7 +106,7 @@ class WorkbenchOrder:
             return cls(**json.loads(path.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError) as error:
             raise InputError(
-                f"{path} is no order of this version's workbench: install the add-on that came with workhold."
+                f"{path} is not an order of this version's workbench: install the add-on that came with workhold."
             ) from error
 
 

@@ -276,7 +276,9 @@ def read_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | 
     for words in places.split(";"):
         numbers = words.split(",")
         if len(numbers) != 2:
-            raise InputError(f"--bolts {places!r} is no list of places: give X,Y;X,Y, such as 5,-12;5,112.")
+            raise InputError(
+                f"--bolts {places!r} is not a list of places: give X,Y;X,Y, such as 5,-12;5,112."
+            )
         x, y = (read_length("--bolts", number, unit) for number in numbers)
         points.append((x, y))
     return Bolts(size, tuple(points))

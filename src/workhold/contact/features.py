@@ -93,8 +93,8 @@ def list_avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[
     """Return the numbers of the faces that nothing may touch: those
     to be avoided, and those that cannot be touched.
 
-    Where carriers have their own outlines, the number of a segment to be avoided stands for the faces of the
-    solid above it; the faces of all outlines under these faces of the solid are avoided, too.
+    Where carriers have outlines of their own, the number of a segment to avoid stands for the faces of the
+    solid above it. All faces under these faces of the solid, in every outline, are then avoided.
 
     Raises
     ------

@@ -107,7 +107,7 @@ def find_highest_press(sheet: SetupSheet, heights: SheetHeights) -> float | None
     """Return the greatest height in mm at which any peg presses, if pegs that end there would be enough.
 
     Shorter pegs press at the same places, and are less in the way. Returns None where they would be shorter
-    by less than ``SHORTER`` or not at all, for a part that is no solid, and for pegs that end below the
+    by less than ``SHORTER`` or not at all, for a part that is not a solid, and for pegs that end below the
     part's top.
     """
     solid, carriers = sheet.workpiece.solid, {one.name: one for one in sheet.toolkit.carriers}

@@ -239,7 +239,7 @@ FOOT = 44.0
 SCALE_BAR = 24.0
 # Width of a column of the panel by how many there are, page units.
 PANELS = {1: 340.0, 2: 310.0}
-# A plan smaller than this on paper in either direction, page units, is no plan.
+# A plan smaller than this on paper in either direction, page units, is not a plan.
 SMALLEST_PLAN = 120.0
 # Of a page's height, how much a view from the side may take.
 MOST_FIGURE = 0.62

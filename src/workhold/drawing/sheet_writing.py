@@ -79,7 +79,7 @@ class SheetHeights:
     ----------
     thickness : of the part.
     peg_top : of the pegs' upper ends.
-    head_room : height kept free above the pegs; None for a part that is no solid.
+    head_room : height kept free above the pegs; None for a part that is not a solid.
     supported_by : height of the supports, 0 without them.
     plate_thickness : of the plates through which pegs stand.
     peg_length : of the pegs.
@@ -189,8 +189,8 @@ def find_peg_bands(
     """Return for each peg the heights (low, high) in mm at which it may press; None for a peg where they are
     unknown.
 
-    They are those that the supports were asked with; without supports those of the solid, and without a solid
-    those of a prism. None is above ``top``, the pegs' top.
+    With supports they are those that the supports were asked with; without supports, those of the solid;
+    without a solid, those of a prism. None is above ``top``, the pegs' top.
     """
     supports, solid = details.supports, number_solid(workpiece)
     if supports is not None:

@@ -84,7 +84,7 @@ class MemberRequest:
 
 @frozen
 class ExcludedPart:
-    """A part that is no member.
+    """A part that is not a member.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def make_family(
 
 
 def explain_missing_member(member: Member, has_patterns: bool) -> str:
-    """Return the reason why a part is no member.
+    """Return the reason why a part is not a member.
 
     ``has_patterns`` says whether any fixture of the part may be used.
     """

@@ -94,12 +94,12 @@ def make_threshold(name: str, value: float) -> FigureThreshold:
     Raises
     ------
     InputError
-        For a name that is no figure.
+        For a name that is not a figure.
     """
     number = find_figure_number(name)
     if number is None:
         raise InputError(
-            f"{name!r} is no figure: choose among {', '.join(figure.option for figure in FIGURES)}."
+            f"{name!r} is not a figure: choose among {', '.join(figure.option for figure in FIGURES)}."
         )
     return FigureThreshold(FIGURES[number], value)
 

@@ -170,8 +170,8 @@ def explain_system_errors(path: Path) -> Iterator[None]:
 
 
 def probe_folder(folder: Path) -> None:
-    """Create a file in a folder and remove it; raise OSError if that is not
-    allowed, for which there is no surer test.
+    """Create a file in a folder and remove it; raise OSError if that is not allowed. No other test is as
+    sure.
     """
     temporary = make_temporary_name(folder / "probe")
     os.close(os.open(temporary, NEW_FILE, 0o666))

@@ -222,7 +222,7 @@ class Budget:
             )
 
     def count_steps(self, steps: int = 1) -> None:
-        """Count steps of work that are no elements, such as comparisons; only time limits them.
+        """Count steps of work that are not elements, such as comparisons; only time limits them.
 
         Raises
         ------

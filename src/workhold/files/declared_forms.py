@@ -80,7 +80,7 @@ def make_form_field(row: Declaration, largest: float | None, bounded: bool) -> t
 def list_field_limits(row: Declaration, largest: float | None) -> dict[str, Any]:
     """Return the bounds of a declared number as keyword arguments of pydantic's ``Field``.
 
-    If ``largest`` is given, it limits numbers that are no counts, and counts are limited by their own
+    If ``largest`` is given, it limits numbers that are not counts, and counts are limited by their own
     declared maximum.
     """
     if row.form == "count":

@@ -49,7 +49,7 @@ HARDWARE_KEYS: Mapping[str, Any] = dict.fromkeys(
     HARDWARE, (dict[str, FiniteFloat | list[list[FiniteFloat]]] | None, None)
 )
 BY_NOUN = {table.noun: table for table in TABLES.values()}
-# What distinguishes the forms in a place of pydantic's; they are no keys of a file.
+# What distinguishes the forms in a place of pydantic's; they are not keys of a file.
 TAGS = tuple(f"<{noun}>" for noun in BY_NOUN)
 
 
@@ -207,7 +207,7 @@ def describe_toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun
         entries = [form.model_fields[one].alias or one for one in order]
         known = get_close_matches(name, entries, n=1)
         meant = f"did you mean {known[0]}?" if known else f"the entries are {', '.join(entries)}."
-        return f'"{name[:40]}" is no entry of a {noun}: {meant}'
+        return f'"{name[:40]}" is not an entry of a {noun}: {meant}'
     if kind == "missing":
         return f"{name} is missing: {WANTED[name]}."
     if name in WANTED:

@@ -72,7 +72,7 @@ def list_parts(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()
     ----------
     given : files, folders and built-in names; a file or folder is preferred to a built-in part of the same
         name.
-    leave_out : folders whose drawings are no parts, such as one for results.
+    leave_out : folders whose drawings are not parts, such as one for results.
 
     Raises
     ------

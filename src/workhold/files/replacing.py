@@ -58,7 +58,7 @@ def refuse_output(
 
     Parameters
     ----------
-    inputs : the inputs that must not be replaced; names that are no files, and None, are ignored.
+    inputs : the inputs that must not be replaced; names that are not files, and None, are ignored.
     force : whether a file that workhold has not written may be replaced.
     called : name of ``force`` at the caller, for the message.
 

@@ -98,7 +98,7 @@ def read_supports(path: str | Path) -> Supports:
 def make_support_pad(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Path) -> SupportPad:
     """Return the support in a hole (carrier, column, row), with its place in the part's frame.
 
-    Raises InputError for a carrier that is no plate of the toolkit; ``path`` is for the message.
+    Raises InputError for a carrier that is not a plate of the toolkit; ``path`` is for the message.
     """
     name, column, row = hole
     plates = {plate.name: plate for plate in query.toolkit.plates}

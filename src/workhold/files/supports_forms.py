@@ -171,7 +171,7 @@ class TripleReader:
     holes: dict[tuple[str, int, int], tuple[str, int, int]] = field(factory=dict)
 
     def read(self, entry: dict[str, Any]) -> Any:
-        """Return the triple that a JSON object of the file describes; an object that is no triple is returned
+        """Return the triple that a JSON object of the file describes; an object that is not a triple is returned
         unchanged.
         """
         return self.read_triple(entry) if entry.keys() >= {"holes", "standing"} else entry

@@ -88,7 +88,7 @@ def read_at_most(path: Path, most: int | None) -> bytes:
     """Return the content of a regular file; if it has more than ``most`` bytes, only its beginning, which is
     longer than ``most``.
 
-    From the length the caller sees that the file is too large. None is no limit.
+    From the length the caller sees that the file is too large. None means no limit.
     """
     size = path.stat().st_size
     with path.open("rb") as stream:

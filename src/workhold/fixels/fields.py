@@ -384,7 +384,7 @@ STOP_WIDTH = ToolkitField(
 MAX_FORCE = ToolkitField(
     "max_force",
     "force",
-    "What the vise is rated for, in N or with its unit.",
+    "Rated force of the vise, in N or with its unit.",
     (PageLabel("Rated force", "not known"),),
     figure="rated force",
     unset="not known",
@@ -426,7 +426,7 @@ TIP_RADIUS = ToolkitField(
 STRAP_REACH = ToolkitField(
     "reach",
     "span",
-    "Of a strap: the least and the most from the middle of its bolt's hole to its tip.",
+    "For straps: least and greatest distance from the middle of the bolt's hole to the tip.",
     (PageLabel("Straps reach", "20 to 60 mm"),),
     default=(20.0, 60.0),
     figure="from a strap's bolt to its tip",
@@ -466,7 +466,7 @@ STRAPS_OVER = ToolkitField(
 BOLT_PITCH = ToolkitField(
     "bolt_pitch",
     "pitch",
-    "Of holes for the straps' bolts: their distance, one for both directions or X,Y; the dowels' own holes take the "
+    "Distance between the holes for the straps' bolts, one for both directions or X,Y; the dowels' own holes take the "
     "bolts if not given.",
     (PageLabel("Pitch of bolt holes", "dowel holes"),),
     figure="pitch of the bolts' holes",

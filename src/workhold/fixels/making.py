@@ -45,7 +45,7 @@ def convert_pitch(value: Any) -> tuple[float, float]:
     Raises
     ------
     InputError
-        For another number of values, and for what is no number.
+        For another number of values, and for what is not a number.
     """
     numbers = tuple(value) if isinstance(value, Iterable) and not isinstance(value, str) else (value, value)
     if len(numbers) != 2:
@@ -62,7 +62,7 @@ def convert_whole_number(value: Any, name: str = "a count") -> Any:
     Raises
     ------
     InputError
-        For a value that is no number.
+        For a value that is not a number.
     """
     return (
         int(value)
@@ -238,7 +238,7 @@ def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
     for two in pairs:
         if len(two) != 2:
             raise InputError(
-                f"{two} is no pair of directions: give two for the two clamps, such as ('-x', '-y')."
+                f"{two} is not a pair of directions: give two for the two clamps, such as ('-x', '-y')."
             )
         for name in two:
             refuse_direction(name)

@@ -174,7 +174,7 @@ def refuse_wrong(hardware: Hardware) -> None:
             for ring in value or ():
                 if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
                     raise InputError(
-                        f"{words} is no list of rings: give for each ring x, y, the least and the most distance."
+                        f"{words} is not a list of rings: give for each ring x, y, the least and the most distance."
                     )
                 for one in ring:
                     refuse_long(words, one)
@@ -298,7 +298,7 @@ def convert_hardware(name: str, value: Any) -> Hardware | None:
     known = [row.name for row in kind.table.fields]
     words = f"{name.replace('_', '-')}: "
     if not isinstance(value, Mapping):
-        raise InputError(f"{words}{value!r} is no table: give some of {', '.join(known)}.")
+        raise InputError(f"{words}{value!r} is not a table: give some of {', '.join(known)}.")
     for one in value:
         if one not in known:
             raise InputError(f"{words}there is no {str(one)[:40]!r}: give some of {', '.join(known)}.")

@@ -333,7 +333,7 @@ def refuse_self_crossing(shape: LoopShape, place: Place, comparisons: Comparison
     comparisons = comparisons or ComparisonBudget("the outline")
     segments, box = shape.segments, shape.boxes
     count = len(segments)
-    # Tangent neighbours meet again within rounding of their joint; that is no crossing.
+    # Tangent neighbours meet again within rounding of their joint; that is not a crossing.
     backward_error = max(*(MEETS_AGAIN * float(np.ptp(box[:, ends])) for ends in ([0, 2], [1, 3])), TOUCHING)
     for i in range(count):
         for j in find_near_segments(shape, i, shape, comparisons).tolist():

@@ -394,7 +394,7 @@ def find_smallest_face_images(keys: IntArray, workpiece: Workpiece, toolkit: Too
     carriers = toolkit.find_peg_carriers(keys[:, 0].astype(np.int8))
     # Type I of a vise: as many pegs on either carrier, which a half turn swaps.
     swaps = ((carriers.max(axis=1) == 1) & ((carriers == 1).sum(axis=1) * 2 == carriers.shape[1]))[:, None]
-    # Jaws whose pegs have different heights are no images of each other.
+    # Jaws whose pegs have different heights are not images of each other.
     swaps &= len({carrier.heights for carrier in toolkit.carriers}) == 1
     images = np.array(find_symmetries([face.segment for face in every.faces], every.marks))
     to = np.zeros((len(images), int(numbers.max()) + 1), np.int64)

@@ -257,7 +257,7 @@ class ClampedSeats:
         """Return for each seat 1 if its opposite clamps are to be paired, else 0, (S,).
 
         Two cases: (a) where half a turn carries the toolkit onto itself, 1 for the seats with an orientation
-        in [0, pi), since half a turn makes one of them of any other fixture with opposite clamps; (b)
+        in [0, pi); half a turn turns every other fixture with opposite clamps into one of these; (b)
         otherwise 1 for all.
         """
         return ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)

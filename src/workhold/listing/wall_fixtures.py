@@ -95,7 +95,7 @@ class WallFixtures(RowArrays):
 def find_lowest_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
     """Return the index of one fixture of each set whose members agree in integers and place.
 
-    Kept is the member with the lowest features.
+    The member with the lowest features is kept.
 
     Parameters
     ----------

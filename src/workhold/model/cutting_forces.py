@@ -114,7 +114,7 @@ class CuttingForces:
         ends = np.abs(np.column_stack([self.force, self.torque, self.axial, self.height]))
         least = np.column_stack([self.force, self.torque, self.height]).min(initial=0.0)
         if not (np.isfinite(ends).all() and least >= 0.0):
-            raise InputError("a force of the program is no number, or negative: give 0 or more.")
+            raise InputError("a force of the program is not a number, or negative: give 0 or more.")
         refuse_strong("a force of the program", float(ends.max(initial=0.0)))
         own, first, last = self.stretches.move, self.stretches.first, self.stretches.last
         is_one = (first >= 0.0) & (first < last) & (last <= 1.0)

@@ -173,7 +173,7 @@ def refuse_limits(name: str, limits: Limits, peg_radius: float) -> None:
     low, high = limits
     if not (isfinite(low) and isfinite(high) and low > 0):
         raise InputError(
-            f"{name} {low:g} to {high:g} mm is no range of diameters: give two positive lengths."
+            f"{name} {low:g} to {high:g} mm is not a range of diameters: give two positive lengths."
         )
     if low > high:
         raise InputError(

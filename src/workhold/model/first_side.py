@@ -102,7 +102,7 @@ def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
     """Return the rotation matrix (3, 3) from a file's coordinates to those of the outline with this axis up.
 
     ``axis`` is "x", "-x", …, "z" or "-z". The matrices of "z" and "-z" differ in the signs of the first and
-    the last row, as the part lies on its other side; so for x and y.
+    the last row, because the part lies on its other side. The same holds for x and y.
     """
     signs = (-1.0, 1.0, -1.0) if axis.startswith("-") else (1.0, 1.0, 1.0)
     turn = np.zeros((3, 3))

@@ -44,7 +44,7 @@ HOLD_FIGURES = (
         "The jaw force that the worst load or tool asks for, with the safety factor.",
         0,
     ),
-    Figure("slip_reserve", "", True, "What the vise is rated for, over the jaw force needed.", 2),
+    Figure("slip_reserve", "", True, "The rated force of the vise divided by the jaw force needed.", 2),
     Figure("safety_reached", "", True, "How many times the loads the jaw force that is given holds.", 2),
     Figure("grip", "mm", True, "The height that both jaws grip."),
     Figure("above", "mm", True, "How far the part stands out above the jaws."),
@@ -73,7 +73,7 @@ def choose_hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
     for key, name in zip(keys, names or HOLD_RANKING, strict=True):
         if key not in figures and key not in HOLD_RANKING:
             known = ", ".join(figures.values())
-            raise InputError(f"{name!r} is no figure of flat jaws to rank by: choose among {known}.")
+            raise InputError(f"{name!r} is not a figure of flat jaws to rank by: choose among {known}.")
     if len(set(keys)) < len(keys):
         raise InputError(f"the figures to rank by, {', '.join(names or ())}, name one twice: name each once.")
     return tuple(keys)

@@ -136,7 +136,7 @@ class Moves:
         if not np.abs(np.concatenate([self.start, self.end])).max() <= MOST_LENGTH:
             raise InputError(f"a move of the program ends nowhere within {MOST_LENGTH:g} mm: correct it.")
         if not np.isfinite(self.bulge).all():
-            raise InputError("a move of the program has a bulge that is no number: correct it.")
+            raise InputError("a move of the program has a bulge that is not a number: correct it.")
 
     def __len__(self) -> int:
         return len(self.line)

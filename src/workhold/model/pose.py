@@ -44,7 +44,7 @@ class Pose:
     Raises
     ------
     InputError
-        For values that are no numbers.
+        For values that are not numbers.
 
     Examples
     --------

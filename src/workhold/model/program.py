@@ -135,7 +135,7 @@ class Program:
             )
         for what, value in (("zero", self.zero[0]), ("zero", self.zero[1]), ("z_zero", self.z_zero)):
             if not isfinite(value):
-                raise InputError(f"{what} of the program is no place: give a length in mm.")
+                raise InputError(f"{what} of the program is not a place: give a length in mm.")
             refuse_long(f"{what} of the program", value)
         if not 0.0 <= self.clearance < inf:
             raise InputError(f"the clearance {self.clearance:g} cannot be used: give 0 or more, in mm.")

@@ -342,7 +342,7 @@ def to_tuple(name: str, values: Iterable[T]) -> tuple[T, ...]:
     try:
         return tuple(values)
     except TypeError as error:
-        raise InputError(f"the {name} are no list, but {values!r}: give several in a list.") from error
+        raise InputError(f"the {name} are not a list, but {values!r}: give several in a list.") from error
 
 
 def resolve_ranking(
@@ -371,7 +371,7 @@ def resolve_ranking(
         if number is None:
             known = (*FIGURES, *(SEATING_FIGURES if seated else ()))
             raise InputError(
-                f"{name!r} is no figure to rank by: choose among {', '.join(f.option for f in known)}."
+                f"{name!r} is not a figure to rank by: choose among {', '.join(f.option for f in known)}."
             )
         if RANKED[number] in SEATING_FIGURES and not seated:
             raise InputError(

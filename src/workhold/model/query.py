@@ -88,7 +88,7 @@ class Query(SearchQuestion):
     workpiece, toolkit : the part, and the toolkit to hold it in.
     types : names of the toolkit's arrangements to search, such as "I" or ("I", "II"); None for all.
     contact_margin : smallest distance in mm between a contact and the end of its feature.
-    restrictions : faces not to touch, places where no peg may stand, angles of the part; None is no
+    restrictions : faces not to touch, places where no peg may stand, angles of the part; None means no
         restriction.
     rank_by : names of the figures of quality to rank by, the most important first, see ``model.quality``.
         None is the usual order, see :mod:`workhold.model.first_choice`.

@@ -79,7 +79,7 @@ def to_direction_range(directions: Any) -> tuple[float, float]:
     """Return directions as (low, high) in degrees, counter-clockwise from low to high.
 
     0 <= low < 360 and low <= high <= low + 360; a whole turn is (0, 360), and one number is that direction
-    alone. Raises InputError for a range of more than 360 degrees and for what is no number or pair.
+    alone. Raises InputError for a range of more than 360 degrees and for what is not a number or pair.
     """
     if isinstance(directions, str | bytes) or not isinstance(directions, Iterable):
         directions = (convert_real(directions, "a direction"),) * 2
@@ -243,7 +243,7 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
     x, y, radius = (convert_real(value, "a number of a keep-out circle") for value in (x, y, radius))
     if not (isfinite(x) and isfinite(y) and isfinite(radius) and radius > 0):
         raise InputError(
-            f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is no circle: give a positive radius."
+            f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is not a circle: give a positive radius."
         )
     return make_zone([[x - radius, y, 1.0], [x + radius, y, 1.0]])
 
@@ -321,7 +321,7 @@ def find_zones(zone: Any) -> Iterator[Zone]:
 
 def to_face_numbers(numbers: Any) -> tuple[int, ...]:
     """Return numbers of faces, ascending, each once, from one number or several;
-    raise InputError for what is no integer.
+    raise InputError for what is not an integer.
     """
     several = isinstance(numbers, Iterable) and not isinstance(numbers, str | bytes)
     given = list(numbers) if several else [numbers]

@@ -112,7 +112,7 @@ class NearestMiss:
     Parameters
     ----------
     fixture : the pegs and the part as they would be; a peg with a negative force would have to pull.
-    words : reason why it is no fixture, in one sentence.
+    words : reason why it is not a fixture, in one sentence.
     """
 
     fixture: Fixture

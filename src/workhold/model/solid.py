@@ -76,7 +76,7 @@ def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
     """Return numbers as a tuple of floats; raise InputError where one is not finite."""
     numbers = tuple(convert_real(value) for value in values)
     if not all(map(isfinite, numbers)):
-        raise InputError("a height of an upper face of the solid is no length: give it in mm.")
+        raise InputError("a height of an upper face of the solid is not a length: give it in mm.")
     return numbers
 
 
@@ -86,7 +86,7 @@ def to_numbers(values: Iterable[Iterable[int]]) -> tuple[tuple[int, ...], ...]:
 
 
 def to_runs(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
-    """Return runs as tuples of rows (share, low, high) of floats; raise InputError where rows are no run, see
+    """Return runs as tuples of rows (share, low, high) of floats; raise InputError where rows are not a run, see
     RunRows.
     """
     found = []

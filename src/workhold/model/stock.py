@@ -73,7 +73,7 @@ class Stock(StockQuestion):
     def __attrs_post_init__(self) -> None:
         for name, value in (("side", self.side), ("top", self.top), ("height", self.height or 0.0)):
             if not (isfinite(value) and value >= 0.0):
-                raise InputError(f"the stock's {name} {value:g} is no length: give 0 or more, in mm.")
+                raise InputError(f"the stock's {name} {value:g} is not a length: give 0 or more, in mm.")
             refuse_long(f"the stock's {name}", value)
 
     @property

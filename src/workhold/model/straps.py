@@ -73,7 +73,7 @@ def choose_strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
     for key, name in zip(keys, names or STRAP_RANKING, strict=True):
         if key not in known:
             words = ", ".join(one.replace("_", "-") for one in known)
-            raise InputError(f"{name!r} is no figure of straps to rank by: choose among {words}.")
+            raise InputError(f"{name!r} is not a figure of straps to rank by: choose among {words}.")
     if len(set(keys)) < len(keys):
         raise InputError(f"the figures to rank by, {', '.join(names or ())}, name one twice: name each once.")
     return tuple(keys)

@@ -88,7 +88,7 @@ def make_span(value: Any) -> Span:
 
 
 def to_loops(loops: Iterable[Any]) -> Loops:
-    """Return loops of (x, y, bulge) vertices as (N, 3) arrays; raise InputError for what is no loop."""
+    """Return loops of (x, y, bulge) vertices as (N, 3) arrays; raise InputError for what is not a loop."""
     return tuple(
         check_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)

@@ -62,7 +62,7 @@ def encode_loops(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
 
 def check_name(name: Any) -> str:
     """Return the name of a part, without characters that cannot be encoded;
-    raise InputError for what is no text.
+    raise InputError for what is not text.
     """
     refuse_kind(name, str, "the name of a part", "give text")
     return make_encodable(name)

@@ -321,7 +321,7 @@ def find_axis_name(up: Any) -> str:
         x, y, z = map(float, to_tuple() if to_tuple else vector)
     except (TypeError, ValueError) as error:
         raise InputError(
-            f"{type(up).__name__} is no direction: give an axis, a plane, a vector, or a name such as '-z'."
+            f"{type(up).__name__} is not a direction: give an axis, a plane, a vector, or a name such as '-z'."
         ) from error
     length = max(abs(x), abs(y), abs(z))
     for direction, name in AXES.items():

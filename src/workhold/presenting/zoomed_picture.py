@@ -123,7 +123,7 @@ def draw_zoomable_picture(
 def hide_unreached_clamps(seen: ShownSetUp) -> ShownSetUp:
     """Return the visible parts with only the line of each clamp that cannot reach its tip from its hole.
 
-    Such a clamp has no length to set. It occurs where four contacts are shown that are no fixture.
+    Such a clamp has no length to set. It occurs where four contacts are shown that are not a fixture.
     """
     lost = {clamp.tip for clamp in seen.clamps if not is_reached(clamp)}
     clamps = tuple(evolve(clamp, hole=None) if clamp.tip in lost else clamp for clamp in seen.clamps)

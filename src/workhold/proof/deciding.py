@@ -220,7 +220,7 @@ def sift_records(records: Array, problem: Problem, setting: Setting) -> tuple[Ar
     """Return the records that a certificate proves to be fixtures, with
     polished solutions, and the records it leaves open.
 
-    Records with a certificate that they are no fixtures are in neither.
+    Records with a certificate that they are not fixtures are in neither.
     """
     solutions = np.empty((len(records), 4))
     verdicts, work = np.full(len(records), PROVEN, np.int8), (np.empty((WORK_LENGTH, 4)), np.empty((2, 4, 2)))

@@ -71,7 +71,7 @@ class RuleRemovals:
     first : how many contacts there are before any rule.
     removals : how many contacts were left before and after each rule, in the order of the rules; only rules
         that were tested on at least one contact.
-    nearest : the contact that comes nearest to being a fixture, and why it is no fixture; None where no such
+    nearest : the contact that comes nearest to being a fixture, and why it is not a fixture; None where no such
         contact is known.
     """
 
@@ -205,7 +205,7 @@ def select_facing_right(c: CandidateFixtures, swapped: int) -> CandidateFixtures
     """Return the contact sets without those that repeat another set with the two carriers' pegs exchanged.
 
     ``swapped`` is the number of standing pegs with which the two carriers may be exchanged. Each set with
-    that many standing pegs is found twice. Kept is the one whose moving pegs are farther in +x on average;
+    that many standing pegs is found twice. The one is kept whose moving pegs are farther in +x on average;
     with equal x, the one whose moving pegs are lower in y.
     """
     across, upward = rotate_vectors(c.point[..., 0], c.point[..., 1], c.theta[:, None])
@@ -271,7 +271,7 @@ def list_rules(problem: Problem, unit: Unit) -> list[Rule]:
 
     Each rule is a triple: (1) its name for the user; (2) a function that returns a mask (N,), True for
     contacts that keep the rule; (3) a function that takes contacts that all break the rule, and returns the
-    index of the nearest one and a sentence why it breaks the rule.
+    index of the nearest one and a sentence that says why it breaks the rule.
     """
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
@@ -408,7 +408,7 @@ def find_miss_of_gap(frame: SearchFrame, unit: Unit, c: ContactSets) -> tuple[in
 
 
 def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact that comes nearest to force closure, and a sentence why it has no
+    """Return the index of the contact that comes nearest to force closure, and a sentence that says why it has no
     closure.
     """
     index = int(c.margin.argmax())
@@ -425,7 +425,7 @@ def find_miss_of_closure(c: ContactSets) -> tuple[int, str]:
 
 def find_miss_of_clamping(frame: SearchFrame, c: ContactSets) -> tuple[int, str]:
     """Return the index of the contact with the largest clamping force,
-    and a sentence why it does not clamp.
+    and a sentence that says why it does not clamp.
     """
     return int(c.clamping.argmax()), f"it holds when {frame.toolkit.wording.backwards}."
 
@@ -450,7 +450,7 @@ def find_miss_of_exact_test(c: ContactSets) -> tuple[int, str]:
 
 
 def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Problem) -> NearestMiss:
-    """Return one of some contacts as a nearest miss: a fixture, and a sentence why it is not allowed.
+    """Return the nearest miss of some contacts: a fixture, and a sentence that says why it is not allowed.
 
     The fixture is placed in the toolkit without its limits. ``miss`` is (index of the contact, sentence).
     """

@@ -63,8 +63,9 @@ BEGIN = 0.618
 def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
     """Return the estimated number of all fixtures of a query, whatever its ``best`` is.
 
-    None where they are surely few; with a wall, with friction, with seating, and with rules tested on each
-    fixture by itself, which are not estimated; and once ``cancel`` is set.
+    None where they are surely few, and once ``cancel`` is set. None also for queries with a wall, with
+    friction, with seating, or with rules that are tested on each fixture by itself: their numbers are not
+    estimated.
     """
     held_flat = WALL_END in query.toolkit.contacts or query.toolkit.holds_by_friction
     if held_flat or query.seating is not None or query.is_sifted:

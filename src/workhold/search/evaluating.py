@@ -94,7 +94,7 @@ def evaluate(
     Raises
     ------
     InputError
-        For a name that is no hole, for more or fewer holes than the toolkit has pegs, and where a query
+        For a name that is not a hole, for more or fewer holes than the toolkit has pegs, and where a query
         raises it.
 
     Examples
@@ -163,7 +163,7 @@ class GivenSetUp:
         Raises
         ------
         InputError
-            For a name that is no hole, and for more or fewer pegs or clamps than the toolkit has.
+            For a name that is not a hole, and for more or fewer pegs or clamps than the toolkit has.
         """
         lattices = [carrier for carrier in toolkit.carriers if carrier.has_lattice]
         for name in names:
@@ -331,7 +331,7 @@ def find_named_hole(name: str, lattices: Iterable[Carrier]) -> HoleSelection:
     Raises
     ------
     InputError
-        For a name that is no hole of the lattices, and for the name of a whole column.
+        For a name that is not a hole of the lattices, and for the name of a whole column.
     """
     carriers = {carrier.name: carrier for carrier in lattices}
     first = next(iter(carriers.values()))

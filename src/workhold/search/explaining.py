@@ -174,7 +174,7 @@ def count_placed(query: Query) -> int:
 
 def make_nearest_miss(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
     """Return the first row of a table as a nearest miss, with a
-    sentence why its contacts do not press the part.
+    sentence that says why its contacts do not press the part.
     """
     fixture = make_fixture_of_row(table, toolkit, 0, workpiece)
     pulls = sum(peg.force < 0 for peg in fixture.pegs)
@@ -280,7 +280,7 @@ def count_seats(query: Query, threads: int | None) -> int:
 
 
 def explain_no_contacts(ways: Sequence[Query]) -> Note:
-    """Return the note why no set of pegs can touch the part at the same time.
+    """Return the note that says why no set of pegs can touch the part at the same time.
 
     ``ways`` has the query of each direction of the toolkit.
     """

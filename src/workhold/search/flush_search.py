@@ -76,8 +76,8 @@ def lay_part_on_wall(problem: Problem, edge: int) -> PartOnWall:
 def list_allowed_edges(problem: Problem) -> list[int]:
     """Return the indices of the hull edges on which a part may lie, ascending.
 
-    Left out are edges at a forbidden angle, edges that only faces to avoid touch, edges with a keep-out zone
-    that reaches into the wall, and edges where the program's tools come too near the wall.
+    These are left out: edges at a forbidden angle, edges that only faces to avoid touch, edges with a
+    keep-out zone that reaches into the wall, and edges where the program's tools come too near the wall.
     """
     part, asked = problem.workpiece, problem.restrictions
     avoided, carriers = list_avoided_faces(part, asked), problem.toolkit.carriers

@@ -262,8 +262,8 @@ class PartOnJaw:
         """Return the stretches and points at which the part touches a jaw, stretches first.
 
         ``way`` is -1 for the fixed jaw, 1 for the moving jaw. ``edge`` is the hull edge on that jaw, or None
-        to take the outermost points. Left out are faces that may not be touched, and corners on a stretch
-        that is listed.
+        to take the outermost points. These are left out: faces that may not be touched, and corners on a
+        stretch that is listed.
         """
         if edge is None:
             along = [HullTouch(x, x, faces) for x, _, faces in self.reaches[0, way][1]]
@@ -458,7 +458,7 @@ class JawSearch:
     def find_broken_rule(self, hold: JawHold, lying: PartOnJaw) -> str | None:
         """Return the key in :data:`RULES` of the first broken rule; None where all are kept.
 
-        Tested are, in this order, "opening", "push", "avoid" and "touch".
+        The rules are tested in the order "opening", "push", "avoid", "touch".
         """
         most = self.jaws.max_opening
         if most is not None and hold.opening > most + TOUCHING:
@@ -731,7 +731,7 @@ def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
 
 
 def explain_no_fixture(rules: dict[str, int], near: Sequence[ToolNearVise], query: Query) -> Note:
-    """Return the note why there is no fixture between flat jaws.
+    """Return the note that says why there is no fixture between flat jaws.
 
     Two cases: (a) a program stands in the way: the note names what its tools run into, and the worst line;
     (b) otherwise it names the last rule, in the order of :data:`RULES`, that a combination broke. ``rules``

@@ -273,7 +273,7 @@ class LatticeShares:
         return SearchWork(complete and self.make_account().left == 0, statistics, self.cells, examined)
 
     def explain_no_fixture(self) -> NoPair:
-        """Return the note why a search that came to its end has no fixture."""
+        """Return the note that says why a search that came to its end has no fixture."""
         return NoPair(self.collector.looked_at, self.make_account().verified)
 
 

@@ -166,7 +166,7 @@ class ShareSearch(Protocol):
         """
 
     def explain_no_fixture(self) -> Note:
-        """Return the note why a search that came to its end has no fixture."""
+        """Return the note that says why a search that came to its end has no fixture."""
 
 
 def answer_by_shares(

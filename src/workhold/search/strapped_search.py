@@ -128,7 +128,7 @@ def make_result(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
 
 
 def explain_no_seat(found: FoundSeats, query: Query) -> Note:
-    """Return the note why a search found no seat."""
+    """Return the note that says why a search found no seat."""
     wording = query.toolkit.wording
     if found.proof.verified:
         return NoPlace(found.proof.verified, wording)
@@ -261,7 +261,7 @@ def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query)
     """Return the indices of seats in the order of the list.
 
     Held seats come first, by the query's ranking; then seats not looked at, then seats that straps do not
-    hold, then seats that no push by hand seats. Equally good seats keep their order.
+    hold, then seats into which no push by hand brings the part. Equally good seats keep their order.
     """
 
     def make_key(place: int) -> tuple[float, ...]:

@@ -84,7 +84,7 @@ LEAST_BLOCKS = 8
 # Sliding pairs whose orientation may be off by more radians than VAGUE are vague. Lengths that determine one
 # are off by less than APART mm.
 VAGUE, APART = 1e-5, 1e-8
-# Factor on the error for an angle that is no quarter turn of the drawing.
+# Factor on the error for an angle that is not a quarter turn of the drawing.
 ASLANT = next(one.times for one in FACTORS if one.key == "other_angle")
 # Location errors of any size are of interest.
 ANY_ERROR = Precision(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), np.zeros((0, 3)), 0.0, 0.0, inf, inf)
@@ -94,8 +94,8 @@ def list_lattice_steps(carriers: Sequence[Carrier], longest: float) -> LatticeSt
     """Return the differences between two holes of one carrier, up to
     ``longest`` mm, in both directions, shortest first.
 
-    All carriers have the same pitch. A difference is listed if it occurs on at least one of them. Left out
-    are differences at which the pegs' bodies overlap, and those that no two unblocked holes have.
+    All carriers have the same pitch. A difference is listed if it occurs on at least one of them. These are
+    left out: differences at which the pegs' bodies overlap, and those that no two unblocked holes have.
     """
     pitch_x, pitch_y = carriers[0].pitch
     most_columns = min(max(carrier.column_count for carrier in carriers) - 1, int(longest / pitch_x))

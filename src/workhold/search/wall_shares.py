@@ -316,7 +316,7 @@ class WallShares:
         return SearchWork(complete, statistics, cells=times * done)
 
     def explain_no_fixture(self) -> Note:
-        """Return the note why a search that came to its end has no fixture."""
+        """Return the note that says why a search that came to its end has no fixture."""
         query, search, verified = self.collector.query, self.searches[0], self.sum_statistic("verified")
         wording, line = query.toolkit.wording, find_program_line_in_the_way(query)
         if isinstance(self.collector, RankedTable) and verified:

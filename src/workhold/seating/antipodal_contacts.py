@@ -280,8 +280,7 @@ def find_parallel_candidates(boundary: ObstacleBoundary, pattern: Pattern, given
 
     Two pegs of one jaw touch a line and an arc; a third peg touches a line parallel to that line, or the same
     line. The list has one array for each ordered pair of pegs of a jaw that fits the part. A candidate is a
-    configuration with contacts and forces that may be an equilibrium. A candidate is a configuration with
-    contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     out, pegs, right = [], pattern.pegs.tolist(), pattern.right.tolist()
     for i, j in permutations(range(len(pegs)), 2):

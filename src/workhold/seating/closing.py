@@ -274,8 +274,7 @@ def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
 
     They are configurations (2 N, 4) and first step lengths in mm (2 N, 2): rows 2 n and 2 n + 1 are the two
     sides of pass n. ``rows`` (N, 24) are the passes as candidates. ``size`` is the part's in mm. A candidate
-    is a configuration with contacts and forces that may be an equilibrium. A candidate is a configuration
-    with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+    is a configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     starts, lengths = np.empty((2 * len(rows), 4)), np.empty((2 * len(rows), 2))
     begin_descents(np.ascontiguousarray(rows), size, starts, lengths)

@@ -117,8 +117,8 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
 
     RESIDUAL is inf where the contacts do not touch, the jaw separation is out of reach, or the forces are not
     unique. For patterns without a wall use :func:`complete_with_forces`. ``size`` is the part's in mm. A
-    candidate is a configuration with contacts and forces that may be an equilibrium. A candidate is a
-    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+    candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
     """
     assert pattern.half_plane is not None
     touched = np.empty(1)

@@ -235,8 +235,8 @@ def find_jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float)
     no motions.
 
     Three pegs touch once each, or one of two pegs touches twice in a pocket. The last argument is ignored. A
-    candidate is a configuration with contacts and forces that may be an equilibrium. A candidate is a
-    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+    candidate is a configuration with contacts and forces that may be an equilibrium, see
+    ``kernels.seating.columns``.
     """
     curves, stack = TwoContactCurves.from_one_jaw(boundary, subset), np.empty((DEPTH, 2))
     [(known, _, _)] = curves.jaws.values()
@@ -493,8 +493,7 @@ def number_first_of_equals(rows: Array, turn: float, shift: float) -> NDArray[np
 
     The indices are in ascending order of separation. Two candidates are equal if they have the same number of
     contacts and their configurations differ by less than ``turn`` radians and ``shift`` mm. A candidate is a
-    configuration with contacts and forces that may be an equilibrium. A candidate is a configuration with
-    contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+    configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
     """
     kept = np.empty(len(rows), np.int64)
     kept = kept[: write_first_of_equals(rows, turn, shift, kept)]

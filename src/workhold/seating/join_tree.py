@@ -273,7 +273,7 @@ class ManifoldDescents:
         paths = np.bincount(whose[falls], minlength=len(loose.rows))
         falling, first = np.flatnonzero(paths), falls[np.searchsorted(whose[falls], np.flatnonzero(paths))]
         both = paths[whose] == 2
-        # A part on two pegs that slides off is no rest at all; on three or more it lies there a while.
+        # A part on two pegs that slides off does not rest at all; on three or more it lies there a while.
         rests = (loose.rows[falling, CONTACTS] >= 3.0) & np.isnan(loose.across[falling, 0])
         return cls(
             np.flatnonzero(paths == 0),

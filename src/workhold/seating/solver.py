@@ -101,7 +101,7 @@ class SeatingSolver:
         return out[0], out[1]
 
     def solve(self, fixture: Fixture, with_cage: bool = True) -> Seating:
-        """Return from how wide open a fixture catches the part, and where else the part can rest.
+        """Return the opening up to which a fixture catches the part, and where else the part can rest.
 
         Parameters
         ----------
@@ -436,7 +436,8 @@ class FixtureInPattern:
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
-    """Return for each fixture up to which opening it catches the part, and where else the part can rest.
+    """Return, for each fixture, the opening up to which it catches the part, and where else the part can
+    rest.
 
     Each result is a ``model.seating.Seating``. For toolkits with two clamps, into which the part is put by
     hand, each result is a ``seating.clamping.HandLoading``, which says how.

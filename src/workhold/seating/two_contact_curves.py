@@ -6,7 +6,7 @@ two-contact curve : all poses, up to the shift along x, in which two contacts of
     ``PAIR_LENGTH`` numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen,
     J. W. Burdick and E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE
     Transactions on Robotics 31 (2015).
-slide : two contacts on parallel faces, which hold one orientation and so are no curve over it.
+slide : two contacts on parallel faces, which hold one orientation and so are not a curve over it.
 """
 
 from __future__ import annotations

@@ -175,8 +175,7 @@ class WallEquilibria:
 
         A part in ``fixed`` can slide along the wall, and the locator's contact stops it. This contact is
         written before the others, and the separation is adjusted. A candidate is a configuration with
-        contacts and forces that may be an equilibrium. A candidate is a configuration with contacts and
-        forces that may be an equilibrium, see ``kernels.seating.columns``.
+        contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         fixed, pegs = fixed.copy(), self.standing_part.pegs
         if self.is_upright:
@@ -196,8 +195,8 @@ class WallEquilibria:
         """Return candidates (N, 24) with a hull edge flat on the wall, which is two contacts.
 
         The other two contacts are (a) those of the locator and the tip, or (b) two of the tip in a pocket. A
-        candidate is a configuration with contacts and forces that may be an equilibrium. A candidate is a
-        configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+        candidate is a configuration with contacts and forces that may be an equilibrium, see
+        ``kernels.seating.columns``.
         """
         fixed, out = [], []
         for side in self.sides:
@@ -273,8 +272,7 @@ class WallEquilibria:
         the locator.
 
         On an upright wall, also candidates with three contacts, without the locator. A candidate is a
-        configuration with contacts and forces that may be an equilibrium. A candidate is a configuration with
-        contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+        configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         places, pieces = self.list_pockets(1)
         work = np.empty((DEPTH, 2)), np.empty((MOST_ZEROS, 2))

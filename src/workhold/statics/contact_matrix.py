@@ -95,7 +95,7 @@ class ContactMatrices:
     points : (N, P, 2) peg centres relative to the centre of the part.
     normals : (N, P, 2) outward unit normals.
     ends : (N, P) distances along the contact features to their nearer ends.
-    edges : (N, P) distances along the contact features to the nearest ends that are no tangent joints; inf
+    edges : (N, P) distances along the contact features to the nearest ends that are not tangent joints; inf
         where there is none.
     inverses : (N, 4, P) inverses of the contact matrices, NaN where singular. The first three rows are the
         part's movements in x, in y, and L times its turn, per unit of error of each contact. The last row is

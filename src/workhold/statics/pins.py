@@ -101,9 +101,9 @@ class PinRuns:
 
     Parameters
     ----------
-    low, high : (N, P) lowest and highest height for each of P contacts; NaN for contacts that are no pegs in
+    low, high : (N, P) lowest and highest height for each of P contacts; NaN for contacts that are not pegs in
         holes of a plate, and where not known.
-    diameter : (N, P) diameter of the peg; NaN for contacts that are no pegs.
+    diameter : (N, P) diameter of the peg; NaN for contacts that are not pegs.
     """
 
     low: Array
@@ -206,7 +206,7 @@ class BentPins:
 
     Parameters
     ----------
-    deflection, stress : (N, P) in mm and in MPa; NaN for contacts that are no pegs.
+    deflection, stress : (N, P) in mm and in MPa; NaN for contacts that are not pegs.
     movement : (N,) largest movement of a point of the silhouette, in mm.
     """
 

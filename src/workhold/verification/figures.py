@@ -508,7 +508,7 @@ def judge_written_numbers(
         if key in fixture.quality:
             if key in COUNTS and not fixture.quality[key].is_integer():
                 yield Finding(
-                    True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is no whole number"
+                    True, f"its {key} is {fixture.quality[key]:.12g} in the file, which is not a whole number"
                 )
             spare = part * abs(derived) + (2 * derived.rad() if key in RANGES else 0)
             yield from judge_written_number(

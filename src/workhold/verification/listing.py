@@ -124,7 +124,7 @@ class FixturesInColumns(Sequence[Fixture]):
     Raises
     ------
     InputError
-        When a fixture has an unknown type or a value that is no number.
+        When a fixture has an unknown type or a value that is not a number.
     """
 
     columns: Columns
@@ -265,7 +265,7 @@ def read_listing(path: str | Path) -> WrittenListing:
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, or describes no usable workpiece or toolkit.
+        When the file cannot be read, is not a result file, or describes no usable workpiece or toolkit.
     """
     path = Path(path)
     head, taken, seatings = read_head_and_fixtures(path)

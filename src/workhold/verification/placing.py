@@ -7,7 +7,7 @@ its Jacobian on X and Y any matrix. If
 
 lies in the interior of X, then f has exactly one zero in X, and it lies in K.
 
-Restrictions are faces to avoid, keep-out zones, angles, blocked holes and bodies. They are no claims of
+Restrictions are faces to avoid, keep-out zones, angles, blocked holes and bodies. They are not claims of
 existence, so the pose as it is written is enough. One is broken when it is missed by more than
 ``tolerances.AGREEMENT``.
 

@@ -60,7 +60,7 @@ def read_fixtures(items: Iterable[Any], path: Path) -> list[Fixture]:
 def read_fixture(item: Any) -> Fixture:
     """Return a fixture from its JSON object, its seating still as fields."""
     if not isinstance(item, dict):
-        raise UnusableError("it is no fixture")
+        raise UnusableError("it is not a fixture")
     is_pair, has_wall = "directions" in item, "wall" in item
     directions = read_directions(item)
     on_wall = read_wall_pegs(item["wall"], is_pair) if has_wall else ()

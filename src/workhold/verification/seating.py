@@ -3,7 +3,7 @@
 For each seat (a pose in which the part can come to rest on the pegs) the file gives the pose, the difference
 of travel and the contacts. The contacts are derived anew from the outline: each must touch to ``AGREEMENT``
 (in ball arithmetic), and no peg may be in the part. Forces h >= 0 along the normals must balance on the part,
-while those of the pegs that move add up to one along their way. So a stated seat or pass that is no seat or
+while those of the pegs that move add up to one along their way. So a stated seat or pass that is not a seat or
 pass is refuted. A file does not show whether a seat is missing.
 
 The stop is where the moving carrier comes to rest without the part. Doubles are exact enough to test whether
@@ -604,7 +604,7 @@ class StatedSeating:
         yield from (f"the pass {words}" for words in faults)
         yield from (f"the pass {words}" for words in self.find_freedom_faults(there, rise))
         if not can_balance(self.make_wrenches(contacts, there), BALANCED):
-            yield "the pass is no equilibrium of its contacts"
+            yield "the pass is not an equilibrium of its contacts"
         (x, y), (u, v) = (
             self.locate_center(place) for place in (there, PartPlacement.from_pose(own["pose"]))
         )

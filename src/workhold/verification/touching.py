@@ -2,7 +2,7 @@
 
 Rules, with the hair of ``tolerances``:
 
-- ends: a contact lies at least margin - hair inside the ends of the face. At an end that is no tangent joint
+- ends: a contact lies at least margin - hair inside the ends of the face. At an end that is not a tangent joint
   it lies more than a hair inside, so without a margin a contact at such an end is none;
 - elsewhere: as far as that along its feature to both sides the peg, as if it had no flat, keeps clear of
   every other segment. So where the feature is trimmed, because the peg comes to touch a second face across

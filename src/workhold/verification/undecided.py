@@ -75,7 +75,7 @@ class TouchingPeg:
 
 
 def find_undecided_faults(entries: Sequence[UndecidedCandidate], query: Query) -> Iterator[str]:
-    """Yield one sentence for each undecided entry, numbered from 1, that certainly is no possible place."""
+    """Yield one sentence for each undecided entry, numbered from 1, that certainly is not a possible place."""
     if not entries:
         return
     with ctx.workprec(PRECISIONS[0]):
@@ -191,7 +191,7 @@ def find_written_fault(entry: UndecidedCandidate, query: Query, outline: BallOut
     if not is_of_chords(entry) and entry.reason != UNBOUNDED and entry.reach_deg is None:
         return "does not say how far its orientation may be off"
     if not set(entry.faces) <= set(outline.faces):
-        return "names a segment that is no face"
+        return "names a segment that is not a face"
     return ""
 
 

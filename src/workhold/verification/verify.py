@@ -360,7 +360,7 @@ def verify_file(path: str | Path, progress: Progress = ignore_progress) -> Verif
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, or describes no usable workpiece or toolkit.
+        When the file cannot be read, is not a result file, or describes no usable workpiece or toolkit.
     """
     return verify_listing(read_listing(path), progress)
 

@@ -180,7 +180,7 @@ class FamilyPaper:
 
 
 def make_family_paper(payload: FamilyPaper, order: TaskContext) -> bytes:
-    """Return the bytes of one of :data:`PAPERS`."""
+    """Return a paper of a family, one of :data:`PAPERS`, as bytes."""
     from workhold.family.pages import draw_curve, draw_setups
     from workhold.presenting.papers import make_pages_file
     from workhold.units import find_unit

@@ -248,7 +248,7 @@ class Guard:
             most = self.limits.upload_bytes if scope["path"] in UPLOADS else self.limits.request_bytes
             length = headers.get("content-length", "0")
             if not (length.isascii() and length.isdigit()):
-                return 400, "The length of the request is no number."
+                return 400, "The length of the request is not a number."
             if len(length) > 15 or int(length) > most:
                 return 413, explain_too_large(most)
         return None

@@ -119,7 +119,7 @@ async def state(request: Request, name: str) -> dict[str, Any]:
 
 @router.delete("/jobs/{name}", status_code=204, summary="Stop and forget a job")
 async def delete(request: Request, name: str) -> Response:
-    """Stop a job and forget it; a name without a job is no error."""
+    """Stop a job and forget it; a name without a job is not an error."""
     get_state(request).jobs.delete(name)
     return Response(status_code=204)
 

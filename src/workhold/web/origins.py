@@ -1,7 +1,7 @@
 """Pages of other sites that may use the server from a browser: none, unless their origins are named.
 
 A browser sends the origin of a page with a request to another site, and hands the answer to the page only
-where the answer names that origin. Before a request that is no plain one it asks whether it may (a
+where the answer names that origin. Before a request that is not a plain one it asks whether it may (a
 preflight): see the Fetch standard, section 3.2, *CORS protocol*.
 """
 
@@ -87,7 +87,7 @@ def check_origin(text: str) -> str:
     Raises
     ------
     InputError
-        For text that is no origin of pages, and for ``*`` and ``null``, which may stand for any page.
+        For text that is not an origin of pages, and for ``*`` and ``null``, which may stand for any page.
 
     >>> check_origin("HTTPS://Shop.example:443/")
     'https://shop.example'
@@ -100,7 +100,7 @@ def check_origin(text: str) -> str:
     extra = parts.path.strip("/") or parts.query or parts.fragment or parts.username or parts.password
     if parts.scheme not in PORTS or not parts.hostname or extra:
         raise InputError(
-            f"{text!r} is no origin: name the site of the page alone, such as https://shop.example or "
+            f"{text!r} is not an origin: name the site of the page alone, such as https://shop.example or "
             "http://localhost:5173."
         )
     host = f"[{parts.hostname}]" if ":" in parts.hostname else parts.hostname

@@ -102,6 +102,6 @@ def read_angle_range(text: str) -> tuple[float, float]:
         ends = (1.0, 0.0)
     if not dots or not ends[0] <= ends[1] or max(abs(ends[0]), abs(ends[1])) > 1e6:
         raise InputError(
-            f"{text[:40]!r} is no range of angles: give it in degrees, the smaller first, such as -10..10."
+            f"{text[:40]!r} is not a range of angles: give it in degrees, the smaller first, such as -10..10."
         )
     return ends

@@ -214,7 +214,7 @@ def bound_socket(host: str, port: int) -> socket.socket:
         )[0]
     except (OSError, UnicodeError) as error:
         raise InputError(
-            f"--host {host!r} is no address of this machine: leave it out, or give one such as 0.0.0.0."
+            f"--host {host!r} is not an address of this machine: leave it out, or give one such as 0.0.0.0."
         ) from error
     listener = socket.socket(family, kind, protocol)
     try:

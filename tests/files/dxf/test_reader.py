@@ -169,7 +169,7 @@ def test_hidden_entities_are_left_out_with_a_remark(tmp_path: Path, how: str) ->
 
 
 def test_annotations_are_ignored_and_counted(tmp_path: Path) -> None:
-    """Text, points, dimensions, hatches, leaders and solids are no outline."""
+    """Text, points, dimensions, hatches, leaders and solids are not an outline."""
 
     def draw(space: Any) -> None:
         rectangle(space)
@@ -184,7 +184,7 @@ def test_annotations_are_ignored_and_counted(tmp_path: Path) -> None:
     loaded = read_dxf(tmp_path, draw)
     assert area(loaded.workpiece) == pytest.approx(2400)
     assert loaded.remarks == (
-        "Ignored entities that are no outline: 1 DIMENSION, 1 HATCH, 1 MTEXT, 2 POINT, 1 SOLID, 1 TEXT.",
+        "Ignored entities that are not an outline: 1 DIMENSION, 1 HATCH, 1 MTEXT, 2 POINT, 1 SOLID, 1 TEXT.",
     )
 
 

@@ -227,7 +227,7 @@ def test_splines_off_the_plane_are_refused(tmp_path: Path) -> None:
 
 
 def test_open_curves_beside_the_outline_are_left_out(tmp_path: Path) -> None:
-    """A spline that is no part of an outline asks for no fit."""
+    """A spline that is not part of an outline asks for no fit."""
 
     def draw(space: Any) -> None:
         rectangle(space)

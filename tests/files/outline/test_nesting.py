@@ -75,7 +75,7 @@ def test_a_part_can_be_chosen(tmp_path: Path) -> None:
 
 
 def test_a_loop_across_the_outline_is_refused(tmp_path: Path) -> None:
-    """A hole drawn half outside is no separate part to be left out in silence."""
+    """A hole drawn half outside is not a separate part to be left out in silence."""
 
     def draw(space: Any) -> None:
         rectangle(space)
@@ -98,7 +98,7 @@ def test_touching_holes_are_refused_by_entity(tmp_path: Path) -> None:
 
 
 def test_an_outline_that_hangs_at_a_corner_of_another_is_a_part_beside_it(tmp_path: Path) -> None:
-    """All its lines border both, so it is no hole of the other: half of 30 x 30 - 10 x 20 mm² can be chosen."""
+    """All its lines border both, so it is not a hole of the other: half of 30 x 30 - 10 x 20 mm² can be chosen."""
 
     def draw(space: Any) -> None:
         for corners in ([(0, 0), (80, 0), (80, 50), (0, 50)], [(80, 50), (50, 40), (60, 20)]):

@@ -70,7 +70,7 @@ def read_all(folder: Path, seed: int, count: int) -> tuple[int, int]:
             where = f"number {number}: {words}"
             assert words.isprintable() and words.endswith(".") and 20 < len(words) < 400, where
             known = words.startswith(
-                ("line ", "there is no move in it", "the program ", "the file is no text")
+                ("line ", "there is no move in it", "the program ", "the file is not text")
             )
             assert known, where
             refused += 1

@@ -98,7 +98,7 @@ def test_places_stay_over_changes_of_tools_and_stops(tmp_path: Path) -> None:
 
 
 def test_a_tool_length_ends_what_is_known_of_the_height_alone(tmp_path: Path) -> None:
-    """With Z only the end of the move counts; the same length again changes nothing, and is no length at all."""
+    """With Z only the end of the move counts; the same length again changes nothing, and is not a length at all."""
     text = (
         HEAD
         + "G0 X5. Y2. Z20.\nG43 H1 Z20.\nG1 Z-1. F100\n{again}X70.\nT2 M6\nG0 X9.\nG43 H2 Z20.\nG1 Z-8. F100\n"
@@ -203,7 +203,7 @@ def test_a_program_without_heights_is_refused_by_its_cut(tmp_path: Path, unit: s
 
 
 def test_moves_before_the_first_tool_are_left_out_and_cuts_refused(tmp_path: Path) -> None:
-    """A safe retract first is no call of T0; number 0 of the table is the tool that is in the spindle."""
+    """A safe retract first is not a call of T0; number 0 of the table is the tool that is in the spindle."""
     text = "G21 G90\nG0 X0. Y0. Z12.\nT2 M6\nG0 X10.\nG1 Z-2. F200\n"
     read = read_text(tmp_path, text, tools={2: 6.0})
     assert read.moves.tool.tolist() == [2, 2] and read.moves.start[0].tolist() == [0, 0, 12]
@@ -374,7 +374,7 @@ def test_the_end_behind_a_switch_is_refused_where_more_follows(tmp_path: Path) -
 
 
 def test_the_places_of_a_file_are_those_of_the_text(tmp_path: Path) -> None:
-    """The form of a result has no more keys than before, and a start is no part of it."""
+    """The form of a result has no more keys than before, and a start is not part of it."""
     head = read_text(tmp_path, START + "G1 X5. F100\n", start=(0, 0, 50)).make_head()
     assert set(head) == {
         *("name", "sha256", "unit", "zero", "z_zero", "clearance", "rapid", "tools", "skipped", "notes")

@@ -165,7 +165,7 @@ def test_too_many_moves_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         ({"z_zero": "middle"}, "z_zero is not a height"),
         ({"z_zero": float("nan")}, "z_zero is not a height"),
         ({"unit": "cm"}, "mm or inch"),
-        ({"zero": (float("inf"), 0)}, "zero of the program is no place"),
+        ({"zero": (float("inf"), 0)}, "zero of the program is not a place"),
         ({"clearance": -1.0}, "clearance"),
         ({"rapid": "curved"}, "straight or box"),
     ],

@@ -84,7 +84,7 @@ def test_lengths_are_in_the_unit_that_is_said_or_that_of_the_program(tmp_path: P
 
 
 def test_a_holder_as_wide_as_its_tool_is_known(tmp_path: Path) -> None:
-    """What a table says of a holder is known, whatever its width and length; a shank is no holder."""
+    """What a table says of a holder is known, whatever its width and length; a shank is not a holder."""
     program, words = HEAD + "G0 X0 Y0 Z9\n", "The holder of T1 is not known"
     for further, is_known in (
         ("holder_diameter = 10, holder_length = 30", True),
@@ -200,7 +200,7 @@ def test_a_tool_before_any_call(tmp_path: Path) -> None:
         ("t.toml", "tool.1 = {name = 'a'}", "tool.1 has no diameter"),
         ("t.toml", "tool.1 = {diameter = 5, length = 4}", "unknown key 'length'"),
         ("t.toml", "tool.a = {diameter = 5}", "'a' is not the number of a tool"),
-        ("t.toml", "tool.1 = 5", "its tools are no tables"),
+        ("t.toml", "tool.1 = 5", "its tools are not tables"),
         ("t.toml", "tools = 5", "'tools' is not known"),
         ("t.toml", "unit = 'ell'", "ell"),
         ("t.toml", "", "there are no tools in it"),

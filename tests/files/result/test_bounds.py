@@ -1,4 +1,4 @@
-"""What is no file of a sensible size is refused before memory is full, and a seating is what its form says."""
+"""What is not a file of a sensible size is refused before memory is full, and a seating is what its form says."""
 
 from __future__ import annotations
 

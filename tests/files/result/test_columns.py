@@ -197,5 +197,7 @@ def test_an_error_on_the_way_leaves_the_earlier_file(tmp_path: Path, monkeypatch
 
 
 def test_a_form_that_does_not_exist_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="'doc' is no form of a result file: choose one of json, csv, npz"):
+    with pytest.raises(
+        InputError, match="'doc' is not a form of a result file: choose one of json, csv, npz"
+    ):
         workhold.save(fake_result(1), tmp_path / "a.doc")

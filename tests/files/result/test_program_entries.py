@@ -69,7 +69,7 @@ def test_pieces_are_packed_while_a_head_is_read(rapid: str) -> None:
     ],
 )
 def test_pieces_that_are_none_are_refused(change: Any, sentence: str) -> None:
-    """A move that lacks a piece, has one too many or another shape, and what is no piece at all, name their line."""
+    """A move that lacks a piece, has one too many or another shape, and what is not a piece at all, name their line."""
     entries = program().to_dict()
     change(entries["pieces"])
     with pytest.raises((InputError, LookupError), match=sentence):

@@ -358,7 +358,7 @@ DAMAGED_PROOFS: list[tuple[Damage, str]] = [
     (lambda p: p["undecided"][0].update(theta_deg=360), r"proof\.undecided\.0\.theta_deg cannot be used"),
     (
         lambda p: p["undecided"][1]["segments"].__setitem__(0, 77),
-        "undecided candidate 2 .* names a segment that is no face",
+        "undecided candidate 2 .* names a segment that is not a face",
     ),
 ]
 

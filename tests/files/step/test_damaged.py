@@ -79,7 +79,7 @@ def test_the_command_line_outlives_a_file_that_brings_the_library_down(tmp_path:
 
 
 def test_a_script_without_a_main_guard_reads_a_part(tmp_path: Path, plate: bytes) -> None:
-    """The process that reads is no copy of the script, so that nothing runs twice."""
+    """The process that reads is not a copy of the script, so that nothing runs twice."""
     (tmp_path / "part.step").write_bytes(plate)
     script = tmp_path / "script.py"
     script.write_text("import workhold\nprint('once')\nprint(len(workhold.load('part.step').loops))\n")

@@ -283,7 +283,7 @@ def test_what_rises_over_a_plate_is_no_part_of_its_top_however_it_is_shaped() ->
 
 
 def test_places_asked_are_bounded_and_nothing_is_open_beyond(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A count and no clock, so that every machine finds the same; what is not decided is no place for a clamp."""
+    """A count and no clock, so that every machine finds the same; what is not decided is not a place for a clamp."""
     solid = stand_solid(tilted_rings(1))
     assert find_open_level_tops(solid)
     monkeypatch.setitem(LIMITS, "tops", evolve(LIMITS["tops"], most_elements=50))

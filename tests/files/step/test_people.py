@@ -92,7 +92,7 @@ def nut(across: float = 40.0, high: float = 18.0) -> object:
 
 @pytest.mark.parametrize("gap", [0.0, *(s * 5 * 10.0**-p for p in range(3, 10) for s in (1, -1))])
 def test_a_nut_is_its_hexagon_at_every_height(gap: float) -> None:
-    """The cut of the chamfer at the pegs' end touches the flats from within: it is no border."""
+    """The cut of the chamfer at the pegs' end touches the flats from within: it is not a border."""
     across, high = 40.0, 18.0
     tangent = high - tan(pi / 6)
     outline = stand_solid(nut(across, high)).make_outline(tangent + gap - 0.5)
@@ -123,7 +123,7 @@ def test_lying_shaft_makes_few_outlines_for_its_table(monkeypatch: pytest.Monkey
     "gap", [0.0, 1e-6, 1e-4, 2e-3, 4e-3, 5.6e-3, 7e-3, 0.01, 0.015, 0.02, 0.037, 0.05, 0.5]
 )
 def test_lying_shaft_is_its_silhouette_from_its_axis_up(gap: float) -> None:
-    """Cuts of its fillets just above run nearer beside their folds than can be looked at, and are no border."""
+    """Cuts of its fillets just above run nearer beside their folds than can be looked at, and are not a border."""
     (solid,) = read_solids((DATA / "lying_shaft_fillets.step").read_bytes())
     standing_shaft = stand_solid(solid.shape)
     whole = measure_outline(standing_shaft.make_outline(18.0))

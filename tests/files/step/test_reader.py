@@ -106,7 +106,7 @@ def test_a_plate_with_rounded_corners_and_holes_is_exact(tmp_path: Path) -> None
     ],
 )
 def test_what_is_cut_within_the_silhouette_leaves_it_alone(tmp_path: Path, tool: Any, kind: str) -> None:
-    """A blind hole, a hole across and a pocket are told with heights and depth, and are no holes of the outline."""
+    """A blind hole, a hole across and a pocket are told with heights and depth, and are not holes of the outline."""
     loaded = silhouette(tmp_path, cut(plate(), tool))
     assert lines_and_circles(loaded.workpiece) == (PLATE_LINES, PLATE_CIRCLES)
     assert kind in loaded.remarks[0]
@@ -385,7 +385,7 @@ def test_a_silhouette_of_ellipses_is_refused_with_a_remedy(tmp_path: Path) -> No
 
 
 def test_surfaces_without_a_solid_are_refused(tmp_path: Path) -> None:
-    """The faces of a box are no part."""
+    """The faces of a box are not part."""
     assert "surfaces (6) but no solid" in refusal(tmp_path, list_sub_shapes(box(1, 1, 1), "SHELL")[0])
 
 

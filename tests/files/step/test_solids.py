@@ -52,7 +52,7 @@ def outline(solid: StandingSolid, high: float) -> Loops:
 def test_sections_lie_in_the_outline_and_make_it(example: SolidExample) -> None:
     """At 200 heights the section lies in U, and over every border of U the solid stands or leans.
 
-    A point of U that is no section's would be enclosed by border over which nothing is.
+    A point of U that is not a section's would be enclosed by border over which nothing is.
     """
     solid = stand_solid(example.make())
     before: Loops = []
@@ -84,7 +84,7 @@ def test_pegs_touch_over_their_bands_and_enter_nowhere(example: SolidExample) ->
 
 
 def touchable(part: Workpiece, toolkit: Any) -> bool:
-    """Whether some face with a band is no hole: a small hole may be all that is left."""
+    """Whether some face with a band is not a hole: a small hole may be all that is left."""
     return any(part.solid.bands[face.number] for face in part.outer_faces)  # type: ignore[union-attr]
 
 

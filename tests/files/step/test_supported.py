@@ -127,7 +127,7 @@ def test_a_file_of_supports_has_the_solid_and_is_verified(tmp_path: Path) -> Non
 
 
 def split(one: Supports) -> bool:
-    """Whether a peg touches a face that is no face of the outline without bands."""
+    """Whether a peg touches a face that is not a face of the outline without bands."""
     workpiece = one.query.workpiece
     alone = {face.number for face in evolve(workpiece, solid=None).faces}
     return any(peg.face not in alone for peg in one.fixture.pegs)

@@ -52,7 +52,7 @@ def test_y_points_up_and_the_page_corner_is_the_origin(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("unit", "mm"), [("mm", 1), ("inch", 25.4), ("cm", 10)])
 def test_files_without_physical_size_need_a_unit(tmp_path: Path, unit: str, mm: float) -> None:
-    """Pixels are no length: without width and height in mm the user says what a user unit is."""
+    """Pixels are not a length: without width and height in mm the user says what a user unit is."""
     for root in (
         "",
         'width="100" height="50"',
@@ -214,7 +214,7 @@ def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
     body = f'{D}<text>hello</text><image/><text/><x:y xmlns:x="u"><rect width="900" height="900"/></x:y><title>t</title>'
     loaded = read_svg(tmp_path, body, MM)
     assert area(loaded.workpiece) == pytest.approx(800 + 50 * pi)
-    assert loaded.remarks == ("Ignored elements that are no outline: 1 image, 2 text.",)
+    assert loaded.remarks == ("Ignored elements that are not an outline: 1 image, 2 text.",)
 
 
 @pytest.mark.parametrize(
@@ -248,7 +248,7 @@ def test_text_and_images_are_ignored_and_counted(tmp_path: Path) -> None:
     ],
 )
 def test_refusals_name_element_and_place(tmp_path: Path, body: str, words: str) -> None:
-    """One sentence for everything that is no line, arc or number."""
+    """One sentence for everything that is not a line, arc or number."""
     with pytest.raises(InputError, match=words) as caught:
         read_svg(tmp_path, body, MM)
     assert str(caught.value).startswith("drawn.svg: ")

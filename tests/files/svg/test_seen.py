@@ -269,7 +269,7 @@ def test_markers_and_texts_are_reported() -> None:
     """They draw no outline."""
     body = '<g marker-end="url(#m)"><path d="M0 0h9v9z"/></g><text display="none">a</text><text>b</text><script/>'
     remarks = read_svg(svg(body), unit=None).remarks
-    assert "Ignored elements that are no outline: 1 marker, 1 script, 1 text." in remarks
+    assert "Ignored elements that are not an outline: 1 marker, 1 script, 1 text." in remarks
 
 
 @pytest.mark.parametrize(

@@ -167,7 +167,7 @@ def test_layers_are_a_list_with_pictures(walk: Walk, tmp_path: Path) -> None:
 
 
 def test_curves_are_fitted_as_asked(walk: Walk) -> None:
-    """A Bézier curve that is no arc is asked about; how far off the arcs are goes into the search and into the link."""
+    """A Bézier curve that is not an arc is asked about; how far off the arcs are goes into the search and into the link."""
     page = walk.page
     svg = b"""<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
 <path d="M10 10H90C115 10 115 70 90 70H10Z"/></svg>"""

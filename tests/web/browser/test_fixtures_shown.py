@@ -92,7 +92,7 @@ def test_a_fixture_of_an_earlier_stage_of_the_search_does_not_stay(walk: Walk, s
 
 
 def test_near_copies_are_one_row(walk: Walk) -> None:
-    """With how many are like it, and what is no fixture for a workshop is left out; both come when asked for."""
+    """With how many are like it, and what is not a fixture for a workshop is left out; both come when asked for."""
     page = walk.page
     walk.take()
     walk.search()

@@ -347,14 +347,14 @@ class Bench:
 def find_set_form_faults(content: Any) -> list[str]:
     """Return a list of sentences on wrong keys and types of a file's content; empty where all are right."""
     if not isinstance(content, dict):
-        return ["the file is no JSON object"]
+        return ["the file is not a JSON object"]
     faults = [f"the key {key} is missing" for key in HEAD if key not in content]
     if faults:
         return faults
     if content["format"] != FORMAT:
         return [f"the format is {content['format']!r}, not {FORMAT}"]
     if not isinstance(content["fixtures"], list) or not isinstance(content["set"], str):
-        return ["fixtures are no list, or the set has no name"]
+        return ["fixtures are not a list, or the set has no name"]
     if content["workpiece"].get("units") != "mm":
         faults.append("the workpiece is not in mm")
     if content["toolkit"].get("kind") not in (
@@ -368,7 +368,7 @@ def find_set_form_faults(content: Any) -> list[str]:
     for key in ("statistics", "counts", "distinct"):
         values = content[key].values()
         if any(type(value) is not int or value < 0 for value in values):
-            faults.append(f"{key} are no whole numbers from 0")
+            faults.append(f"{key} are not whole numbers from 0")
     finite = are_all_finite({key: content[key] for key in ("workpiece", "toolkit", "options", "fixtures")})
     if not finite:
         faults.append("a number is not finite")
@@ -399,7 +399,7 @@ def find_form_faults(bench: Bench, fixture: Any) -> list[str]:
             needed = {"-x": "row", "+x": "row", "-y": "column", "+y": "column"}.get(role)
             for key in [needed] if needed else ["column", "row"]:
                 if type(peg[key]) is not int:
-                    return [f"a {key} is no whole number"]
+                    return [f"a {key} is not a whole number"]
             if type(peg["segment"]) is not int or not 0 <= peg["segment"] < len(bench.outline.a):
                 return ["a segment that the part does not have"]
             if bench.pairs and role in DIRECTIONS and peg["direction"] != role:
@@ -984,7 +984,7 @@ def find_account_faults(content: dict[str, Any]) -> list[str]:
     if any(proof[key] < 0 for key in ACCOUNT):
         faults.append("a number of the account is negative")
     if proof.get("undecided") != []:
-        faults.append("the account has undecided candidates: such a list is no complete one")
+        faults.append("the account has undecided candidates: such a list is not a complete one")
     if proof["discarded_by_bound"] + proof["verified"] != proof["candidates"]:
         faults.append("candidates are not those discarded and those verified")
     if content["toolkit"].get("clamps") != 2 and proof["verified"] < len(fixtures):

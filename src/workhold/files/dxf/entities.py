@@ -197,7 +197,7 @@ def read_spline_through_fit_points(entity: Any) -> RawChain:
     """
     every = [(float(x), float(y), float(z)) for x, y, z in entity.fit_points]
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for point in every for value in point):
-        raise InputError("has a fit point that is no place: repair the drawing.")
+        raise InputError("has a fit point that is not a place: repair the drawing.")
     points = every[:1] + [q for p, q in pairwise(every) if dist(p, q) > SAME_POINT]
     closed = bool(entity.closed)
     if closed and len(points) > 1 and dist(points[0], points[-1]) > SAME_POINT:

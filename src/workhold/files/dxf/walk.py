@@ -258,7 +258,7 @@ class DxfWalk:
         remarks = []
         if self.ignored:
             kinds = [f"{count} {shorten_name(kind)}" for kind, count in sorted(self.ignored.items())]
-            remarks.append(f"Ignored entities that are no outline: {list_first_words(kinds)}.")
+            remarks.append(f"Ignored entities that are not an outline: {list_first_words(kinds)}.")
         if self.interpolated:
             splines = format_count(self.interpolated, "spline", "splines")
             remarks.append(

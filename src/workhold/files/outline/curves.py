@@ -67,7 +67,7 @@ class CurveReader:
     """A converter of the curves of one drawing into lines
     and arcs, which keeps the reading of each by its label.
 
-    ``budget`` limits the time; None is no limit.
+    ``budget`` limits the time; None means no limit.
     """
 
     def __init__(self, fit: float | None, budget: Budget | None = None) -> None:
@@ -176,7 +176,7 @@ def refuse_true_curves(
     found : readings of the drawing's curves.
     fit : largest distance in mm of lines and arcs from curves; None allows none.
     layered : whether the file has layers to choose.
-    budget : limits the time; None is no limit.
+    budget : limits the time; None means no limit.
     """
     true = {label: one for label, one in select_readings(labels, found).items() if not one.is_disguise}
     if fit is not None or not true:
@@ -207,7 +207,7 @@ def refit_curve(one: CurveReading, fit: float, budget: Budget | None) -> tuple[i
     """Return (1) the number of lines and arcs that replace a curve within ``fit`` mm, and (2) their largest
     distance in mm from it.
 
-    (0, 0) for a curve of no length. ``budget`` is spent; None is no limit.
+    (0, 0) for a curve of no length. ``budget`` is spent; None means no limit.
     """
     fitted = fit_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
@@ -228,7 +228,7 @@ def merge_short_chords(
     ----------
     found : readings of the drawing's curves.
     fit : largest distance in mm of the new segments from the chords; ``DISGUISE`` if None or less than that.
-    budget : limits the time; None is no limit.
+    budget : limits the time; None means no limit.
     """
     interrupt = (budget or Budget(UNLIMITED)).check_time
     out, away, merged = [], 0.0, 0

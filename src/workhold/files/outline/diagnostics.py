@@ -77,7 +77,7 @@ def make_unit_question(
         of_pixels = f"{of_pixels}; " if of_pixels else ""
         return UnitAskedError(
             f"{lacking}: {of_pixels}say which with {UNIT} {counts}, or with {UNIT} mm (or inch, cm, m) if its "
-            "numbers are no pixels."
+            "numbers are not pixels."
         )
     asked = f"{lacking}: {shown}say which with {UNIT} mm (or inch, cm, m)"
     if pixels is None:
@@ -172,7 +172,7 @@ def describe_open_ends(strays: Sequence[OpenChain], enough: float | None = None)
         ends += [(stray.chain.points[0], stray.first), (stray.chain.points[-1], stray.last)]
     points = np.array([point for point, _ in ends])
     found = []
-    # The first few hundred are enough to name four: files with more are no outlines at all.
+    # The first few hundred are enough to name four: files with more are not outlines at all.
     for k, (point, name) in enumerate(ends[:500]):
         away = np.hypot(points[:, 0] - point[0], points[:, 1] - point[1])
         away[k] = np.inf

@@ -198,7 +198,7 @@ class JoinedChains:
 def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None) -> JoinedChains:
     """Join chains in mm, without segments of zero length, end to end across gaps up to a tolerance in mm.
 
-    ``budget`` is spent; None is no limit. Raises InputError for too many ends within the tolerance of each
+    ``budget`` is spent; None means no limit. Raises InputError for too many ends within the tolerance of each
     other.
     """
     budget = budget or Budget(UNLIMITED)

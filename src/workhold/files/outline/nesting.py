@@ -94,7 +94,7 @@ def nest_loops(loops: Sequence[JoinedLoop], budget: Budget | None = None) -> tup
     each is an outer loop with the holes directly in it.
 
     Of loops that cross, no correct nesting is promised; they are refused later. Outlines that share lines (of
-    one nest) are separate parts, although their borders touch. ``budget`` is spent; None is no limit.
+    one nest) are separate parts, although their borders touch. ``budget`` is spent; None means no limit.
     """
     budget = budget or Budget(UNLIMITED)
     rings = sorted(map(MeasuredLoop.from_loop, loops), key=lambda r: -r.area)

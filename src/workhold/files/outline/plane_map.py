@@ -32,7 +32,7 @@ from workhold.geometry.subdivision import CutCurve, subdivide
 
 __all__ = ["CurveCluster", "make_clusters"]
 
-# More lines and arcs are no nest, and pairs of them that come near each other.
+# More lines and arcs are not a nest, and pairs of them that come near each other.
 MOST_SEGMENTS, MOST_PAIRS = 20_000, 1_000_000
 # mm. Ends of pieces this near are one node: twice what the subdivision rounds.
 NODE = 4e-6

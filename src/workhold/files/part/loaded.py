@@ -124,7 +124,7 @@ def from_drawing(
     tolerance : largest gap between ends to close, in mm.
     fit : largest distance in mm of lines and arcs from curves that they replace; None refuses true curves.
     layered : whether layers of the drawing can be chosen, for advice.
-    budget : work and time that may still be spent on the file; None is no limit.
+    budget : work and time that may still be spent on the file; None means no limit.
 
     Raises
     ------

@@ -379,7 +379,7 @@ def find_gaps_and_parts(
         [end for stray in strays for end in (stray.chain.points[0], stray.chain.points[-1])]
     ).reshape(-1, 2)
     found = set()
-    # A file with more loose ends than this is no outline at all.
+    # A file with more loose ends than this is not an outline at all.
     for k, (x, y) in enumerate(ends[:2000].tolist()):
         away = np.hypot(ends[:, 0] - x, ends[:, 1] - y)
         away[k] = np.inf

@@ -188,7 +188,7 @@ def read_start_place(start: Sequence[float]) -> Place:
     """Return the position (x, y, z) of the tip at the start in mm; raise InputError for anything else."""
     values = tuple(convert_real(value, "the start of the program") for value in start)
     if len(values) != 3 or not all(isfinite(value) for value in values):
-        raise InputError("the start of the program is no place: give X, Y and Z in mm, from its own zero.")
+        raise InputError("the start of the program is not a place: give X, Y and Z in mm, from its own zero.")
     for value in values:
         refuse_long("the start of the program", value)
     return values[0], values[1], values[2]
@@ -199,7 +199,7 @@ def decode_program(content: bytes) -> str:
     InputError if it is not text.
     """
     if b"\0" in content:
-        raise InputError("the file is no text: give a program of RS-274 (G-code).")
+        raise InputError("the file is not text: give a program of RS-274 (G-code).")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:

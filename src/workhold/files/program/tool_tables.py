@@ -50,7 +50,7 @@ CUTTING = (
 OTHERS = ("corner_radius", "flutes")
 FIELDS = ("name", "unit", "type", *LENGTHS, *CUTTING, *OTHERS)
 UNSURE = ("teeth", "point_angle")
-# What of them is no number.
+# What of them is not a number.
 WORDS = {"material", "direction"}
 SHAPE = (
     "tool.{number} = {{diameter = 10, flute_length = 22, stickout = 40, holder_diameter = 40, "
@@ -265,7 +265,9 @@ def read_toml_tools(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, T
     unit = find_unit(str(content["unit"])) if said else unit
     tables = content.get("tool", {})
     if not isinstance(tables, dict) or not all(isinstance(one, dict) for one in tables.values()):
-        raise InputError(f"its tools are no tables: write a line for each, such as {SHAPE.format(number=1)}.")
+        raise InputError(
+            f"its tools are not tables: write a line for each, such as {SHAPE.format(number=1)}."
+        )
     rows = [(read_tool_number(key, "tool"), fields, f"tool.{key}") for key, fields in tables.items()]
     return collect_tools(rows, unit), said or all("unit" in one for one in tables.values())
 

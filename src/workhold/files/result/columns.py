@@ -190,7 +190,7 @@ class MappedTable(FixtureTable):
 def read_columns(path: Path) -> Result:
     """Return the result of a file in columns; only the head and the fixtures' types are read at once.
 
-    Raises InputError for a file that is no result file, or contradicts itself.
+    Raises InputError for a file that is not a result file, or contradicts itself.
     """
     text, columns = map_archive(path, describe_columns_from_head, HEAD)
     try:

@@ -182,11 +182,11 @@ def read_head_seatings(data: dict[str, Any], path: Path) -> list[Any]:
     Raises
     ------
     InputError
-        When it is no list.
+        When it is not a list.
     """
     seatings = data.get("seatings", [])
     if not isinstance(seatings, list):
-        raise InputError(f"{path}: seatings cannot be used: it is no list.")
+        raise InputError(f"{path}: seatings cannot be used: it is not a list.")
     return seatings
 
 

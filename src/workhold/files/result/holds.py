@@ -157,7 +157,7 @@ def make_jaw_holds(
     """Return the hold of each fixture of a file, in its order.
 
     Raises InputError for fixtures of another kind of toolkit or of an unknown type, and for segments that are
-    no faces.
+    not faces.
     """
     strapped = [part for part in parts if isinstance(part, StrappedSeatPart)]
     jaws = [part for part in parts if isinstance(part, HoldPart)]

@@ -67,7 +67,7 @@ def read_one(path: str | Path, rank: int) -> Result:
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, lists fewer fixtures, or contradicts itself.
+        When the file cannot be read, is not a result file, lists fewer fixtures, or contradicts itself.
     """
     path = Path(path)
     try:

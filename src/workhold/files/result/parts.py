@@ -274,7 +274,7 @@ def check_proof(part: ProofPart, query: Query, path: Path) -> ProofReport:
     """Return the account of the search.
 
     Raises InputError for counts that do not add up, and for an undecided candidate of an unknown type, with a
-    wrong number of pegs, or on a segment that is no face.
+    wrong number of pegs, or on a segment that is not a face.
     """
     accounted = part.discarded_by_bound + part.verified + len(part.undecided)
     if accounted != part.candidates:
@@ -299,7 +299,7 @@ def check_proof(part: ProofPart, query: Query, path: Path) -> ProofReport:
                 )
         if not faces.issuperset(item.segments):
             raise InputError(
-                f"{path}: undecided candidate {number} of the proof names a segment that is no face."
+                f"{path}: undecided candidate {number} of the proof names a segment that is not a face."
             )
     return part.to_proof()
 
@@ -322,7 +322,7 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
     Raises
     ------
     InputError
-        When the file cannot be read, or is no result file, and what ``take`` raises.
+        When the file cannot be read, or is not a result file, and what ``take`` raises.
     """
     with explain_reading_errors(path):
         try:

@@ -90,7 +90,7 @@ def read_result(path: str | Path) -> Result:
     Raises
     ------
     InputError
-        When the file cannot be read, is no result file, or contradicts itself.
+        When the file cannot be read, is not a result file, or contradicts itself.
     """
     path = Path(path)
     try:

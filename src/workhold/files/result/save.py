@@ -36,7 +36,9 @@ def save(result: Result, path: str | Path, form: str | None = None, *, overwrite
     refuse_kind(result, Result, "the result", "give a Result, as workhold.design and workhold.open make")
     form = Path(path).suffix[1:].lower() if form is None else form
     if form not in FORMS:
-        raise InputError(f"{path}: {form!r} is no form of a result file: choose one of {', '.join(FORMS)}.")
+        raise InputError(
+            f"{path}: {form!r} is not a form of a result file: choose one of {', '.join(FORMS)}."
+        )
     refuse_other_ending(path, [f".{form}"], f"a result file in the form {form}")
     refuse_output(path, force=overwrite)
     # Each writer is imported when it is needed, because some take long.

@@ -286,7 +286,7 @@ def read_shapes(
     """Return (1) the drawing of Open CASCADE's shapes in mm, and (2) the number of
     the part that still has to be chosen from the drawing.
 
-    The number is None where there are solids, of which one has been chosen already; of flat faces it is
+    The number is None for solids, because one of them has been chosen already; for flat faces it is
     ``part_number``. For the choices see :func:`workhold.files.step.reader.read_step`; for flat faces the axis
     is found when None. Raises InputError for shapes without solids and faces, and for faces that are not
     flat, or not at one height along an axis.

@@ -76,8 +76,8 @@ def choose_usual_height(
     least: float,
     is_prism: bool,
 ) -> UsualPegHeight:
-    """Return the height of pegs to take: the highest one up to twice their diameter that touches enough, or
-    else the lowest one above that does.
+    """Return the height of pegs to take: of those up to twice their diameter the highest that touches enough,
+    or else the lowest of the higher ones that does.
 
     Enough is half of the touchable border of the best height. If no height touches enough, the part's height
     is taken. All lengths are in mm.

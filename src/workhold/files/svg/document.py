@@ -40,7 +40,7 @@ __all__ = [
 SVG_SPACE = "http://www.w3.org/2000/svg"
 LINK = "{http://www.w3.org/1999/xlink}href"
 ANIMATIONS = {"animate", "animateColor", "animateMotion", "animateTransform", "set"}
-# Letters of an attribute or property that is no list of many, and of a namespace.
+# Letters of an attribute or property that is not a list of many, and of a namespace.
 LONGEST, LONGEST_NAME = 10_000, 500
 # Attributes of one element, those that a document type declares, and of these the ones that all elements get.
 MOST_ATTRIBUTES, MOST_DECLARED, MOST_GIVEN = 10_000, 1_000, 20

@@ -9,7 +9,7 @@ Glossary
 --------
 user unit : the plain number in an SVG attribute; its length in mm follows from the root's width, height and
     viewBox.
-physical size : a root width and height in mm, cm or in (or pt, pc). Pixels are no physical size.
+physical size : a root width and height in mm, cm or in (or pt, pc). Pixels are not physical size.
 """
 
 from __future__ import annotations

@@ -202,7 +202,7 @@ def is_opaque(text: str) -> bool | None:
 
     try:
         color = parse_color(text)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):  # of what is no colour
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):  # of what is not a colour
         return None
     return None if color is None or color == CURRENT else color.alpha > 0
 

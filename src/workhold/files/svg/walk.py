@@ -411,7 +411,7 @@ class SvgWalk:
         remarks = []
         if +self.ignored:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted((+self.ignored).items()))
-            remarks.append(f"Ignored elements that are no outline: {kinds}.")
+            remarks.append(f"Ignored elements that are not an outline: {kinds}.")
         if self.painted_over:
             remarks.append(
                 f"Left out {format_count(self.painted_over, 'loop that is', 'loops that are')} painted over by "

@@ -111,14 +111,14 @@ def list_directions(fixture: Fixture) -> tuple[str, ...]:
 
 def find_direction(clamp: Peg) -> str:
     """Return the direction in which a clamp moves when it clamps ("-x" and the
-    like); "" for a peg that is no clamp.
+    like); "" for a peg that is not a clamp.
     """
     direction = clamp.carrier.rpartition(" ")[2]
     return direction if direction in WAYS else ""
 
 
 def is_along_x(clamp: Peg) -> bool:
-    """Return whether a clamp moves along x; False for one along y and for a peg that is no clamp."""
+    """Return whether a clamp moves along x; False for one along y and for a peg that is not a clamp."""
     return find_direction(clamp).endswith("x")
 
 

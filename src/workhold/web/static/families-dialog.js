@@ -11,7 +11,7 @@ import { countText } from "./units.js";
 const POLL = 250;
 const ENDED = ["done", "failed", "cancelled"];
 
-/** The parts read, and files that are no parts, in the order given. @type {{name: string, part: any, reason: string, file: File}[]} */
+/** The parts read, and files that are not parts, in the order given. @type {{name: string, part: any, reason: string, file: File}[]} */
 let entries = [];
 /** The job at the server, or null. @type {string|null} */
 let job = null;

@@ -58,7 +58,7 @@ export function askQuestions(survey, how, answer) {
   byId("file-asks").replaceChildren(...asked);
   any = asked.length > 0;
   showQuestions();
-  // A folded list is no question.
+  // A folded list is not a question.
   return asked.some((each) => !(each instanceof HTMLDetailsElement) || each.open);
 }
 

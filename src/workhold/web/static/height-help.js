@@ -65,7 +65,7 @@ export function otherHeights(heights, used) {
 /**
  * Try other heights of the pegs one after the other, and offer those that hold the part.
  * @param {string} job the search that found nothing
- * @returns {HTMLElement|null} what tells it; null where the part is no solid whose file is at hand
+ * @returns {HTMLElement|null} what tells it; null where the part is not a solid whose file is at hand
  */
 export function heightHelp(job) {
   const { part } = state;

@@ -86,7 +86,7 @@ function fieldNumber(value, unit) {
 }
 
 /**
- * The mm of a field; null when it is empty, NaN when it is no number.
+ * The mm of a field; null when it is empty, NaN when it is not a number.
  * @param {string} text
  */
 export function readLength(text) {
@@ -177,7 +177,7 @@ export function fieldStress(stress) {
 }
 
 /**
- * The MPa of a field; null when it is empty, NaN when it is no number.
+ * The MPa of a field; null when it is empty, NaN when it is not a number.
  * @param {string} text
  */
 export function readStress(text) {
@@ -193,7 +193,7 @@ export function fieldForce(newtons) {
 }
 
 /**
- * The newtons of a field; null when it is empty, NaN when it is no number.
+ * The newtons of a field; null when it is empty, NaN when it is not a number.
  * @param {string} text
  */
 export function readForce(text) {
@@ -209,7 +209,7 @@ export function fieldMoment(moment) {
 }
 
 /**
- * The N mm of a field; null when it is empty, NaN when it is no number.
+ * The N mm of a field; null when it is empty, NaN when it is not a number.
  * @param {string} text
  */
 export function readMoment(text) {

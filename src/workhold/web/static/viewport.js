@@ -187,7 +187,7 @@ export class Viewport {
     }
     if (this.pointers.size === 0 && this.panning) {
       this.panning = false;
-      // A drag is no click on what lies under it.
+      // A drag is not a click on what lies under it.
       const stop = (click) => click.stopPropagation();
       this.svg.addEventListener("click", stop, { capture: true, once: true });
       setTimeout(() => this.svg.removeEventListener("click", stop, { capture: true }), 0);
