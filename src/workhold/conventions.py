@@ -96,7 +96,7 @@ CURVATURE_JUMP = 0.01
 SHORTEST = 1e-7
 # mm. Points nearer than this touch: the rounding of a drawing with seven digits.
 TOUCHING = 1e-7
-# A share of the extent. Tangent neighbours meet again so near to their joint; that is not a crossing.
+# A share of the extent. Tangent neighbours meet again so near to their joint; that is no crossing.
 MEETS_AGAIN = 1e-5
 # No unit and mm. Neighbours whose directions agree so (sum of the components' differences), and whose lines,
 # centres and radii do, continue the same line or circle: as PARALLEL and TOUCHING, since a face is what a peg
@@ -264,7 +264,7 @@ WEAK_CLOSURE = 0.02
 STRONG_PEG = 3.0
 # Times the sum of the tolerances of peg and face: with a larger location error the contacts guide badly.
 LARGE_LOCATION_ERROR = 5.0
-# The same, and the closure margin, past which it is not a fixture for a workshop: the part lies anywhere, or
+# The same, and the closure margin, past which it is no fixture for a workshop: the part lies anywhere, or
 # one peg holds less than a hundredth of the even share.
 UNFIT_LOCATION_ERROR = 50.0
 UNFIT_CLOSURE = 0.0025

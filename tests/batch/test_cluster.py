@@ -109,7 +109,7 @@ def test_a_worker_puts_records_where_they_belong(tmp_path: Path, monkeypatch: py
 def test_words_that_are_no_address_are_refused(address: str) -> None:
     from workhold.batch.cluster import ClusterWorkers
 
-    with pytest.raises(InputError, match="is no address of a scheduler"):
+    with pytest.raises(InputError, match="is not an address of a scheduler"):
         ClusterWorkers(Onlooker(), address).__enter__()
 
 

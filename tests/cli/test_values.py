@@ -62,7 +62,7 @@ def test_fractions_have_signs(run: Any, searched: dict[str, Any]) -> None:
     """Of the whole of them; a division by zero is not a number."""
     assert run(*VISE, "--angle=-1-1/2..+1 1/4", "--angle=-1/2").exit_code == 0
     assert searched["asked"].restrictions.angles == ((-1.5, 1.25), (-0.5, -0.5))
-    assert "is no range of angles" in run(*VISE, "--angle", "1/0").stderr
+    assert "is not a range of angles" in run(*VISE, "--angle", "1/0").stderr
 
 
 def test_a_positive_number_is_above_zero_and_finite(run: Any) -> None:

@@ -344,7 +344,7 @@ def test_a_disc_and_faces_that_are_avoided_leave_no_seat():
     [
         ({"seating": 5}, "seating is not looked at with straps"),
         ({"loads": [LOAD], "thickness": None}, "how thick the part is decides what straps hold"),
-        ({"rank_by": "closure-margin"}, "is no figure of straps to rank by"),
+        ({"rank_by": "closure-margin"}, "is not a figure of straps to rank by"),
     ],
 )
 def test_what_is_not_done_is_refused_in_a_sentence(asked, words):

@@ -130,7 +130,7 @@ def test_what_is_undecided_need_not_be_a_solution(
     entry = UndecidedCandidate("II", faces, columns, rows, theta, NEARLY_DOUBLE, reach)
     assert faults_of([entry], query) == []
     known = attrs.evolve(entry, reach_deg=1e-8)
-    assert "is no place where" in faults_of([known], query)[0]
+    assert "is not a place where" in faults_of([known], query)[0]
 
 
 @pytest.mark.parametrize(("farther", "real"), [(0.02, True), (0.04, False)])
@@ -152,7 +152,7 @@ def test_pegs_at_both_ends_may_miss_by_what_they_move_against_each_other(farther
         ({"rows": (0, 0, 0, 0)}, "has not 3 faces and holes"),
         ({"reason": GIVEN_UP}, "has not 4 faces and holes"),
         ({"columns": (1, 1, 1)}, "does not count its holes from the first peg"),
-        ({"theta_deg": 17.0}, "is no place where its pegs touch their faces"),
+        ({"theta_deg": 17.0}, "is not a place where its pegs touch their faces"),
     ],
 )
 def test_three_locators_alone_are_looked_at_likewise(changes: dict[str, Any], words: str) -> None:

@@ -118,4 +118,4 @@ def test_origins_are_written_as_browsers_send_them(given: str, written: str) -> 
 )
 def test_what_is_no_origin_is_refused(given: str) -> None:
     outcome = CliRunner().invoke(app, ["serve", "--allow-origin", given, "--port", "0"])
-    assert outcome.exit_code == 2 and "is no origin" in " ".join(outcome.stderr.split())
+    assert outcome.exit_code == 2 and "is not an origin" in " ".join(outcome.stderr.split())

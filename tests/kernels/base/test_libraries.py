@@ -57,7 +57,7 @@ def test_a_library_of_other_sources_is_not_used(elsewhere: Path, monkeypatch: py
 def test_nothing_to_build_with_is_one_sentence(elsewhere: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(libraries, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"no numba to compile them with; install workhold\[numba\]\."):
-        libraries.load_entry("base", "is_inside")
+        libraries.load_entry("base", "measure_winding")
 
 
 def test_a_kernel_that_cannot_be_compiled_is_told(elsewhere: Path) -> None:
@@ -73,7 +73,7 @@ def test_a_library_is_built_in_a_process_that_reports(elsewhere: Path) -> None:
     libraries.build_libraries(("base",), report=told.append)
     assert told == sorted(told) and told[-1] == 1.0
     assert [path.name for path in elsewhere.iterdir()] == [libraries.make_library_name("base", "so")]
-    assert callable(libraries.load_entry("base", "is_inside"))
+    assert callable(libraries.load_entry("base", "measure_winding"))
 
 
 @pytest.mark.thorough
@@ -81,7 +81,7 @@ def test_without_a_linker_an_object_file_is_loaded(elsewhere: Path, monkeypatch:
     monkeypatch.setenv("PATH", str(elsewhere / "nothing"))
     libraries.build_libraries(("base",))
     assert [path.name for path in elsewhere.iterdir()] == [libraries.make_library_name("base", "o")]
-    assert callable(libraries.load_entry("base", "is_inside"))
+    assert callable(libraries.load_entry("base", "measure_winding"))
 
 
 def test_a_build_that_is_cancelled_leaves_nothing(elsewhere: Path) -> None:
@@ -156,7 +156,7 @@ def test_the_cache_is_named_by_the_environment(monkeypatch: pytest.MonkeyPatch, 
 def test_a_damaged_library_of_the_package_is_one_sentence(elsewhere: Path) -> None:
     fill(libraries.KERNELS, libraries.make_library_name("base", "so"), b"no library")
     with pytest.raises(InputError, match="library of compiled kernels is damaged; install again"):
-        libraries.load_entry("base", "is_inside")
+        libraries.load_entry("base", "measure_winding")
 
 
 def test_a_damaged_library_of_the_cache_is_built_anew(
@@ -166,5 +166,5 @@ def test_a_damaged_library_of_the_cache_is_built_anew(
     name = libraries.make_library_name("base", "so")
     fill(elsewhere, name, b"")
     monkeypatch.setattr(libraries, "build_library", lambda room: WHOLE)
-    assert callable(libraries.load_entry("base", "is_inside"))
+    assert callable(libraries.load_entry("base", "measure_winding"))
     assert not (elsewhere / name).exists()
