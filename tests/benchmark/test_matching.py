@@ -179,7 +179,7 @@ def test_csv_and_json_say_the_same(tmp_path: Path, content: Content) -> None:
             "'toe' is not known",
         ),
         ('{"fixtures": [3]}', "fixture 1"),
-        ('{"set": 3, "fixtures": []}', "no name"),
+        ('{"set": 3, "fixtures": []}', "not a name"),
     ],
 )
 def test_a_file_that_is_none_is_refused_in_a_sentence(tmp_path: Path, text: str, words: str) -> None:

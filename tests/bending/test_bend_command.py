@@ -98,7 +98,7 @@ def test_a_table_says_it_in_words(result_file: str, monkeypatch: pytest.MonkeyPa
     [
         ([], "give its thickness"),
         (["--thickness", "8", "--material", "cheese"], "'cheese' is not known"),
-        (["--thickness", "8", "--rank-by", "tilt"], "no figure of bending to rank by"),
+        (["--thickness", "8", "--rank-by", "tilt"], "not a figure of bending to rank by"),
         (["--thickness", "8", "--cut", "top,99"], "face 99 of plate does not exist"),
         (["1", "--best", "3", "--thickness", "8"], "leave one of them out"),
         (["--thickness", "8", "--glb", "x.stl"], "let the name end in .glb"),

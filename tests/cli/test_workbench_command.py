@@ -51,7 +51,7 @@ def test_an_order_of_another_version_is_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(errors.InputError, match="install the add-on that came with workhold"):
         WorkbenchOrder.read(tmp_path)
     (tmp_path / "order.json").write_text(json.dumps({"part": "part.step", "colour": "red"}))
-    with pytest.raises(errors.InputError, match="no order of this version"):
+    with pytest.raises(errors.InputError, match="not an order of this version"):
         WorkbenchOrder.read(tmp_path)
     (tmp_path / "order.json").write_text(json.dumps({"part": "part.step", "best": 3}))
     order = WorkbenchOrder.read(tmp_path)

@@ -518,9 +518,9 @@ def test_closure_margin_and_ratio_of_a_square_seat() -> None:
     [
         ({"clamps": 3}, "a plate has 1 or 2"),
         ({"clamps": 1, "directions": [("-x", "-y")]}, "there is one clamp"),
-        ({"clamps": 2, "directions": [("-x",)]}, "no pair of directions"),
+        ({"clamps": 2, "directions": [("-x",)]}, "not a pair of directions"),
         ({"clamps": 2, "directions": [("-x", "up")]}, "a clamp cannot move in the direction"),
-        ({"clamps": 2, "directions": 5}, "no pair of directions"),
+        ({"clamps": 2, "directions": 5}, "not a pair of directions"),
         ({"clamps": 2, "directions": [[["-x"], "-y"]]}, "a clamp cannot move in the direction"),
     ],
 )

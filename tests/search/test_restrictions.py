@@ -236,7 +236,7 @@ def test_restrictions_that_leave_nothing_say_so() -> None:
         polygon_zone([(0, 0), (1, 1)])
     with pytest.raises(InputError, match="cross"):
         polygon_zone([(0, 0), (10, 10), (10, 0), (0, 8)])
-    with pytest.raises(InputError, match="no circle"):
+    with pytest.raises(InputError, match="not a circle"):
         circle_zone(0, 0, 0)
 
 

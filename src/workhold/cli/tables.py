@@ -92,7 +92,7 @@ def explain_first_fixture(result: Result, unit: Unit) -> str:
 
 def count_unfit_in_words(unfit: int, toolkit: Toolkit | None = None) -> str:
     """Return a sentence on how many fixtures are hidden as unfit for a workshop, why, and how to see them."""
-    are = "is no fixture" if unfit == 1 else "are no fixtures"
+    are = "is not a fixture" if unfit == 1 else "are not fixtures"
     why = "the part may lie anywhere, or one peg hardly holds"
     if toolkit is not None and toolkit.flat_jaws is not None:
         why = "a jaw touches a corner alone"

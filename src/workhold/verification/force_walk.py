@@ -281,7 +281,7 @@ def find_entry_fault(said: Any) -> str:
     numbers = [said["jaw"]["force"], said["contact"]["force"], said["jaw_force"]]
     numbers += [] if said["room"] is None else [said["room"]]
     if any(isinstance(one, bool) or not isinstance(one, int | float) for one in numbers):
-        return "are no numbers"
+        return "are not numbers"
     return ""
 
 

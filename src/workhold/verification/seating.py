@@ -497,9 +497,9 @@ class StatedSeating:
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
             yield "does not have a force for each contact"
         elif seat["kind"] in STRICT and not self.are_forces_balanced(contacts, place, seat["forces"]):
-            yield "is no equilibrium of its forces"
+            yield "is not an equilibrium of its forces"
         elif seat["kind"] == "loose" and not can_balance(self.make_wrenches(contacts, place), BALANCED):
-            yield "is no equilibrium of its contacts"
+            yield "is not an equilibrium of its contacts"
 
     def is_own(self, contact: Mapping[str, int]) -> bool:
         """Return whether a contact of the fixture's own seat is also a contact of the fixture.

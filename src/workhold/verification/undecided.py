@@ -253,7 +253,7 @@ def find_place_fault(entry: UndecidedCandidate, query: Query, outline: BallOutli
         pegs.append([TouchingPeg(*one, loose) for one in zip(sides, radii, turns, columns, strict=True)])
     held = [find_first_peg_places(group) if len(group) > 1 else None for group in pegs]
     if any(places is not None and not places for places in held):
-        return "is no place where its pegs touch their faces"
+        return "is not a place where its pegs touch their faces"
     standing = held[0]
     if is_of_chords(entry) or len(held) == 1 or standing is None:
         return ""
@@ -273,8 +273,8 @@ def find_place_fault(entry: UndecidedCandidate, query: Query, outline: BallOutli
         if not (abs(apart[1] - up) > loose or (ahead is not None and apart[0] < ahead - loose)):
             return ""
     if gap is None:
-        return "is no place where the clamp's tip is on its line"
-    return "is no place where the pegs of both jaws stand in their rows, the smallest gap apart"
+        return "is not a place where the clamp's tip is on its line"
+    return "is not a place where the pegs of both jaws stand in their rows, the smallest gap apart"
 
 
 def bound_outline_size(query: Query) -> float:

@@ -129,7 +129,7 @@ def test_a_line_is_refused_by_its_number(tmp_path: Path, line: str) -> None:
         ("G21 G90\nT1 M6\nG0 X0 Y0 Z0\nG55\nX5\n", "line 5: G55 comes after moves in G54"),
         ("G21\nT1 M6\nG90 G0 X0 Y0 Z9\nG91 G99 G81 X1 R-2 Z-9\nX1\n", "line 5: .* increments"),
         ("G21 G90\nT1 M6\nG0 X0 Y0 Z9\nG81 X1 R2 Z-9\nG82 X2\n", "line 5: .* no R"),
-        ("a\0b", "no text"),
+        ("a\0b", "not text"),
     ],
 )
 def test_what_is_not_told_is_refused(tmp_path: Path, text: str, words: str) -> None:
