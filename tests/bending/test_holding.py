@@ -392,7 +392,9 @@ def test_what_is_not_known_is_asked_for_in_a_sentence() -> None:
     bare = workhold.design(part, TOOLKITS["vise"], best=1)[0]
     with pytest.raises(InputError, match="depends on how thick it is: give its thickness"):
         bare.bending()
-    with pytest.raises(InputError, match="not a figure of bending to rank by: choose clamp-distortion or give"):
+    with pytest.raises(
+        InputError, match="not a figure of bending to rank by: choose clamp-distortion or give"
+    ):
         find_bending_figure("tilt")
 
 

@@ -473,7 +473,8 @@ def test_undecided_entries_are_real_places(result: Result) -> None:
         entry = as_undecided(fixture)
         assert faults(entry) == []
         assert (
-            "is not a place where" in faults(attrs.evolve(entry, theta_deg=(entry.theta_deg + 1e-3) % 360.0))[0]
+            "is not a place where"
+            in faults(attrs.evolve(entry, theta_deg=(entry.theta_deg + 1e-3) % 360.0))[0]
         )
         # Two locators on one face, or on parallel ones, may slide together, and the third one then fits in other holes, too.
         square = abs((fixture.pose.theta_deg + 45.0) % 90.0 - 45.0) < 1e-6
