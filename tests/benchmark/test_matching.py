@@ -16,6 +16,7 @@ from workhold.benchmark.making import compare_entry
 from workhold.benchmark.matching import (
     Comparison,
     ListedPlaces,
+    PlaceIndex,
     Submission,
     compare_places,
     read_entered_fixture,
@@ -143,6 +144,20 @@ def test_one_stands_for_its_images_where_that_is_asked(content: Content) -> None
         whole = compare("triangle-vise", several, content, symmetric=True)
         assert whole.share == 1.0
         assert whole.repeated == again
+
+
+@pytest.mark.thorough
+def test_images_of_what_is_not_listed_are_no_repetitions(content: Content) -> None:
+    """A complete list may hold one fixture of those that rotations make equal: its two images differ."""
+    theirs = content("triangle-vise")["fixtures"]
+    part = make_set_query(find_set("triangle-vise")).workpiece
+    every = ListedPlaces(part, [read_entered_fixture(one) for one in theirs])
+    listed = PlaceIndex.from_places(every.places, TOLERANCE)
+    images = [listed.find_nearest(place) for place in every.list_images(every.places[0])]
+    alone = ListedPlaces(part, [read_entered_fixture(theirs[0])])
+    others = ListedPlaces(part, [read_entered_fixture(theirs[number]) for number in images if number])
+    outcome = compare_places(alone, others, TOLERANCE, symmetric=True)
+    assert (len(others.places), outcome.found, outcome.extra, outcome.repeated) == (2, (0,), (), ())
 
 
 def test_csv_and_json_say_the_same(tmp_path: Path, content: Content) -> None:

@@ -83,6 +83,13 @@ def test_a_millionth_of_a_force_or_a_figure(verified: Verify, key: str, change: 
     assert verified(edit).refuted == 12
 
 
+@pytest.mark.parametrize("key", ["location_error", "penalty", "closure_margin"])
+def test_a_figure_left_out(verified: Verify, key: str) -> None:
+    """A fixture that lacks a figure is refuted, also where the order of the list depends on the figure."""
+    outcome = verified(lambda data: data["fixtures"][1]["quality"].pop(key))
+    assert (outcome.proven, outcome.refuted) == (11, 1)
+
+
 @pytest.fixture(scope="module")
 def on_a_jaw(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """The file of fixtures on a flat jaw that has ends, whose heights are known."""

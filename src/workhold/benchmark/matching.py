@@ -316,7 +316,7 @@ def compare_places(
     the part onto itself.
     """
     index = PlaceIndex.from_places(complete.places, tolerance)
-    hits, met = set[int](), set[int | None]()
+    hits, met = set[int](), set[int]()
     extra, repeated = list[int](), list[int]()
     for number, place in enumerate(theirs.places):
         own = index.find_nearest(place)
@@ -327,7 +327,8 @@ def compare_places(
         elif own in met:
             repeated.append(number)
         hits |= known
-        met.add(own)
+        if own is not None:
+            met.add(own)
     return Comparison(
         listed=len(complete.places),
         theirs=len(theirs.places),

@@ -161,15 +161,11 @@ def make_rising_progress(progress: Progress) -> Progress:
     return report
 
 
-def add_seatings(result: Result, work: SeatingWork, listed: int | None = None) -> Result:
+def add_seatings(result: Result, work: SeatingWork) -> Result:
     """Return a result with the seatings of its first fixtures added, and its fixtures ordered anew by them.
 
     ``result`` answers the query without seating. Fixtures that break rules of seating are left out. If the
     query has such rules, fixtures whose seating was not computed are left out, too.
-
-    Parameters
-    ----------
-    listed : not used.
     """
     query, count = work.query, min(work.query.seating or 0, len(result))
     seatings = find_seatings(result.slice_rows(slice(0, count)), work)
@@ -274,7 +270,7 @@ class SeatedSink:
             return
         rest = iter(tables)
         held = list(take_tables(rest, self.work.query.seating or 0)) or [result.table]
-        made = add_seatings(evolve(result, table=FixtureTable.concatenate(held)), self.work, listed)
+        made = add_seatings(evolve(result, table=FixtureTable.concatenate(held)), self.work)
         further = () if self.work.query.has_seating_rules else rest
         count = len(made) + (0 if self.work.query.has_seating_rules else listed - sum(map(len, held)))
         self.sink.receive(made, count, chain([made.table], further))

@@ -37,6 +37,8 @@ __all__ = ["EffectiveJudge", "classify_angle"]
 Range = tuple[float, float]
 # Files have twelve digits, and an error is rounded to nine decimals.
 DIGITS, BILLION, HALF = 2e-12, 1e9, 1e-3
+# A greater effective error in billionths of a mm than any fixture has.
+MOST_ERROR = 4 * 10**17
 
 
 @frozen(eq=False)
@@ -56,10 +58,12 @@ class EffectiveJudge:
     def compute_effective_error(self, fixture: Fixture) -> tuple[int, int]:
         """Return (least, greatest) possible effective error in whole billionths of a mm.
 
-        It is the written location error times the factor of each rule that applies. The fixture must state
-        its location error.
+        It is the written location error times the factor of each rule that applies. Where the fixture states
+        no location error, it may be anything up to ``MOST_ERROR``.
         """
-        written = fixture.quality.get("location_error", inf)
+        written = fixture.quality.get("location_error")
+        if written is None:
+            return 0, MOST_ERROR
         low, high = written * (1 - DIGITS), written * (1 + DIGITS)
         for times, (surely, perhaps) in self.list_factors(fixture):
             low, high = low * (times if surely else 1.0), high * (times if perhaps else 1.0)

@@ -137,16 +137,6 @@ class EdgeCurve:
             *(make_point3(self.points[k])[:2] for k in at_points),
         ]
 
-    def find_turning_points(self) -> list[Point]:
-        """Return the points (x, y) strictly within the edge
-        at which its height has a local maximum or minimum.
-        """
-        rises = np.diff(self.points[:, 2])
-        # An extreme found beside a point of its own makes a step that neither rises nor falls.
-        steps = np.flatnonzero(np.abs(rises) > ONE_HEIGHT)
-        turns = steps[1:][rises[steps[1:]] * rises[steps[:-1]] < 0]
-        return [(float(self.points[k, 0]), float(self.points[k, 1])) for k in turns]
-
 
 def list_edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     """Return the edges of all faces, in the order of the faces. An edge
