@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from workhold import archive
-from workhold.archive import ArchiveWriter, ColumnFormat, is_archive, map_archive
+from workhold.archive import ArchiveWriter, ColumnFormat, is_archive, map_archive, release_mapped_pages
 from workhold.errors import InputError
 
 COLUMNS = {"a": ColumnFormat("<f8", (2,)), "b": ColumnFormat("|i1"), "c": ColumnFormat("<i4", (4,))}
@@ -190,3 +190,23 @@ def test_members_that_overlap_are_refused(tmp_path: Path) -> None:
         file._didModify = True  # type: ignore[attr-defined]
     with pytest.raises(InputError, match="its members overlap"):
         map_archive(path, {name[0]: column for name, column in names.items()}, "head.json")
+
+
+STATUS = Path("/proc/self/status")
+
+
+@pytest.mark.skipif(not STATUS.exists(), reason="only Linux says what of a file is in memory")
+def test_parts_read_before_leave_the_memory(tmp_path: Path) -> None:
+    """A column that was read takes no memory once it is released, and can be read again."""
+
+    def measure_mapped_memory() -> int:
+        """The bytes of mapped files that are in memory."""
+        return 1024 * int(STATUS.read_text().split("RssFile:")[1].split()[0])
+
+    rows = 1 << 20
+    column = map_archive(written(tmp_path / "a.npz", rows, rows), COLUMNS, "head.json")[1]["a"]
+    total, before = float(column.sum()), measure_mapped_memory()
+    release_mapped_pages(column)
+    assert measure_mapped_memory() < before - column.nbytes // 2
+    release_mapped_pages(np.zeros(3))
+    assert float(column.sum()) == total

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["ArchiveWriter", "ColumnFormat", "Columns", "is_archive", "map_archive"]
+__all__ = ["ArchiveWriter", "ColumnFormat", "Columns", "is_archive", "map_archive", "release_mapped_pages"]
 
 FIRST_BYTES = b"PK\x03\x04"
 ALIGNMENT = 64
@@ -335,6 +335,20 @@ def map_archive(
     if len({len(array) for array in arrays.values()}) > 1:
         raise InputError(f"{path} is not a result file: its columns do not have the same number of rows.")
     return text, arrays
+
+
+def release_mapped_pages(column: NDArray[Any]) -> None:
+    """Give back the memory that holds parts of a mapped archive, given one of its columns.
+
+    What is accessed next is read from the disk again. Where the system cannot do this, or the column is not
+    mapped, nothing happens.
+    """
+    base: Any = column
+    while isinstance(base, np.ndarray):
+        base = base.base
+    base = base.obj if isinstance(base, memoryview) else base
+    if isinstance(base, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED"):
+        base.madvise(mmap.MADV_DONTNEED)
 
 
 def refuse_inconsistent_members(

@@ -18,7 +18,7 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.archive import ArchiveWriter, map_archive
+from workhold.archive import ArchiveWriter, map_archive, release_mapped_pages
 from workhold.errors import InputError
 from workhold.files.atomic import explain_system_errors, write_binary_file
 from workhold.files.replacing import refuse_other_ending, refuse_output
@@ -180,7 +180,12 @@ class MappedTable(FixtureTable):
     path: Path = field(kw_only=True)
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
-        """Return the fixtures at some rows; raise InputError if one is faulty."""
+        """Return the fixtures at some rows; raise InputError if one is faulty.
+
+        Parts of the file read for earlier calls leave the memory, so that a large file read in blocks takes
+        little of it.
+        """
+        release_mapped_pages(self.arrangement)
         table = super().take(order)
         places = range(len(self))[order] if isinstance(order, slice) else np.arange(len(self))[order]
         refuse_faulty(table, self.query, self.path, places)
