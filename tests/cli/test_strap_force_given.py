@@ -36,7 +36,7 @@ def test_words_of_command_and_sheet(run, tmp_path):
     sheet = tmp_path / "sheet.svg"
     assert run("sheet", path, "1", "-o", str(sheet)).exit_code == 0
     text = sheet.read_text()
-    assert "With 1000 N at each tip" in text and "How often each is held" in text
+    assert "With 1000 N at each tip" in text and "How many times each load is held" in text
     strong = held(jaw_force=5000.0)
     workhold.save(strong, path, overwrite=True)
     assert "5000 N are to be at each tip, and a strap is rated for 4000 N" in " ".join(

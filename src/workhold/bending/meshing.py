@@ -80,8 +80,8 @@ def make_mesh(part: PartToBend) -> PartMesh:
         raise InputError("the part has no volume to mesh: repair its solid in the CAD program.")
     if mesh.ne > MOST_TETRAHEDRA:
         raise InputError(
-            f"the part takes {mesh.ne:,} elements, and {MOST_TETRAHEDRA:,} are reckoned with at most: leave small fillets "
-            "and holes out of the model; a sheet much wider than it is thick is not bent at all."
+            f"the part needs {mesh.ne:,} elements, and the limit is {MOST_TETRAHEDRA:,}: leave small fillets "
+            "and holes out of the model; sheets much wider than they are thick cannot be computed."
         )
     return curve_mesh(mesh)
 

@@ -298,5 +298,5 @@ def tabulate(
         "",
         table,
         f"{stated}{first.elements:,} elements. What clamping bends springs back; dents under contacts do not count. "
-        "± is what the mesh is unsure of.",
+        "± is the error of the mesh.",
     ]

@@ -182,7 +182,8 @@ def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
         column.write_fact(name, words, bold=True)
     if asked.given_force is not None and hold.safety_each:
         column.write_paragraph(
-            f"How often each is held: with {unit.format_force(asked.given_force)} at each tip.", NOTE
+            f"How many times each load is held: with {unit.format_force(asked.given_force)} at each tip.",
+            NOTE,
         )
     if len(pairs) > MOST_LOADS:
         column.write_paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)

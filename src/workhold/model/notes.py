@@ -209,7 +209,7 @@ class AskedFor(Note):
     @property
     def words(self) -> str:
         """Sentence to print."""
-        return f"So it is with what was asked for: {join_words(self.rules)}."
+        return f"This holds with what was asked for: {join_words(self.rules)}."
 
 
 @frozen

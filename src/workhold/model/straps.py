@@ -49,8 +49,14 @@ STRAP_FIGURES = (
         "The force of each strap at its tip that the worst load asks for, with the safety factor.",
         0,
     ),
-    Figure("slip_reserve", "", True, "What a strap is rated for, over the force needed.", 2),
-    Figure("safety_reached", "", True, "How many times the loads the force given for each strap holds.", 2),
+    Figure("slip_reserve", "", True, "The rated force of a strap divided by the force needed.", 2),
+    Figure(
+        "safety_reached",
+        "",
+        True,
+        "How many times as large the loads may be before the straps fail.",
+        2,
+    ),
 )
 # What seats are ranked by, those that no hand's push seats last.
 STRAP_RANKING = ("square", "clamp_needed", "location_error", "edge_distance")
