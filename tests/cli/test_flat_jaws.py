@@ -77,3 +77,40 @@ def test_a_program_s_forces_are_told_with_their_line(run: Any, tmp_path: Path) -
     times = [f"{floor(2 * 9000 / need * 100) / 100:.2f}" for need in hold.forces_needed]
     assert "times at 9000 N" in shown and times[0] in shown
     assert f"Closed with 9000 N, its tools may press {times[1]} times as hard." in shown
+
+
+def test_raw_block_goes_from_the_command_to_the_sheet(run: Any, tmp_path: Any) -> None:
+    """Its margins may carry a unit; show, verify and the sheet read the block back."""
+    out, sheet = str(tmp_path / "raw.json"), str(tmp_path / "raw.svg")
+    words = (
+        "--toolkit",
+        "plain-vise-6-inch",
+        "--thickness",
+        "12",
+        "--stop",
+        "left",
+        "--raw",
+        "side=3,bottom=0.5in",
+    )
+    outcome = run("design", RECTANGLE, *words, "--out", out, "--sheet", sheet)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "the jaws stay below the part" in outcome.stdout
+    shown = run("show", out, "1").stdout
+    assert "nothing on top, 12.7 mm below" in shown and "Put the raw block in" in shown
+    assert "0 refuted, 0 undecided" in run("verify", out).stdout
+    text = Path(sheet).read_text()
+    for said in ("Raw block", "x right of the work stop", "Z0 above the parallels", 'class="finished"'):
+        assert said in text
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--raw", "3"), "is no raw block: say each once, as in side=3,top=2,bottom=5"),
+        (("--raw", "side=3,side=2"), "is no raw block: say each once"),
+        (("--raw", "side=-3"), "is negative: give 0 or more"),
+    ],
+)
+def test_raw_block_that_cannot_be_read_is_refused(run: Any, words: tuple[str, ...], message: str) -> None:
+    outcome = run("design", RECTANGLE, "--toolkit", "plain-vise-6-inch", "--thickness", "12", *words)
+    assert outcome.exit_code == 2 and message in outcome.stderr

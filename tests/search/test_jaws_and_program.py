@@ -233,6 +233,19 @@ def test_parallels_stand_apart_where_a_drill_comes_through():
     assert as_drawn(high)[None].hold.parallel_offsets == (0.0, 0.0)
 
 
+def test_holes_that_just_leave_a_whole_millimetre_take_it():
+    """The rim at 8 mm, the clearance of 1 mm: 9 mm, not 10."""
+    found = held(rectangle(70, 40), vise(parallels=[32]), thickness=THICKNESS, program=drilled((20.0, 6.0)))
+    assert as_drawn(found)[None].hold.parallel_offsets == (9.0, 0.0)
+    assert verify(found).holds
+
+
+def test_parallels_beside_the_jaws_come_first_of_what_is_equal():
+    """Of a square, the two sides on which no hole is above a parallel."""
+    found = held(rectangle(60, 60), vise(parallels=[32]), thickness=THICKNESS, program=drilled((30.0, 6.2)))
+    assert [one.hold.has_moved_parallels for one in found] == [False, False, True, True]
+
+
 def test_thin_parallels_may_stay_where_thick_ones_cannot_stand():
     """A row of holes across the opening leaves 4 mm between them and their clearance, and 5 beside the jaws."""
     program = drilled(*((35.0, y) for y in (8.0, 18.0, 28.0)))
@@ -280,6 +293,14 @@ def test_stop_is_as_wide_as_it_is(y, is_clear):
     program = program_of([(1, True, (-12.0, y, 4.0), (-4.0, y, 4.0), 0.0)])
     toolkit = vise(parallels=[32], stop="left", stop_width=12)
     found = held(rectangle(70, 40), toolkit, thickness=THICKNESS, program=program)
+    assert ("left" in as_drawn(found)) == is_clear
+
+
+@pytest.mark.parametrize(("z", "is_clear"), [(12.0, False), (12.01, True)])
+def test_stop_is_no_higher_than_the_part(z, is_clear):
+    """The part is 12 mm thick between jaws 24 mm above its lower side."""
+    program = program_of([(1, True, (-12.0, 20.0, z), (-4.0, 20.0, z), 0.0)])
+    found = held(rectangle(70, 40), vise(stop="left", parallels=[20]), thickness=THICKNESS, program=program)
     assert ("left" in as_drawn(found)) == is_clear
 
 

@@ -60,3 +60,23 @@ def test_presets_and_their_fields_are_there(server: RunningServer) -> None:
     assert {"plain-vise-4-inch", "plain-vise-6-inch", "plain-vise-5-inch", "plain-vise-toolmaker"} <= set(
         names
     )
+
+
+def test_raw_block_is_asked_for_and_described(server: RunningServer) -> None:
+    asked = {**ASKED, "raw": {"side": 3, "top": 2, "bottom": 5}}
+    job = server.done(asked)
+    told = server.client.get(f"{job}/fixtures/1").json()
+    assert told["hold"]["steps"][0].startswith("Raw block of 106 × 66 × 32 mm.")
+    assert 'class="finished"' in str(told["picture"])
+    wrong = server.client.post("/api/v1/jobs", json={**ASKED, "raw": {"left": 3}})
+    assert wrong.status_code == 400 and "a raw block has no 'left'" in wrong.text
+
+
+def test_drill_that_comes_through_is_told_with_what_it_passes(server: RunningServer) -> None:
+    text = "G21 G90\nT1 M6\nS2000 M3\nG0 X20. Y6. Z10.\nG81 X20. Y6. Z-28. R2. F200\nG80\nM30\n"
+    program = {"name": "drill.nc", "text": text, "tools": {"name": "t.csv", "text": "tool,diameter\n1,6\n"}}
+    job = server.done({**ASKED, "program": {**program, "thickness": 25}})
+    told = server.client.get(f"{job}/fixtures/1").json()
+    assert told["hold"]["parallel_offsets"] == [10.0, 0.0]
+    assert "one 10 mm from the fixed jaw" in told["hold"]["steps"][0]
+    assert told["vise_clearance"][0].startswith("T1 comes 3.000 mm below the part in line 5")

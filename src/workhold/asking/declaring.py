@@ -37,11 +37,11 @@ __all__ = [
 # distance with or without half its width; the heights between which something touches; a place; a point; a
 # force in N; a power in kW; a plain number; a stress in MPa; one of several words; whether something is so; text;
 # a day; and lists of names of holes, of directions or pairs of them, of rings about points, of numbers of faces,
-# of zones, of ranges of angles, of names, of lengths, and of coefficients by name.
+# of zones, of ranges of angles, of names, of lengths, and of coefficients and of margins by name.
 Form = Literal[
     "count", "length", "pitch", "span", "flat", "heights", "place", "point", "force", "power", "number",
     "stress", "choice", "flag", "text", "day", "holes", "directions", "rings", "faces", "zones", "angles", "names",
-    "lengths", "coefficients",
+    "lengths", "coefficients", "margins",
 ]  # fmt: skip
 # What stands for a value of a form in the help of the command.
 METAVARS: Mapping[Form, str] = {
@@ -68,6 +68,7 @@ METAVARS: Mapping[Form, str] = {
     "names": "NAME",
     "lengths": "LENGTHS",
     "coefficients": "NAME=NUMBER",
+    "margins": "side=S,top=T,bottom=B",
 }
 Least = Literal["above 0", "0", "any"]
 # What a number must be, by the least that it may be.

@@ -123,6 +123,16 @@ class SearchQuestion:
         least="0",
         typed="Weight of the part, in N or with its unit, which helps to hold it where straps press it down.",
     )
+    raw: Any = declare(
+        "margins",
+        "For a first operation: by how much the raw block that the jaws touch is larger than the finished part, on each "
+        "side, above it and below it; the part itself is held if not given.",
+        PageLabel("Raw block: side, top, bottom", "none"),
+        section=LOADS,
+        called="raw block",
+        typed="For a first operation: by how much the raw block that the jaws touch is larger than the finished part, on "
+        "each side, above it and below it, such as side=3,top=2,bottom=5; the part itself is held if not given.",
+    )
     strapped: int | None = declare(
         "count",
         "For a plate with straps: number of the best seats for which straps are sought; 20 if not given.",

@@ -224,6 +224,27 @@ def read_coefficients(option_name: str, text: str) -> dict[str, float]:
     return out
 
 
+def read_margins(option_name: str, text: str, unit: Unit) -> dict[str, float]:
+    """Return lengths in mm by name from words such as ``side=3,top=2,bottom=5``.
+
+    Examples
+    --------
+    >>> from workhold.units import MILLIMETRE
+    >>> read_margins("--raw", "side=3,top=0,bottom=0.2in", MILLIMETRE)
+    {'side': 3.0, 'top': 0.0, 'bottom': 5.08}
+    """
+    out = dict[str, float]()
+    for word in text.split(","):
+        name, equals, value = word.partition("=")
+        key = name.strip().lower()
+        if not equals or key in out:
+            raise InputError(
+                f"{option_name} {text!r} is no raw block: say each once, as in side=3,top=2,bottom=5."
+            )
+        out[key] = read_length_from_zero(option_name, value, unit)
+    return out
+
+
 READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
     "count": lambda row, text, unit: read_optional_count(row.option, text),
     "length": read_declared_length,
@@ -242,6 +263,7 @@ READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
     "faces": read_faces,
     "zones": lambda row, texts, unit: tuple(read_zone(row.option, text, unit) for text in texts),
     "angles": read_angles,
+    "margins": lambda row, text, unit: read_margins(row.option, text, unit),
     "coefficients": lambda row, text, unit: read_coefficients(row.option, text),
 }
 

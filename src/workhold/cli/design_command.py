@@ -288,7 +288,9 @@ def parse(
     from workhold.model.query import Query
     from workhold.model.requirements import describe_far_loads
 
-    loaded = machined.adapt_part_options(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
+    # Jaws touch a raw block, wherever they reach on the part inside.
+    heights = toolkit.heights if asked["raw"] is None else {}
+    loaded = machined.adapt_part_options(part, reading).load(part, heights, toolkit.peg_diameter)
     refuse_unsure_numbers(loaded, asked["restrictions"].avoid, CALLED)
     workpiece = loaded.workpiece
     asked |= machined.read_query_arguments(shown, reading.peg_height, workpiece)

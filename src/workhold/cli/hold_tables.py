@@ -92,6 +92,7 @@ def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
     """
     from workhold.model.hold_words import describe_coefficients, write_setup_sentences, write_warnings
     from workhold.model.jaw_hold import JawHold
+    from workhold.model.raw_words import list_raw_sentences
     from workhold.statics.jaw_clearance import list_vise_sentences
     from workhold.statics.jaw_program import describe_asked_force
 
@@ -99,7 +100,11 @@ def tabulate_hold_setup(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
     if not isinstance(hold, JawHold):
         return tabulate_strapped_fixture(fixture, rank, total, unit)
     steps = (f"{step}." for step in write_setup_sentences(fixture, query, unit))
-    tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
+    tables: list[Table | str] = [
+        f"Fixture {rank} of {total}",
+        *list_raw_sentences(fixture, query, unit),
+        *steps,
+    ]
     if query.is_loaded:
         tables.append(describe_coefficients(query))
     if hold.program_need is not None and query.program is not None:

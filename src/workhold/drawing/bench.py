@@ -155,7 +155,7 @@ CONTACTS: Mapping[ContactKind, Callable[[Point, Segment], tuple[Point, Point]]] 
 }
 
 
-PART_FILL = "#fff7d1"
+PART_FILL, RAW_FILL = "#fff7d1", "#e6dcc3"
 PEG_FILL = "#b3122a"
 TOUCHED = "#e59a00"
 ARROW = "#0b3a82"
@@ -177,6 +177,7 @@ class BenchDrawing:
     own : the placed outlines that carriers at heights of their own touch.
     is_exact : whether pegs are drawn at their true radius; otherwise very small ones are drawn larger.
     gripped : the placed faces that flat jaws touch, by their numbers.
+    finished : the placed outline and holes of the finished part in a raw block; empty for no raw block.
     """
 
     fixture: Fixture
@@ -188,6 +189,7 @@ class BenchDrawing:
     own: list[list[Segment]] = field(factory=list)
     is_exact: bool = False
     gripped: Mapping[int, Segment] = field(factory=dict)
+    finished: list[list[Segment]] = field(factory=list)
 
     @property
     def extent(self) -> Box:
@@ -254,9 +256,10 @@ def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Benc
         for loop in one.loop_segments
     ]
     held = {number: pose.carry(find_face(workpiece, number)) for number in gripped}
-    return BenchDrawing(
-        fixture, toolkit, loops, faces, contacts, find_shown(fixture, toolkit, workpiece), own, gripped=held
-    )
+    inside = () if workpiece.finished is None else workpiece.finished.loop_segments
+    finished = [[pose.carry(segment) for segment in loop] for loop in inside]
+    shown = find_shown(fixture, toolkit, workpiece)
+    return BenchDrawing(fixture, toolkit, loops, faces, contacts, shown, own, gripped=held, finished=finished)
 
 
 def compute_force_arrow(bench: BenchDrawing, index: int, view: View, longest: float) -> tuple[Point, Point]:
@@ -328,7 +331,10 @@ def draw_part(scene: Scene, bench: BenchDrawing, view: View, weight: float) -> N
     """Draw the part and its touched faces; the holes of the plates show faintly through it."""
     part = scene.group("part", view)
     d = make_outline_path(bench.loops, view)
-    part.add_path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
+    fill = RAW_FILL if bench.finished else PART_FILL
+    part.add_path(d, fill=fill, fill_rule="evenodd", fill_opacity="0.74")
+    if bench.finished:
+        draw_finished(part, make_outline_path(bench.finished, view), weight)
     for face in dict.fromkeys(bench.find_touched_piece(k) for k in bench.touching):
         part.add_path(
             make_segment_path(face, view),
@@ -343,6 +349,11 @@ def draw_part(scene: Scene, bench: BenchDrawing, view: View, weight: float) -> N
         # What clamps and other carriers of their own heights meet, as a thin line beside what pegs meet.
         part.add_path(make_outline_path(bench.own, view), BLACK, 0.8 * weight, **{"class": "own outline"})
     part.add_path(d, BLACK, 2.2 * weight, **{"class": "outline"})
+
+
+def draw_finished(scene: Scene, outline: str, weight: float = 1.0) -> None:
+    """Draw the finished part in its raw block, from the SVG path data of its outline."""
+    scene.add_path(outline, BLACK, 1.2 * weight, PART_FILL, fill_rule="evenodd", **{"class": "finished"})
 
 
 def draw_grip(scene: Scene, hold: JawHold, view: View, weight: float) -> None:
@@ -404,12 +415,16 @@ def draw_inset(
     if box.height < LOWEST:
         return
     group = scene.group("part-as-drawn")
-    group.add_text((box.x0, box.y0 + 8), "The part as drawn (θ = 0°)", 13, fill=GREY)
+    finished = workpiece.finished
+    drawn = "The part" if finished is None else "The part in its raw block,"
+    group.add_text((box.x0, box.y0 + 8), f"{drawn} as drawn (θ = 0°)", 13, fill=GREY)
     room = Box(box.x0 + 40, box.y0 + 30, box.x1 - 10, box.y1 - 24)
     bounds = Box(*workpiece.bounds)
     view = View.fit_box(bounds, room)
     d = make_outline_path(workpiece.loop_segments, view)
-    group.add_path(d, fill=PART_FILL, fill_rule="evenodd")
+    group.add_path(d, fill=PART_FILL if finished is None else RAW_FILL, fill_rule="evenodd")
+    if finished is not None:
+        draw_finished(group, make_outline_path(finished.loop_segments, view))
     hold = fixture.hold
     gripped = () if not isinstance(hold, JawHold) else (*hold.fixed.segments, *hold.moving.segments)
     for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
@@ -418,7 +433,7 @@ def draw_inset(
     for point in find_contacts(workpiece, fixture, toolkit):
         group.add_circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
     if zero is not None:
-        number_holes(group, view, workpiece)
+        number_holes(group, view, workpiece.as_finished)
         if bounds.grow(AGREEMENT).contains(Box(*zero, *zero)):
             draw_zero(group, view(zero))
     corner = (box.x0 + 4, box.y1 - 4)

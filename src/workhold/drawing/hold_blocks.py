@@ -24,12 +24,21 @@ from workhold.model.hold_words import (
 )
 from workhold.model.jaw_hold import JawHold
 from workhold.model.query import Query
+from workhold.model.raw_words import (
+    SAWN,
+    describe_block_size,
+    describe_part_in_block,
+    describe_uncut_sides,
+    measure_zero_from_stop,
+    measure_zero_height,
+)
+from workhold.model.shown import bound_placed_part
 from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.statics.jaw_clearance import list_vise_sentences
 from workhold.statics.jaw_program import describe_asked_force
 
-__all__ = ["draw_hold_panel", "list_hold_blocks"]
+__all__ = ["draw_hold_panel", "list_hold_blocks", "list_raw_zero_facts"]
 
 # Loads beyond this are left to the command line; the hardest are shown.
 MOST_LOADS = 6
@@ -110,6 +119,8 @@ def list_hold_blocks(sheet: SetupSheet) -> tuple[list[Writer], list[Writer]]:
     if isinstance(sheet.fixture.hold, StrappedHold):
         return list_strap_writers()
     needed: list[Writer] = [write_setting, write_side, write_force]
+    if find_sheet_query(sheet).raw is not None:
+        needed.insert(0, write_raw_block)
     return needed, [write_hold_steps, write_hold_loads, write_hold_quality]
 
 
@@ -152,6 +163,42 @@ def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
         bold=True,
     )
     column.write_paragraph(f"From the left end of jaws {lengths.format_short(jaws.width)} wide.", NOTE)
+
+
+def write_raw_block(column: TextColumn, sheet: SetupSheet) -> None:
+    """Write the block of the raw block: its size, the part inside, and what of its sides is cut here."""
+    query, jaws, unit = find_sheet_query(sheet), sheet.toolkit.flat_jaws, sheet.lengths.unit
+    hold = sheet.fixture.hold
+    assert isinstance(hold, JawHold) and jaws is not None
+    write_heading(column, "Raw block")
+    column.write_line(describe_block_size(query, unit), 20, bold=True, gap=0.4)
+    column.write_paragraph(describe_part_in_block(query, unit), NOTE)
+    column.write_paragraph(describe_uncut_sides(hold, query, jaws, unit), NOTE)
+
+
+def list_raw_zero_facts(sheet: SetupSheet) -> list[tuple[str, float]]:
+    """Return what to touch a raw block off at: names of the distances of part zero, and these in mm.
+
+    They are those from the work stop, or from the block's left end without one, from the fixed jaw, and of Z0
+    from what the block lies on and from its top. [] without a raw block.
+    """
+    fixture, jaws = sheet.fixture, sheet.toolkit.flat_jaws
+    query, hold = get_query(fixture), fixture.hold
+    if query is None or query.raw is None or jaws is None or not isinstance(hold, JawHold):
+        return []
+    (x, y), z, height = sheet.zero_place, measure_zero_height(query), query.thickness or 0.0
+    from_stop = measure_zero_from_stop(fixture, jaws, x)
+    if from_stop is None:
+        along = "x from the block's left end", x - bound_placed_part(sheet.workpiece, fixture.pose).x0
+    else:
+        along = f"x {'right' if hold.stop == 'left' else 'left'} of the work stop", from_stop
+    lying = "the parallels" if hold.parallels else "the bed"
+    return [
+        along,
+        ("y from the fixed jaw", y),
+        (f"Z0 above {lying}", z),
+        ("Z0 below the raw top", height - z),
+    ]
 
 
 def write_side(column: TextColumn, sheet: SetupSheet) -> None:
@@ -205,10 +252,21 @@ def write_force(column: TextColumn, sheet: SetupSheet) -> None:
 def write_hold_steps(column: TextColumn, sheet: SetupSheet) -> None:
     """Write the numbered steps of setting up."""
     write_heading(column, "Setting up")
+    hold = sheet.fixture.hold
+    assert isinstance(hold, JawHold)
     steps = list(write_setup_sentences(sheet.fixture, find_sheet_query(sheet), sheet.lengths.unit))
-    steps.insert(0, "Clean jaws, parallels and part; break the edges that lie on them")
-    steps.append("Tap the part down until no parallel slides, and close again")
-    steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
+    if find_sheet_query(sheet).raw is None:
+        steps.insert(0, "Clean jaws, parallels and part; break the edges that lie on them")
+        steps.append("Tap the part down until no parallel slides, and close again")
+        steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
+    else:
+        steps.insert(0, "Clean jaws and parallels; file the burrs of the saw off the block")
+        steps.insert(-1, SAWN)
+        steps.append("Tap the block down, and close again; a sawn face may not bring both parallels to rest")
+        stop = "the block's left end" if hold.stop is None else "the work stop"
+        steps.append(
+            f"Touch off {stop}, the fixed jaw and the parallels, and set G54 as given under part zero"
+        )
     for number, step in enumerate(steps, 1):
         column.write_item(f"{number}.", f"{step}.", BODY)
 

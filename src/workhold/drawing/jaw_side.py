@@ -5,13 +5,14 @@ from __future__ import annotations
 from math import inf
 
 from workhold.drawing.annotation import draw_dimension
-from workhold.drawing.bench import PART_FILL, TOUCHED
+from workhold.drawing.bench import PART_FILL, RAW_FILL, TOUCHED
 from workhold.drawing.carriers import draw_jaw
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View
 from workhold.fixels.jaw_pair import JawPair
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
+from workhold.model.shown import bound_placed_part
 from workhold.model.vise_bodies import list_parallel_boxes
 
 __all__ = ["draw_jaw_side"]
@@ -92,7 +93,16 @@ def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) ->
     """Draw the part from the side, and the heights at which the jaws touch it."""
     hold = fixture.hold
     assert isinstance(hold, JawHold)
-    scene.add_rectangle(view.map_box(Box(0.0, 0.0, hold.opening, height)), PART_FILL, BLACK, 1.6)
+    block = view.map_box(Box(0.0, 0.0, hold.opening, height))
+    query = fixture.listing.result.query
+    raw, finished = query.raw, query.workpiece.finished
+    if raw is None or finished is None:
+        scene.add_rectangle(block, PART_FILL, BLACK, 1.6)
+    else:
+        scene.add_rectangle(block, RAW_FILL, BLACK, 1.6)
+        placed = bound_placed_part(finished, fixture.pose)
+        inside = Box(placed.y0, raw.bottom, placed.y1, height - raw.top)
+        scene.add_rectangle(view.map_box(inside), PART_FILL, BLACK, 1.2)
     for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
         low, high = min(one[2] for one in patch.rectangles), max(one[3] for one in patch.rectangles)
         scene.add_line([view((y, low)), view((y, high))], TOUCHED, 6.0)

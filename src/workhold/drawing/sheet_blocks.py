@@ -13,7 +13,7 @@ from functools import partial
 from math import isfinite
 
 from workhold.drawing.hardware_table import write_hardware
-from workhold.drawing.hold_blocks import list_hold_blocks
+from workhold.drawing.hold_blocks import list_hold_blocks, list_raw_zero_facts
 from workhold.drawing.panel import (
     NUMBERS,
     TextColumn,
@@ -617,6 +617,8 @@ def write_title(column: TextColumn, sheet: SetupSheet) -> None:
     column.y += 4
     column.write_line(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
     column.write_paragraph(describe_fixture(sheet.fixture, sheet.toolkit), BODY)
+    if sheet.workpiece.finished is not None:
+        return
     x0, y0, x1, y1 = sheet.workpiece.bounds
     outside = f"{sheet.lengths.format_number(x1 - x0)} × {sheet.lengths.format_length(y1 - y0)}"
     column.write_line(f"Size {outside}, as drawn", BODY, gap=0.3)
@@ -628,8 +630,9 @@ def write_zero(column: TextColumn, sheet: SetupSheet) -> None:
     (x, y), turn = sheet.zero_place, sheet.fixture.pose.written_deg
     write_heading(column, "Part zero X0 Y0 and angle")
     column.write_fact("X0 Y0 is the", zero.words, BODY, bold=True)
-    column.write_fact(f"x from {sheet.datum.x}", lengths.format_length(x), bold=True)
-    column.write_fact(f"y from {sheet.datum.y}", lengths.format_length(y), bold=True)
+    of_block = list_raw_zero_facts(sheet)
+    for name, distance in of_block or [(f"x from {sheet.datum.x}", x), (f"y from {sheet.datum.y}", y)]:
+        column.write_fact(name, lengths.format_length(distance), bold=True)
     column.write_fact("turned by θ, counter-clockwise", format_degrees(turn, 4), bold=True)
     drawn = ", y ".join(map(lengths.format_length, zero.point))
     place = "" if sheet.zero_shown else " It lies outside the plan."
@@ -642,6 +645,8 @@ def write_zero(column: TextColumn, sheet: SetupSheet) -> None:
     machine = sheet.details.machine_position
     if machine is None:
         words = f"G54: the machine's position over {sheet.datum.point}, plus this x and y; then {turning}."
+        if of_block:
+            words = f"G54: touch off these faces; then {turning}."
         column.write_paragraph(words, NOTE)
         return
     gx, gy = (

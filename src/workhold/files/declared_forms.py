@@ -28,6 +28,7 @@ TYPES: Mapping[Form, Any] = {
     "text": str,
     "names": list[str],
     "coefficients": dict[str, float],
+    "margins": dict[str, float],
     "day": date,
     "place": Annotated[list[float], Field(min_length=2, max_length=2)],
     "point": Annotated[list[float], Field(min_length=3, max_length=3)],

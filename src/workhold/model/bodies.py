@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from math import asin, atan2, isfinite, pi
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.errors import InputError, make_printable, shorten_middle
 from workhold.fixels.carrier import Carrier, make_hole_name
@@ -198,7 +198,7 @@ def list_fixture_bodies(
     sizes: BodySizes | None = None,
     more: Sequence[FixtureBody] = (),
 ) -> tuple[FixtureBody, ...]:
-    """Return all bodies of a fixture: the part, pegs,
+    """Return all bodies of a fixture: the part (of a raw block also the one inside), pegs,
     clamps each followed by its bolt, flat jaws, walls, plates, ``more``.
 
     Parameters
@@ -221,7 +221,8 @@ def list_fixture_bodies(
     part = make_part_slabs(workpiece.apply_pose(fixture.pose), sizes.thickness)
     name = make_printable(shorten_middle(workpiece.name, LONGEST_NAME))
     return (
-        FixtureBody(name, BodyKind.PART, part),
+        FixtureBody(name if workpiece.finished is None else f"raw block of {name}", BodyKind.PART, part),
+        *make_finished_bodies(fixture, workpiece, name),
         *make_peg_bodies(seen, sizes),
         *make_clamp_bodies(seen, sizes),
         *make_flat_jaw_bodies(seen, fixture, toolkit, sizes),
@@ -244,6 +245,17 @@ def list_fixture_bodies(
         ),
         *more,
     )
+
+
+def make_finished_bodies(fixture: Fixture, workpiece: Workpiece, name: str) -> Iterator[FixtureBody]:
+    """Yield the finished part inside a raw block; nothing for a part that is held itself, or in no result."""
+    query = None if fixture.listed is None else fixture.listed.result.query
+    if workpiece.finished is None or query is None or query.raw is None or query.thickness is None:
+        return
+    raw, placed = query.raw, workpiece.finished.apply_pose(fixture.pose)
+    inside = make_part_slabs(placed, query.thickness - raw.top - raw.bottom)
+    slabs = (evolve(one, low=one.low + raw.bottom, high=one.high + raw.bottom) for one in inside)
+    yield FixtureBody(name, BodyKind.SUPPORT, tuple(slabs))
 
 
 def make_part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:

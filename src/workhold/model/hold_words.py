@@ -8,12 +8,14 @@ from workhold.model.fixture import Fixture
 from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, JawPatch
 from workhold.model.query import Query
+from workhold.model.raw_block import measure_jaws_over_part
 from workhold.units import Unit
 
 __all__ = [
     "describe_coefficients",
     "describe_parallel_places",
     "describe_touched_faces",
+    "describe_touched_sides",
     "format_set_force",
     "list_jaw_cautions",
     "list_hold_reasons",
@@ -34,6 +36,16 @@ def describe_touched_faces(patch: JawPatch) -> str:
         return "a corner" if len(patch.rectangles) == 1 else "corners"
     one = len(patch.segments) == 1
     return f"face{'' if one else 's'} {', '.join(map(str, patch.segments))}"
+
+
+def describe_touched_sides(patch: JawPatch, query: Query, unit: Unit) -> str:
+    """Return a phrase that names the faces a jaw touches; of a raw block also how long the side is."""
+    words = describe_touched_faces(patch)
+    if query.raw is None or len(patch.segments) != 1:
+        return words
+    x0, y0, x1, y1 = query.workpiece.bounds
+    long = y1 - y0 if patch.segments[0] % 2 else x1 - x0
+    return f"the {format_short_length(long, unit)} side ({words})"
 
 
 def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
@@ -99,20 +111,19 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
     """
     hold, jaws = fixture.hold, query.toolkit.flat_jaws
     assert isinstance(hold, JawHold) and jaws is not None
+    held = "part" if query.raw is None else "raw block"
     if hold.parallels:
         yield (
             f"Take the parallels of {format_short_length(hold.parallels, unit)}, {describe_parallel_places(hold, unit)}"
         )
     else:
-        yield "No parallels: the part lies on the bed of the vise"
+        yield f"No parallels: the {held} lies on the bed of the vise"
     yield f"Open the jaws a little more than {unit.format_length(hold.opening)}"
     turned = "as drawn"
     if abs(fixture.pose.written_deg) > 1e-9:
         turned = f"turned by {round(fixture.pose.written_deg, 3):g}°"
-    yield (
-        f"Put the part in {turned}, {describe_touched_faces(hold.fixed)} flush on the fixed jaw; the moving jaw presses "
-        f"{describe_touched_faces(hold.moving)}"
-    )
+    fixed, moving = (describe_touched_sides(patch, query, unit) for patch in (hold.fixed, hold.moving))
+    yield f"Put the {held} in {turned}, {fixed} flush on the fixed jaw; the moving jaw presses {moving}"
     start = min(hold.fixed.ends[0], hold.moving.ends[0])
     where = f"what is gripped begins {unit.format_length(start)} from the left end of the jaws"
     if hold.stop is None:
@@ -159,6 +170,12 @@ def list_hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
     )
     if hold.clamp_needed is not None:
         words.append(f"asks for a jaw force of {unit.format_force(hold.clamp_needed)}")
+    query = None if fixture.listed is None else fixture.listed.result.query
+    jaws = None if query is None else query.toolkit.flat_jaws
+    if query is not None and query.raw is not None and jaws is not None and jaws.height is not None:
+        over = measure_jaws_over_part(hold, query.raw, jaws)
+        reach = f"reach {format_short_length(over, unit)} over the part's lower side"
+        words.append(f"the jaws {reach if over else 'stay below the part'}")
     if hold.above:
         words.append(f"{format_short_length(hold.above, unit)} above the jaws")
     return words

@@ -106,6 +106,8 @@ class Program:
     forces : forces of the tools on the part for each move; None where nobody asks for them.
     stock : raw stock, within which alone forces act; None where a file does not say.
     is_placed : whether ``forces`` are already limited to the stock around a part.
+    raised : by so many mm all heights are greater than those above the part, which lies so high in a raw
+        block.
 
     Raises
     ------
@@ -127,6 +129,7 @@ class Program:
     forces: CuttingForces | None = None
     stock: Stock | None = field(factory=Stock)
     is_placed: bool = field(default=False, eq=False)
+    raised: float = field(default=0.0, converter=convert_real)
 
     def __attrs_post_init__(self) -> None:
         if self.unit not in UNITS or self.rapid not in WAYS:
@@ -355,6 +358,7 @@ class Program:
             "tools": {str(number): tool.to_dict() for number, tool in self.tools.items()},
             "skipped": list(self.skipped),
             "notes": list(self.notes),
+            **({"raised": self.raised} if self.raised else {}),
             **self.describe_forces(),
         }
 
@@ -398,4 +402,5 @@ class Program:
             forces=None if said is None else CuttingForces.from_entries(first, said),
             stock=None if stock is None else Stock.from_entries(stock),
             is_placed=True,
+            raised=entries.get("raised") or 0.0,
         )

@@ -31,6 +31,7 @@ from workhold.model.quality import (
     to_tuple,
     to_words,
 )
+from workhold.model.raw_block import RawBlock, enclose_in_block, raise_load, raise_program, to_raw_block
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.straps import choose_strap_ranking
 from workhold.model.workpiece import Workpiece
@@ -120,6 +121,9 @@ class Query(SearchQuestion):
         for the usual ones (``model.friction``).
     safety : factor on the loads where friction holds the part; None for the usual 2.
     weight : weight of the part in N, without the safety factor, where straps hold it; None counts as 0.
+    raw : by how much the raw block of a first operation is larger than the finished part, such as {"side": 3,
+        "top": 2, "bottom": 5} in mm; the jaws then touch the block, with the part inside. None where the part
+        itself is held. The query's workpiece, thickness, loads and program are then those of the block.
     strapped : number of the best seats on a plate with straps for which places of straps are searched; None
         for 20.
 
@@ -139,12 +143,14 @@ class Query(SearchQuestion):
     loads: tuple[Load, ...] = field(default=(), converter=to_loads)
     program: Program | None = None
     friction: Coefficients | None = field(default=None, converter=to_coefficients, kw_only=True)
+    raw: RawBlock | None = field(default=None, converter=to_raw_block, kw_only=True)
 
     def __attrs_post_init__(self) -> None:
         given: Any = self.tolerance
         if given is None:
             object.__setattr__(self, "tolerance", getattr(self.toolkit, "tolerance", None) or Tolerance())
         refuse_other_kinds(self)
+        self.lay_in_raw_block()
         object.__setattr__(self, "workpiece", adapt_outlines_to_toolkit(self.workpiece, self.toolkit))
         object.__setattr__(self, "tolerance", self.tolerance.with_departure(self.workpiece.departure))
         known = self.toolkit.types
@@ -191,6 +197,45 @@ class Query(SearchQuestion):
                 "an opening, or foolproof, needs the seating of fixtures, which is worked out for the "
                 "first ones only: give their number, such as seating 100."
             )
+
+    def lay_in_raw_block(self) -> None:
+        """Take the raw block around the part for the workpiece, where one is asked for.
+
+        Thickness, loads and program, which are given for the finished part, are then those of the block. What
+        is in the block already stays as it is.
+        """
+        raw = self.raw
+        if raw is None:
+            if self.workpiece.finished is not None:
+                raise InputError(f"{self.workpiece.name} is a raw block: say by how much it is larger.")
+            return
+        if self.toolkit.flat_jaws is None:
+            raise InputError(
+                f"a raw block is held between the flat jaws of a plain vise, which a {self.toolkit.noun} does not have: "
+                "take one, or leave the raw block out."
+            )
+        bottom = raw.bottom
+        if self.workpiece.finished is None:
+            if self.part_height is None:
+                raise InputError(
+                    "how thick the part is decides how high its raw block is: give its thickness."
+                )
+            object.__setattr__(self, "thickness", raw.compute_height(self.part_height))
+            object.__setattr__(self, "loads", tuple(raise_load(load, bottom) for load in self.loads))
+            object.__setattr__(self, "workpiece", enclose_in_block(self.workpiece, raw))
+        elif not self.workpiece.is_alike(enclose_in_block(self.workpiece.finished, raw)):
+            raise InputError(f"{self.workpiece.name} is not the raw block around its finished part.")
+        of_block = {*self.restrictions.avoid, *self.restrictions.touch}
+        if not of_block <= set(range(4)):
+            raise InputError(
+                f"face {min(of_block - set(range(4)))} is not there yet: the raw block has the faces 0 to 3, counted from "
+                "the lower one in the drawing counter-clockwise."
+            )
+        program, height = self.program, self.thickness
+        if program is None or height is None:
+            return
+        if program.raised != bottom or (program.forces is not None and not program.is_placed):
+            object.__setattr__(self, "program", raise_program(program, bottom, height))
 
     def refuse_loads_across(self) -> None:
         """Raise InputError for loads and options that do not fit the way in which the toolkit holds the part.

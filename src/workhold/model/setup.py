@@ -61,6 +61,7 @@ def choose_part_zero(
 
     Parameters
     ----------
+    workpiece : the part; of a raw block the finished part in it counts.
     asked : "corner" (the lower left one of the outside dimensions), "centre" (of the same), "hole N" (its
         centre), "X,Y" or two numbers. None is the default at the head of this module. Holes are counted from
         1 as in the inset of the setup sheet.
@@ -77,6 +78,7 @@ def choose_part_zero(
     >>> [choose_part_zero(far, asked).point for asked in (None, "centre", "2010,5")]
     [(2000.0, 0.0), (2020.0, 10.0), (2010.0, 5.0)]
     """
+    workpiece = workpiece.as_finished
     x0, y0, x1, y1 = workpiece.bounds
     if asked is None:
         within = min(-x0, -y0, x1, y1) >= -AGREEMENT

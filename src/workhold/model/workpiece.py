@@ -72,6 +72,7 @@ def check_name(name: Any) -> str:
 INTERNAL = frozenset(
     {
         "apply_pose",
+        "as_finished",
         "every_outline",
         "find_outline",
         "flush",
@@ -109,6 +110,7 @@ class Workpiece:
         and arcs.
     solid : how the solid stands and the bands of the segments, for an outline by height; None for a prism.
     outlines : by role, the outlines that carriers with heights of their own meet, see ``model.own_outlines``.
+    finished : the finished part, where this is the raw block around it (``model.raw_block``); else None.
 
     Examples
     --------
@@ -124,6 +126,7 @@ class Workpiece:
     departure: float = 0.0
     solid: SolidOutline | None = None
     outlines: tuple[tuple[str, Workpiece], ...] = ()
+    finished: Workpiece | None = None
 
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.loops, Sequence, "the loops", "give a tuple of arrays")
@@ -135,7 +138,8 @@ class Workpiece:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # What was worked out stays behind, and the arrays are read-only again on the other side.
-        return Workpiece, (self.name, self.loops, (), self.departure, self.solid, self.outlines)
+        kept = (self.name, self.loops, (), self.departure, self.solid, self.outlines, self.finished)
+        return Workpiece, kept
 
     @classmethod
     def from_loops(
@@ -429,6 +433,11 @@ class Workpiece:
         boxes = np.array([compute_bounding_box(segment) for segment in outer])
         low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    @property
+    def as_finished(self) -> Workpiece:
+        """The finished part: of a raw block the part inside it, else the part itself."""
+        return self if self.finished is None else self.finished
 
     @cached_property
     def turned_over(self) -> Workpiece:

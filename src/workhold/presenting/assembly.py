@@ -186,6 +186,10 @@ def read_part_shape(path: str | Path | None, workpiece: Workpiece) -> PartShape 
     """
     if path is None:
         return None
+    if workpiece.finished is not None:
+        raise InputError(
+            f"{workpiece.name} is shown as a prism in its raw block: leave the part's own file out."
+        )
     from workhold.files.step.part_shape import make_part_shape
 
     try:

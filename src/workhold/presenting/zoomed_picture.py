@@ -21,6 +21,7 @@ from workhold.drawing.bench import (
     ARROW,
     PART_FILL,
     PEG_FILL,
+    RAW_FILL,
     TOUCHED,
     BenchDrawing,
     compute_force_arrow,
@@ -300,7 +301,11 @@ def draw_small_picture(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit)
     view = View.fit_box(reduce(Box.unite, boxes), Box(0.0, 0.0, *SMALL).grow(-SMALL_RIM))
     scene = Scene.make_page(SMALL, "")
     outline = "".join(f"{make_polyline_path(loop, view)}Z" for loop in loops)
-    scene.add_path(outline, fill=PART_FILL, fill_rule="evenodd")
+    scene.add_path(outline, fill=PART_FILL if workpiece.finished is None else RAW_FILL, fill_rule="evenodd")
+    if workpiece.finished is not None:
+        inside = [[pose.carry(segment) for segment in loop] for loop in workpiece.finished.loop_segments]
+        within = "".join(f"{make_polyline_path(loop, view)}Z" for loop in inside)
+        scene.add_path(within, BLACK, 0.7, PART_FILL, fill_rule="evenodd")
     hold = fixture.hold
     gripped = () if not isinstance(hold, JawHold) else (*hold.fixed.segments, *hold.moving.segments)
     for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):

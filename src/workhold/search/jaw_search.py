@@ -38,6 +38,7 @@ from workhold.model.pose import Pose
 from workhold.model.program import Program
 from workhold.model.quality import round_number_coarsely
 from workhold.model.query import Query
+from workhold.model.raw_block import measure_jaws_over_part
 from workhold.model.requirements import Load, lie_in_angle_ranges
 from workhold.model.result import Result
 from workhold.model.solid import Band
@@ -637,11 +638,16 @@ def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
     """Return the sort key of an examined hold that is a fixture; better holds have smaller keys.
 
     Unfit holds come last, then holds without full contact, then those beyond the vise's rating; the others
-    are in the query's ranking.
+    are in the query's ranking. Of a raw block those come first whose jaws reach least over the finished part's
+    lower side.
     """
     hold = one.hold
     assert hold is not None
     key: list[float] = [hold.is_unfit, not hold.full_contact, hold.is_beyond_rating]
+    jaws, raw = query.toolkit.flat_jaws, query.raw
+    if raw is not None and jaws is not None:
+        # What is left below the part is there to be gripped.
+        key.append(round(measure_jaws_over_part(hold, raw, jaws), 6))
     for name in query.rank_by:
         match name:
             case "square":
@@ -718,7 +724,7 @@ def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
     """Return the number of holds, where holds that a rotation of the part
     onto itself makes equal count once.
     """
-    every = workpiece.numbered
+    every = workpiece.as_finished.numbered
     turns = [
         one.angle for one in find_rotations_onto_itself([face.segment for face in every.faces], every.marks)
     ]

@@ -15,6 +15,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.contact.swept import SweptSpans, find_swept_below
+from workhold.conventions import GAP_SLACK
 from workhold.errors import join_words
 from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.segment import Box
@@ -40,8 +41,6 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-# mm. A parallel that is moved keeps so much more than the clearance, for rounding.
-HAIR = 1e-6
 
 
 @frozen
@@ -95,7 +94,12 @@ def find_nearest_to_vise(program: Program, bodies: Iterable[ViseBody], pose: Pos
 def find_tool_in_the_way(program: Program, bodies: Iterable[ViseBody], pose: Pose) -> ToolNearVise | None:
     """Return where a tool comes too near the first of the bodies that is not clear; None where all are."""
     return next(
-        (one for one in list_approaches(program, bodies, pose) if one.distance < program.clearance), None
+        (
+            one
+            for one in list_approaches(program, bodies, pose)
+            if one.distance < program.clearance - GAP_SLACK
+        ),
+        None,
     )
 
 
@@ -121,10 +125,10 @@ def place_parallels(program: Program, jaws: JawPair, hold: JawHold, pose: Pose) 
     offsets = []
     for box, is_far in zip(list_parallel_boxes(jaws, hold), (False, True), strict=True):
         corners = move_into_part(pose, np.array(box.corners))
-        if swept.find_reach_to_box(corners)[0] >= program.clearance:
+        if swept.find_reach_to_box(corners)[0] >= program.clearance - GAP_SLACK:
             offsets.append(0.0)
             continue
-        blocked = list_blocked_places(swept, program.clearance + HAIR, box, pose)
+        blocked = list_blocked_places(swept, program.clearance, box, pose)
         # Towards the other jaw, y grows or falls.
         ways = [(-high, -low) for low, high in blocked] if is_far else blocked
         found = find_free_place(ways, hold.opening / 2 - box.height)
@@ -160,13 +164,13 @@ def find_free_place(blocked: Iterable[tuple[float, float]], most: float) -> floa
 
     def is_free(place: float) -> bool:
         """Return whether a place is in no interval, and not too far."""
-        return place <= most and not any(low < place < high for low, high in some)
+        return place <= most and not any(low + GAP_SLACK < place < high - GAP_SLACK for low, high in some)
 
     places = sorted({0.0, *(high for _, high in some if high > 0.0)})
     found = next((place for place in places if is_free(place)), None)
     if found is None:
         return None
-    whole = float(ceil(found))
+    whole = float(ceil(found - GAP_SLACK))
     return whole if is_free(whole) else found
 
 

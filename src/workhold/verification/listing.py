@@ -392,6 +392,9 @@ def find_missing_keys(head: Head) -> list[str]:
     spared |= {"least_effective_error"}
     # What acts along z, and how high, is written where it is said.
     spared |= {f"loads.{number}.{key}" for number in range(len(head.loads)) for key in ("upward", "height")}
+    # Only of a raw block is there a part inside.
+    of_part = (f"workpiece.finished.{key}" for key in type(head.workpiece).model_fields)
+    spared |= {"raw", "workpiece.finished", *of_part}
     # An older file has the sentences alone.
     spared |= {"note_data"}
     # A toolkit without flats, or heights of its own, says nothing of them.

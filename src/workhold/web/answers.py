@@ -23,6 +23,7 @@ from workhold.model.hold_words import write_setup_sentences
 from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
 from workhold.model.moved_setup import find_move_to_middle, find_overhangs, move_fixture_by_holes
 from workhold.model.quality import FIGURES
+from workhold.model.raw_words import list_raw_sentences
 from workhold.model.search_report import Explanation, ProofReport
 from workhold.model.setup import list_length_settings
 from workhold.model.shown import ShownSetUp
@@ -215,7 +216,12 @@ def describe_hold(fixture: Fixture) -> dict[str, Any]:
     entry, steps = make_hold_entry(fixture), dict[str, list[str]]()
     if fixture.listed is not None:
         query = fixture.listed.result.query
-        steps = {"steps": [f"{step}." for step in write_setup_sentences(fixture, query, MILLIMETRE)]}
+        steps = {
+            "steps": [
+                *list_raw_sentences(fixture, query, MILLIMETRE),
+                *(f"{step}." for step in write_setup_sentences(fixture, query, MILLIMETRE)),
+            ]
+        }
     names = ("parallels", "parallel_offsets", "stop", "fixed", "moving", "warnings")
     return {
         **{name: entry[name] for name in names if name in entry},

@@ -73,6 +73,8 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     if isinstance(data, dict) and str(data.get("format", "")).startswith("workhold-result"):
         solid = read_solid_outline(data)
         data = data.get("workpiece")
+        # Of a raw block it is the part inside that a user means.
+        data = data.get("finished", data) if isinstance(data, dict) else data
     if own or solid is not None:
         refuse_fit(fit)
     if not isinstance(data, dict):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from attrs import evolve
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from workhold.asking.declaring import list_declarations
@@ -107,6 +108,16 @@ class WorkpiecePart(FormPart):
     unclear_heights: list[float] | None = Field(
         None, description="heights in mm of upper faces of which it is not known what is free"
     )
+    finished: WorkpiecePart | None = Field(
+        None, description="of a raw block, the finished part inside it, in the same coordinates"
+    )
+
+    def to_finished(self) -> Workpiece | None:
+        """Return the finished part inside a raw block; None where the workpiece is none."""
+        part = self.finished
+        if part is None:
+            return None
+        return Workpiece.from_loops(part.name, part.loops, departure=part.departure)
 
 
 class SolidPart(FormPart):
@@ -330,13 +341,17 @@ class Head(FormPart):
 
     def to_query(self) -> Query:
         """Return the query with workpiece and toolkit; raise InputError for an impossible one."""
-        toolkit = self.to_toolkit()
+        toolkit, asked = self.to_toolkit(), collect_given_values(self, OF_SEARCH)
         workpiece = Workpiece.from_loops(
             self.workpiece.name,
             self.workpiece.loops,
             departure=self.workpiece.departure,
             solid=None if self.solid is None else self.solid.to_outline(self.workpiece),
         )
+        finished = self.workpiece.to_finished()
+        if finished is None and asked["raw"] is not None:
+            raise InputError("it has a raw block, but the workpiece has no finished part.")
+        workpiece = evolve(workpiece, finished=finished)
         if self.outlines is not None:
             entries = {role: one.model_dump() for role, one in self.outlines.items()}
             workpiece = add_own_outlines(workpiece, entries, toolkit.heights)
@@ -349,7 +364,7 @@ class Head(FormPart):
             tolerance=None if self.tolerance is None else self.tolerance.to_tolerance(),
             loads=(part.to_load() for part in self.loads),
             program=self.to_program(),
-            **collect_given_values(self, OF_SEARCH),
+            **asked,
         )
 
     def to_program(self) -> Program | None:

@@ -217,6 +217,7 @@ def make_workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
         "loops": [(loop + 0.0).tolist() for loop in workpiece.loops],
         "departure": workpiece.departure,
         **make_bands_entry(workpiece.solid),
+        **({} if workpiece.finished is None else {"finished": make_workpiece_entry(workpiece.finished)}),
     }
 
 
@@ -283,6 +284,8 @@ def make_query_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     }
     if query.friction is not None:
         asked["friction"] = dict(query.friction)
+    if query.raw is not None:
+        asked["raw"] = query.raw.to_dict()
     if query.program is not None:
         program = query.program.to_dict() if with_pieces else query.program.make_head()
         asked["program"] = program

@@ -47,6 +47,8 @@ __all__ = [
 
 # The header's time stamp, so that the same set-up gives the same bytes.
 TIME_STAMP = "1970-01-01T00:00:00"
+# mm. Length of the axes at part zero where there are no holes whose pitch it could be.
+AXIS = 10.0
 # Red, green and blue from 0 to 1.
 Colour = tuple[float, float, float]
 
@@ -139,7 +141,7 @@ def make_bodies_step(
     else:
         others = make_named_solids([body for body in bodies if body.kind is not BodyKind.PART])
         named = [(bodies[0].name, part, COLOURS[BodyKind.PART]), *others]
-    pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
+    pitch = min((min(carrier.pitch) for carrier in toolkit.plates), default=AXIS)
     axes = make_axes_at(zero, pose, pitch)
     return make_assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
 

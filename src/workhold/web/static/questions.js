@@ -56,11 +56,14 @@ export function holdsByFriction() {
   return Boolean(state.toolkit && kindOf(state.toolkit)?.by_friction);
 }
 
+/** Whether the toolkit can hold a raw block, which pegs and straps cannot. */
+export const takesRawBlock = () => state.toolkit?.parallels !== undefined;
+
 /** What is asked of a search, without what needs something that is not asked, and what is of friction, or of pegs, alone. */
 export function askedOfSearch() {
   const { asked } = state;
   const suits = ({ section }) => (section === "Loads" ? holdsByFriction() : section !== "Seating" || !holdsByFriction());
-  const isAsked = (question) => question.name in asked && (!question.needs || question.needs in asked) && suits(question);
+  const isAsked = (question) => question.name in asked && (!question.needs || question.needs in asked) && suits(question) && (question.name !== "raw" || takesRawBlock());
   const kept = askedOf("search").filter(isAsked);
   return Object.fromEntries(kept.map(({ name }) => [name, asked[name]]));
 }

@@ -4,7 +4,7 @@
 import { byId, field, make, quiet, show } from "./dom.js";
 import { bandWords, isNever, toggleFace } from "./part-drawing.js";
 import { change, on, state } from "./state.js";
-import { askIn, askedOf, holdsByFriction } from "./questions.js";
+import { askIn, askedOf, holdsByFriction, takesRawBlock } from "./questions.js";
 import { kindOf, kinds } from "./toolkits.js";
 import { forceText, length, number, readLength, readNumber } from "./units.js";
 import { circleLoop, ZoneTool } from "./zone-tool.js";
@@ -50,6 +50,13 @@ export function askInRules() {
   askIn(byId("search-fields"), "asked", askedOf("search").filter((field) => !isSeating(field) && !isOfLoads(field)));
   askIn(byId("friction-fields"), "asked", askedOf("search").filter(isOfLoads));
   askIn(byId("seating-fields"), "asked", askedOf("search").filter(isSeating));
+  on(["toolkit"], showRawBlock);
+  showRawBlock();
+}
+
+/** Ask for a raw block only where the toolkit can hold one. */
+function showRawBlock() {
+  show(/** @type {Element} */ (byId("search-raw").parentElement), takesRawBlock());
 }
 
 /** A button for each face; pressed means forbidden. */

@@ -10,6 +10,9 @@ import { fieldForce, fieldLength, fieldStress, forceWord, pressureWord, readForc
 /** Labels of forms that take two inputs. */
 const PAIRS = { pitch: ["x", "y"], place: ["x", "y"], span: ["least", "most"] };
 
+/** Where a raw block is larger than the part, in the order in which that is typed. */
+const MARGINS = ["side", "top", "bottom"];
+
 /** Forms of numbers in a unit of their own, besides lengths: how they are written and read. */
 const UNITS = { stress: [fieldStress, readStress], force: [fieldForce, readForce], number: [(value) => String(value ?? ""), readNumber] };
 
@@ -39,8 +42,8 @@ export function makeFields(field) {
     return [make("label", {}, field.label, make("select", { id }, ...options))];
   }
   if (field.form === "flag") return [make("label.check.wide", { title: field.help }, make("input", { type: "checkbox", id }), ` ${field.label}`)];
-  const mode = field.form === "count" ? "numeric" : ["faces", "holes", "lengths", "rings", "text"].includes(field.form) ? "text" : "decimal";
-  const unit = ["length", "lengths", "pitch", "place", "span", "rings"].includes(field.form) ? [" ", make("span.unit", {}, unitWord())] : [];
+  const mode = field.form === "count" ? "numeric" : ["faces", "holes", "lengths", "margins", "rings", "text"].includes(field.form) ? "text" : "decimal";
+  const unit = ["length", "lengths", "margins", "pitch", "place", "span", "rings"].includes(field.form) ? [" ", make("span.unit", {}, unitWord())] : [];
   if (field.form === "stress") unit.push(" ", make("span.pressure", {}, pressureWord()));
   if (field.form === "force") unit.push(" ", make("span.force-unit", {}, forceWord()));
   return idsOf(field).map((each, k) => {
@@ -82,6 +85,11 @@ export function readField(field, known) {
     input(id).setAttribute("aria-invalid", String(wrong));
     return { value: values.length ? values : null, wrong };
   }
+  if (field.form === "margins") {
+    const margins = marginsOf(input(id).value, known);
+    input(id).setAttribute("aria-invalid", String(margins === undefined));
+    return { value: margins ?? null, wrong: margins === undefined };
+  }
   if (field.form === "rings") {
     const rings = ringsOf(input(id).value, known);
     const wrong = rings === null;
@@ -107,6 +115,21 @@ export function readField(field, known) {
 /** Lengths as they are typed, with commas between them. @param {number[]|null} lengths */
 function lengthsText(lengths) {
   return (lengths ?? []).map((one) => fieldLength(one)).join(", ");
+}
+
+/** The margins of a raw block as they are typed: side, top and bottom, with commas between them. @param {Object<string, number>|null} margins */
+function marginsText(margins) {
+  return margins ? MARGINS.map((name) => fieldLength(margins[name] ?? 0) || "0").join(", ") : "";
+}
+
+/** Margins of a text in mm, those known where it still stands for them; null for none, undefined for what is no margins. */
+function marginsOf(text, known) {
+  if (!text.trim()) return null;
+  if (text === marginsText(known)) return known;
+  const bare = /^[^\s;,]+,[^\s;,]+,[^\s;,]+$/.test(text.trim());
+  const values = text.trim().split(bare ? "," : /[\s;]+|,(?=\s)/).filter(Boolean).map(readLength);
+  const good = values.length === MARGINS.length && values.every((one) => Number.isFinite(one) && one >= 0);
+  return good ? Object.fromEntries(MARGINS.map((name, k) => [name, values[k]])) : undefined;
 }
 
 /** Rings as they are typed: x, y, least and most of each, with semicolons between them. @param {number[][]|null} rings */
@@ -154,6 +177,7 @@ export function writeField(field, value) {
     if (input(each) === document.activeElement) return;
     if (["faces", "holes"].includes(field.form)) input(each).value = (value ?? []).join(", ");
     else if (field.form === "rings") input(each).value = ringsText(value);
+    else if (field.form === "margins") input(each).value = marginsText(value);
     else if (field.form === "lengths") input(each).value = lengthsText(value);
     else if (["count", "text"].includes(field.form)) input(each).value = String(values[k] ?? "");
     else input(each).value = (UNITS[field.form] ?? [fieldLength])[0](values[k]);
