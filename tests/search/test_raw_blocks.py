@@ -116,6 +116,7 @@ def test_file_keeps_the_block_and_the_part(tmp_path):
     workhold.save(found, tmp_path / "raw.json")
     query = read_result(tmp_path / "raw.json").query
     assert query.workpiece == found.query.workpiece and query.raw == found.query.raw
+    assert (query.program.moves.start == found.query.program.moves.start).all()
     assert query.program.raised == 5.0 and query.loads == found.query.loads and query.thickness == 32.0
     outcome = verify_file(tmp_path / "raw.json")
     assert outcome.holds and not outcome.faults
@@ -176,6 +177,11 @@ def test_words_say_what_lies_in_the_vise_and_what_to_touch_off():
     ]
     steps = list(write_setup_sentences(one, found.query, MILLIMETRE))
     assert any("the raw block in turned by 90°, the 64 mm side (face 3) flush" in step for step in steps)
+    assert not any("stands out" in step for step in steps)
+    narrow = held(ELL, vise(parallels=[32], stop="right", jaw_width=60), thickness=25.0, raw=RAW)
+    drawn = next(one for one in narrow if not one.pose.theta_deg)
+    steps = list(write_setup_sentences(drawn, narrow.query, MILLIMETRE))
+    assert any(step.endswith(", and it stands out 6.000 mm beyond their left end") for step in steps)
     whole = held(ELL, vise(parallels=[40]), thickness=25.0, raw={"bottom": 4})
     said = list_raw_sentences(whole[0], whole.query, MILLIMETRE)
     assert "nothing to cut off on each side, nothing on top, 4 mm below" in said[0]

@@ -210,7 +210,8 @@ def write_side(column: TextColumn, sheet: SetupSheet) -> None:
     draw_jaw_side(column, sheet.fixture, jaws, query.part_height, sheet.lengths)
     hold = sheet.fixture.hold
     if isinstance(hold, JawHold) and hold.above is not None and jaws.height is not None:
-        free = f"Cut no deeper than {sheet.lengths.format_short(hold.above, 5)} below the top beside a jaw."
+        top = "the top" if query.raw is None else "the raw top"
+        free = f"Cut no deeper than {sheet.lengths.format_short(hold.above, 5)} below {top} beside a jaw."
         column.write_paragraph(
             free if hold.above else "Nothing stands above the jaws: a tool beside them runs into one.", NOTE
         )

@@ -161,7 +161,8 @@ def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill:
     column.write_fact(
         "its X0 Y0, as drawn", f"x {lengths.format_number(x)}, y {lengths.format_length(y)}", BODY
     )
-    column.write_fact("its Z0 above the part's lower side", lengths.format_length(program.z_zero), BODY)
+    held = "block" if program.raised else "part"
+    column.write_fact(f"its Z0 above the {held}'s lower side", lengths.format_length(program.z_zero), BODY)
     column.write_fact("tools keep off at least", lengths.format_length(program.clearance), BODY)
     column.y += 2
     write_tools(column, program, lengths, fill)

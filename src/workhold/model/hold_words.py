@@ -9,6 +9,7 @@ from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, JawPatch
 from workhold.model.query import Query
 from workhold.model.raw_block import measure_jaws_over_part
+from workhold.model.shown import bound_placed_part
 from workhold.units import Unit
 
 __all__ = [
@@ -24,6 +25,9 @@ __all__ = [
     "describe_work_stop",
     "write_warnings",
 ]
+
+# mm. By less a part does not stand out of the jaws.
+OVERHANG = 1e-3
 
 
 def describe_touched_faces(patch: JawPatch) -> str:
@@ -126,6 +130,10 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
     yield f"Put the {held} in {turned}, {fixed} flush on the fixed jaw; the moving jaw presses {moving}"
     start = min(hold.fixed.ends[0], hold.moving.ends[0])
     where = f"what is gripped begins {unit.format_length(start)} from the left end of the jaws"
+    extent = bound_placed_part(query.workpiece, fixture.pose)
+    for end, beyond in (("left", -extent.x0), ("right", extent.x1 - jaws.width)):
+        if beyond > OVERHANG:
+            where = f"{where}, and it stands out {unit.format_length(beyond)} beyond their {end} end"
     if hold.stop is None:
         yield f"Put it in the middle of the jaws, as there is no stop: {where}"
     else:
