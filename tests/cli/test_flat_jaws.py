@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from math import floor
 from pathlib import Path
 from typing import Any
@@ -98,6 +99,8 @@ def test_raw_block_goes_from_the_command_to_the_sheet(run: Any, tmp_path: Any) -
     shown = run("show", out, "1").stdout
     assert "nothing on top, 12.7 mm below" in shown and "Put the raw block in" in shown
     assert "0 refuted, 0 undecided" in run("verify", out).stdout
+    told = json.loads(run("design", RECTANGLE, *words, "--json").stdout)
+    assert told["raw"] == {"side": 3.0, "top": 0.0, "bottom": 12.7}
     text = Path(sheet).read_text()
     for said in ("Raw block", "x right of the work stop", "Z0 above the parallels", 'class="finished"'):
         assert said in text

@@ -232,6 +232,7 @@ def describe_result(result: Result, shown: ShownEntries, count: int) -> dict[str
     return {
         "workpiece": result.workpiece.name,
         "toolkit": {"kind": result.toolkit.kind, **make_toolkit_fields(result.toolkit)},
+        **({} if result.query.raw is None else {"raw": result.query.raw.to_dict()}),
         "found": {kind: int(number) for kind, number in result.found.items()},
         "distinct": {kind: int(number) for kind, number in result.distinct.items()},
         "listed": len(result),
