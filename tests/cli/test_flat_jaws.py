@@ -109,8 +109,8 @@ def test_raw_block_goes_from_the_command_to_the_sheet(run: Any, tmp_path: Any) -
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--raw", "3"), "is no raw block: say each once, as in side=3,top=2,bottom=5"),
-        (("--raw", "side=3,side=2"), "is no raw block: say each once"),
+        (("--raw", "3"), "is not a raw block: say each once, as in side=3,top=2,bottom=5"),
+        (("--raw", "side=3,side=2"), "is not a raw block: say each once"),
         (("--raw", "side=-3"), "is negative: give 0 or more"),
     ],
 )

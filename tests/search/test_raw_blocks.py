@@ -139,7 +139,7 @@ def test_file_keeps_the_block_and_the_part(tmp_path):
     [
         ({"toolkit": workhold.Vise(pitch=10, columns=2, peg_radius=3)}, "flat jaws of a plain vise"),
         ({"thickness": None}, "how high its raw block is: give its thickness"),
-        ({"raw": {"side": -1}}, "side -1 is no length"),
+        ({"raw": {"side": -1}}, "side -1 is not a length"),
         ({"raw": {"left": 1}}, "no 'left': give side, top and bottom"),
         ({"raw": 3}, "give its side, top and bottom in mm by name"),
         ({"restrictions": workhold.Restrictions(avoid=[5])}, "face 5 is not there yet"),

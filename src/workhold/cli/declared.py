@@ -239,7 +239,7 @@ def read_margins(option_name: str, text: str, unit: Unit) -> dict[str, float]:
         key = name.strip().lower()
         if not equals or key in out:
             raise InputError(
-                f"{option_name} {text!r} is no raw block: say each once, as in side=3,top=2,bottom=5."
+                f"{option_name} {text!r} is not a raw block: say each once, as in side=3,top=2,bottom=5."
             )
         out[key] = read_length_from_zero(option_name, value, unit)
     return out

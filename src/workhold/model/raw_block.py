@@ -60,7 +60,7 @@ class RawBlock:
     def __attrs_post_init__(self) -> None:
         for name, value in self.to_dict().items():
             if not (isfinite(value) and value >= 0.0):
-                raise InputError(f"the raw block's {name} {value:g} is no length: give 0 or more, in mm.")
+                raise InputError(f"the raw block's {name} {value:g} is not a length: give 0 or more, in mm.")
             refuse_long(f"the raw block's {name}", value)
 
     def to_dict(self) -> dict[str, float]:
@@ -79,7 +79,7 @@ def to_raw_block(value: RawBlock | Mapping[str, Any] | None) -> RawBlock | None:
     Raises
     ------
     InputError
-        For an unknown name, for what is no mapping, and the errors of the class.
+        For an unknown name, for what is not a mapping, and the errors of the class.
 
     Examples
     --------

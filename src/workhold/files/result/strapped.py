@@ -30,7 +30,7 @@ Hole = Annotated[int, Field(ge=0, le=MOST_HOLES)]
 HolePair = Annotated[list[Hole], Field(min_length=2, max_length=2)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
-# Of what quality says, what is no figure.
+# Of what quality says, what is not a figure.
 NOT_FIGURES = {"full_contact", "clamp_needed_each", "safety_reached_each"}
 
 

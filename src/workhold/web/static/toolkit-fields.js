@@ -122,7 +122,7 @@ function marginsText(margins) {
   return margins ? MARGINS.map((name) => fieldLength(margins[name] ?? 0) || "0").join(", ") : "";
 }
 
-/** Margins of a text in mm, those known where it still stands for them; null for none, undefined for what is no margins. */
+/** Margins of a text in mm, those known where it still stands for them; null for none, undefined for anything else. */
 function marginsOf(text, known) {
   if (!text.trim()) return null;
   if (text === marginsText(known)) return known;
