@@ -177,6 +177,9 @@ def test_words_say_what_lies_in_the_vise_and_what_to_touch_off():
     ]
     steps = list(write_setup_sentences(one, found.query, MILLIMETRE))
     assert any("the raw block in turned by 90°, the 64 mm side (face 3) flush" in step for step in steps)
+    assert list_raw_sentences(one, found.query, MILLIMETRE)[3].startswith(
+        "Saw-cut sides are neither flat nor"
+    )
     assert not any("stands out" in step for step in steps)
     narrow = held(ELL, vise(parallels=[32], stop="right", jaw_width=60), thickness=25.0, raw=RAW)
     drawn = next(one for one in narrow if not one.pose.theta_deg)
@@ -185,6 +188,8 @@ def test_words_say_what_lies_in_the_vise_and_what_to_touch_off():
     whole = held(ELL, vise(parallels=[40]), thickness=25.0, raw={"bottom": 4})
     said = list_raw_sentences(whole[0], whole.query, MILLIMETRE)
     assert "nothing to cut off on each side, nothing on top, 4 mm below" in said[0]
+    # Its sides are not from the saw.
+    assert len(said) == 3
     assert (
         said[1] == "The part's lower side is level with the jaws' top: its sides can be cut all the way down."
     )

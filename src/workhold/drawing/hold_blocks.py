@@ -256,13 +256,15 @@ def write_hold_steps(column: TextColumn, sheet: SetupSheet) -> None:
     hold = sheet.fixture.hold
     assert isinstance(hold, JawHold)
     steps = list(write_setup_sentences(sheet.fixture, find_sheet_query(sheet), sheet.lengths.unit))
-    if find_sheet_query(sheet).raw is None:
+    raw = find_sheet_query(sheet).raw
+    if raw is None:
         steps.insert(0, "Clean jaws, parallels and part; break the edges that lie on them")
         steps.append("Tap the part down until no parallel slides, and close again")
         steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
     else:
         steps.insert(0, "Clean jaws and parallels; file the burrs of the saw off the block")
-        steps.insert(-1, SAWN)
+        if raw.side > 0.0:
+            steps.insert(-1, SAWN)
         steps.append("Tap the block down, and close again; a sawn face may not bring both parallels to rest")
         stop = "the block's left end" if hold.stop is None else "the work stop"
         steps.append(

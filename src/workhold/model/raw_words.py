@@ -119,5 +119,5 @@ def list_raw_sentences(fixture: Fixture, query: Query, unit: Unit) -> list[str]:
         f"Raw block of {describe_block_size(query, unit)}. {describe_part_in_block(query, unit)}",
         *filter(None, [describe_uncut_sides(hold, query, jaws, unit)]),
         f"Z0 is {describe_zero_height(query, unit)}.",
-        f"{SAWN}.",
+        *([f"{SAWN}."] if query.raw.side > 0.0 else []),
     ]
