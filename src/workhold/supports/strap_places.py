@@ -23,6 +23,7 @@ from workhold.model.straps import StrapHardware
 from workhold.model.support_request import SupportRequest
 from workhold.model.workpiece import Workpiece
 from workhold.supports.faces import FaceBorders, TouchableFace
+from workhold.supports.straps_beside_part import are_beside_part
 
 __all__ = ["StrapPlaces", "find_bolt_holes", "find_strap_places", "find_top_face"]
 
@@ -123,6 +124,7 @@ def find_bolt_holes(
     # In the outline, and in no opening of it, a point is within an odd number of loops.
     is_under = part.contains(beside).sum(axis=1) % 2 == 1
     free = ~is_under & (part.measure_distances(beside).min(axis=1) >= plate.peg_radius - GAP_SLACK)
+    free &= are_beside_part(workpiece, beside, plate.peg_radius)
     if bolts is not plate:
         at_pegs = np.array([(peg.x, peg.y) for peg in pegs]).reshape(-1, 2)
         apart = np.hypot(*np.moveaxis(points[:, None] - at_pegs[None], 2, 0))

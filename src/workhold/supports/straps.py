@@ -49,6 +49,7 @@ from workhold.statics.patches import PressedPolygon
 from workhold.statics.strapped import PressingTips, StrappedPart, StrapsOnPart
 from workhold.supports.hand_push import find_hand_push
 from workhold.supports.strap_places import StrapPlaces, find_strap_places
+from workhold.supports.straps_beside_part import are_beside_rising
 from workhold.supports.straps_over_supports import ALIKE, PadPlaces, SupportedStraps
 from workhold.supports.straps_past_tools import are_clear
 
@@ -368,18 +369,25 @@ class StrapSearch:
         """Places for straps; without those at which a tool of the program would hit the strap."""
         query, asked = self.query, self.asked
         places = find_strap_places(self.fixture, query.workpiece, query.toolkit, asked.request, asked.straps)
-        if asked.program is None:
-            return places
         bolts = asked.get_bolt_holes(self.fixture)
-        clear = are_clear(
-            asked.program,
-            self.fixture.pose,
-            places.at,
-            np.column_stack(bolts.compute_hole_center(places.hole[:, 0], places.hole[:, 1])).reshape(-1, 2),
-            self.measure_heights(places.at),
-            asked.straps,
-        )
+        holes = np.column_stack(bolts.compute_hole_center(places.hole[:, 0], places.hole[:, 1]))
+        clear = self.find_clear(places.at, holes.reshape(-1, 2))
         return StrapPlaces(places.hole[clear], places.at[clear])
+
+    def find_clear(self, tip: Array, bolt: Array) -> BoolArray:
+        """Return a mask (N,): True for straps that run into nothing of the part and that all tools pass.
+
+        ``tip`` and ``bolt`` (N, 2) are the points at which they press, and the centres of their bolts, in mm in
+        the plate's frame.
+        """
+        asked, pose = self.asked, self.fixture.pose
+        if asked.program is None and not asked.request.rising:
+            return np.ones(len(tip), np.bool_)
+        heights = self.measure_heights(tip)
+        clear = are_beside_rising(asked.request, pose, tip, bolt, heights, asked.straps.tip_radius)
+        if asked.program is not None:
+            clear &= are_clear(asked.program, pose, tip, bolt, heights, asked.straps)
+        return clear
 
     def measure_heights(self, at: Array) -> Array:
         """Return the height in mm, above the part's lower side, of the

@@ -36,7 +36,7 @@ from workhold.supports.choosing import list_triples
 from workhold.supports.faces import TouchableFace, compute_area_center
 from workhold.supports.holes import find_holes_under_face
 from workhold.supports.strap_places import find_bolt_holes, find_top_face
-from workhold.supports.straps_past_tools import are_clear, keep_clear
+from workhold.supports.straps_past_tools import keep_clear
 
 if TYPE_CHECKING:
     from workhold.supports.straps import StrapSearch
@@ -127,12 +127,8 @@ def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int
     apart = np.hypot(*np.moveaxis(at[:, None] - points[None], 2, 0))
     least, most = asked.straps.reach
     within = (apart >= least - GAP_SLACK) & (apart <= most + GAP_SLACK) & tip[:, None]
-    if asked.program is not None:
-        one, other = np.nonzero(within)
-        heights = search.measure_heights(at)[one]
-        within[one, other] = are_clear(
-            asked.program, fixture.pose, at[one], points[other], heights, asked.straps
-        )
+    one, other = np.nonzero(within)
+    within[one, other] = search.find_clear(at[one], points[other])
     out = []
     for number in range(len(at)):
         near = np.flatnonzero(within[number])

@@ -43,7 +43,7 @@ from workhold.verification.jaw_forces import (
 from workhold.verification.jaw_program import find_program_force, find_program_force_faults
 from workhold.verification.placing import enclose_written_pose, find_avoided_faces, judge_gaps, prove_pose
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.support_listing import SupportPlaces
+from workhold.verification.support_listing import SupportPlaces, measure_gap, split_borders
 from workhold.verification.tolerances import AGREEMENT, Finding
 from workhold.verification.tool_walk import HoldingElement, list_elements, make_walk
 from workhold.verification.touching import judge_touching
@@ -61,6 +61,8 @@ FORCE_PART, FORCE_HAIR, ARC_PART, RANGE_PART = 1e-3, 1e-3, 5e-3, 0.012
 DIRECTIONS, WAYS = 64, 16
 # Parts of a number of times by which it may differ, and how many times mean any number.
 SAME_TIMES, MOST_TIMES = 1e-9, 1e6
+# Points of a bar's axis that are looked at.
+BAR_POINTS = 200
 # Degrees. How far from square to the outline a hand pushes, with rounding, and of direction and place.
 MOST_ASLANT, ON_OUTLINE = 60.0 + 1e-6, 1e-6
 # mm. How far beside the kern the middle of the tips may be by rounding.
@@ -371,6 +373,8 @@ class StrapJudge:
             or min(measure_distance(bolt, loop) for loop in loops) < plate.peg_radius - AGREEMENT
         ):
             yield "has its bolt in the part"
+        if any(gap < plate.peg_radius - AGREEMENT for gap in self.measure_gaps_above(bolt)):
+            yield "has its bolt in what juts out of the part above"
         faces = [("upper face", self.request.top), ("foot", self.request.bottom)]
         for name, face in faces[: 1 if straps.is_over_supports else 2]:
             borders = loops if face is None else [make_loop_segments(np.asarray(loop)) for loop in face]
@@ -382,10 +386,53 @@ class StrapJudge:
             if is_inside(tip, [loop]) or measure_distance(tip, loop) < straps.tip_radius - AGREEMENT:
                 yield "has its tip in a keep-out zone"
         high = self.request.find_clamped_height((float(tip[0]), float(tip[1])))
+        if not self.is_off_rising(high, tip, bolt):
+            yield "runs into what rises beside the face under its tip"
         if straps.is_over_supports:
             high += self.raised
         if abs(strap.height - high) > AGREEMENT:
             yield f"has its heel {strap.height:.6g} mm high, and the face under its tip is {high:.6g} mm high"
+
+    def measure_gaps_above(self, point: tuple[float, float]) -> Iterator[float]:
+        """Yield the distance in mm of a point of the part's frame from each region of a solid that is seen from
+        above, by height; negative inside it.
+        """
+        solid = self.query.workpiece.solid
+        if solid is None:
+            return
+        top = solid.top or ()
+        groups = (
+            (top, solid.top_heights or (solid.height,) * len(top)),
+            (solid.rising, solid.rising_heights),
+        )
+        for loops, heights in groups:
+            for level in dict.fromkeys(heights):
+                own = [
+                    split_borders(np.array(one)) for one, z in zip(loops, heights, strict=True) if z == level
+                ]
+                yield measure_gap(own, point)
+
+    def is_off_rising(self, height: float, tip: tuple[float, float], bolt: tuple[float, float]) -> bool:
+        """Return whether a strap's bar clears what of the part rises above the face under its tip.
+
+        ``height`` is that face's in mm; ``tip`` and ``bolt`` are points in the part's frame. The bar is looked
+        at in points of its axis, so that it is not judged to run into what it only comes near to.
+        """
+        asked, radius = self.request, self.straps.tip_radius
+        own = [
+            split_borders(one)
+            for one, z in zip(asked.rising, asked.rising_heights, strict=True)
+            if z == height
+        ]
+        far = hypot(bolt[0] - tip[0], bolt[1] - tip[1])
+        if not own or not far:
+            return True
+        long = 1.0 + 2.0 * radius / far
+        return all(
+            measure_gap(own, (tip[0] + share * (bolt[0] - tip[0]), tip[1] + share * (bolt[1] - tip[1])))
+            >= radius - AGREEMENT
+            for share in np.linspace(0.0, long, BAR_POINTS).tolist()
+        )
 
     def make_foot(self, pose: Pose) -> Foot:
         """Return the foot of the part on the plate."""

@@ -36,8 +36,10 @@ __all__ = [
     "Hole",
     "SupportPlaces",
     "measure_depth_inside",
+    "measure_gap",
     "find_missing_triples",
     "measure_room_on",
+    "split_borders",
 ]
 
 Array = NDArray[np.float64]
