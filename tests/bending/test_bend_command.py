@@ -156,6 +156,26 @@ def test_seats_under_straps_are_bent_where_straps_were_found(tmp_path: Path) -> 
     assert "At a strap force of" in sheet.read_text()
 
 
+def test_a_part_that_would_yield_is_warned_of_unasked(result_file: str, tmp_path: Path) -> None:
+    words = [result_file, "1", "--thickness", "8", "--jaw-force", "3000"]
+    weak, strong = (run(*words, "--material", f"69000,0.33,{strength}") for strength in (1, 9000))
+    assert weak.exit_code == strong.exit_code == 0
+    assert "fixture 1: The part would yield" in weak.stderr and "yield" not in strong.stderr
+    assert "stress MPa" in strong.stdout and "reckoned to yield at 9000 MPa" in strong.stdout
+    told = json.loads(run(*words, "--material", "69000,0.33,1", "--json").stdout)["fixtures"][0]
+    assert told["yields"] and told["stress"]["value"] > 1.0 and told["strength"] == 1.0
+    sheet, model = tmp_path / "weak.svg", tmp_path / "weak.glb"
+    outcome = CliRunner().invoke(
+        app, ["sheet", *words, "--date", "2026-01-01", "--material", "69000,0.33,1", "-o", str(sheet)]
+    )
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "Beware: The part would yield" in sheet.read_text()
+    assert run(*words, "--material", "69000,0.33,1", "--glb", str(model)).exit_code == 0
+    document, _ = open_glb(model.read_bytes())
+    told = [node["extras"]["bent"] for node in document["nodes"] if "bent" in node.get("extras", {})]
+    assert told[0]["warnings"][0].startswith("The part would yield")
+
+
 @pytest.mark.parametrize("kept", [0, 1])
 def test_stopped_on_the_way_it_tells_what_is_found(
     result_file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept: int

@@ -410,7 +410,8 @@ def test_without_the_library_it_is_said_what_to_install(monkeypatch: pytest.Monk
 
 def test_what_is_told_has_its_error_its_place_and_its_remedy() -> None:
     one = bent(result_in("vise"), jaw_force=3000.0)
-    clamping, give = one.list_sentences("jaw", MILLIMETRE)
+    clamping, give, stress = one.list_sentences("jaw", MILLIMETRE)
+    assert stress.startswith("Clamping stresses it by up to ") and "MPa" in stress
     assert clamping.startswith("At a jaw force of 3000 N clamping bends the part by ")
     assert "give or take" in clamping and clamping.endswith("that springs back.")
     assert "under load 1" in give

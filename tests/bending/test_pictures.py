@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bent_bodies import METAL, block, bodies, need_elements
-from workhold.bending.figures import Bending, BentPlace
+from workhold.bending.figures import Bending, BentPlace, LargestStress
 from workhold.drawing.bent_part import BentView, draw_bending
 from workhold.drawing.scene import LengthUnit
 from workhold.units import MILLIMETRE
@@ -25,7 +25,19 @@ def bent_at(place: tuple[float, float, float]) -> Bending:
     moved[:, 0] = 0.01 / (1.0 + away)
     most = BentPlace(0.01, 0.001, place)
     pressed = np.zeros(len(surface.nodes), np.bool_)
-    return Bending(METAL, 1000.0, False, most, None, body.elements, None, surface, moved, pressed)
+    return Bending(
+        METAL,
+        1000.0,
+        False,
+        most,
+        None,
+        LargestStress(1.0, 0.1, place),
+        body.elements,
+        None,
+        surface,
+        moved,
+        pressed,
+    )
 
 
 def draw(bending: Bending) -> str:

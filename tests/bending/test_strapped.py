@@ -158,7 +158,7 @@ def test_a_plate_that_lies_flat_is_hardly_bent_by_straps() -> None:
     assert isinstance(hold, StrappedHold)
     solved, held = hold_part(result, hold, HIGH)
     assert held.rest is not None
-    moved = solved.clamp(held)
+    moved = solved.solve_clamping(held)
     tips = np.array(result[0].pose.inverse.apply(np.array([one.at for one in hold.straps])))
     nodes = solved.body.surface.nodes
     far = np.min([np.hypot(*(nodes[:, :2] - tip).T) for tip in tips], axis=0) > 15.0
@@ -186,7 +186,7 @@ def test_a_strip_under_a_strap_between_two_supports_sinks_as_a_beam() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(type(toolkit.carriers[0]), "compute_hole_center", lambda _, *hole: centres[hole])
         solved, held = hold_part(result, hold, high)
-    sunk = solved.clamp(held)
+    sunk = solved.solve_clamping(held)
     nodes = solved.body.surface.nodes
     middle = (np.abs(nodes[:, 0] - 80.0) < 4.0) & (nodes[:, 2] < 1e-6)
     inertia, shear = width * high**3 / 12, MODULUS / (2 * (1 + RATIO))

@@ -18,7 +18,7 @@ from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
-from workhold.bending.figures import Bending, BentPlace
+from workhold.bending.figures import Bending, BentPlace, LargestStress
 from workhold.bending.holding import BELOW, ElasticHold, PadsBelow, make_elastic_hold
 from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
@@ -26,6 +26,7 @@ from workhold.bending.patches import BESIDE, RestingFaces, find_foot_corners, ma
 from workhold.bending.places import CutterLoads, list_cutter_loads
 from workhold.bending.resting import PlateRest, find_rest
 from workhold.bending.shape import PartToBend
+from workhold.bending.stress import BESIDE_EDGES, StressedSurface
 from workhold.bending.surface import Footing, Surface, list_lattice
 from workhold.contact.problem import Progress
 from workhold.conventions import STATED_FORCE
@@ -47,6 +48,8 @@ CUTTER_RADIUS = 2.0
 UNSURE = 2.0
 # What is added to it where a part may lift off a plate, of the movement: cells of other sizes change that as much.
 OF_CELLS = 0.1
+# What is added to the error of a stress, of it: beside sharp inner edges finer meshes change it as much.
+OF_STRESS = 0.1
 # Nodes so near to a face of the outline are on it, in mm.
 ON_FACE = 0.02
 TOP, BOTTOM = "top", "bottom"
@@ -150,6 +153,15 @@ class UnitLoads:
         if key not in self.places:
             self.places[key] = self.surface.find_footing(one.points, one.outward)
         return self.places[key]
+
+    def find_pressed_faces(self, hold: ElasticHold) -> NDArray[np.int64]:
+        """Return the faces of the surface that pegs, tips, pads and jaws press on, without those that lie on a plate."""
+        pressed = {point.tobytes() for point in hold.pressed}
+        return np.unique(
+            np.concatenate(
+                [self.find_footing(one).faces for one in hold.columns if one.points[0].tobytes() in pressed]
+            )
+        )
 
 
 @frozen(eq=False)
@@ -284,6 +296,8 @@ def find_bendings(
         tell(MESHED + (SOLVED - MESHED) * (count + 1) / len(needed), 0)
     held = [second.lay_on_plate(one) for one in held]
     is_cut = find_cut_nodes(surface, asked.faces, query.workpiece, height)
+    stressed = StressedSurface(surface, asked.material)
+    beside_edges = find_pressed(surface.nodes, stressed.inner_edges, BESIDE_EDGES)
     gives = [None if loads is None else second.find_worst_give(one, loads, places) for one in held]
     cut = {number for give in gives if give is not None for number in places[give.place].cuts}
     apart = len(cut.union(*(one.numbers for one in held)))
@@ -292,7 +306,11 @@ def find_bendings(
     for one, give in zip(held, gives, strict=True):
         if cancel.is_set():
             break
-        found.append(make_bending(one, give, second, third, loads, places, is_cut, query, asked))
+        found.append(
+            make_bending(
+                one, give, second, third, loads, places, is_cut, stressed, beside_edges, query, asked
+            )
+        )
         tell(SOLVED + (1 - SOLVED) * len(found) / len(held), len(found))
     return found
 
@@ -309,6 +327,8 @@ def make_bending(
     loads: CutterLoads | None,
     places: list[PressedPlace],
     is_cut: Mask,
+    stressed: StressedSurface,
+    beside_edges: Mask,
     query: Query,
     asked: BendingQuestion,
 ) -> Bending:
@@ -341,6 +361,7 @@ def make_bending(
         one.is_stated,
         most,
         given,
+        find_largest_stress(one, moved, pressed | beside_edges, stressed, second),
         third.body.elements,
         describe_faces(asked.faces),
         surface,
@@ -381,6 +402,30 @@ def find_most_moved(
     return BentPlace(value, one.estimate_error(value, change), tuple(points[face, point].tolist()))
 
 
+def find_largest_stress(
+    one: HeldFixture, moved: Array, left_out: Mask, stressed: StressedSurface, second: SolvedLoads
+) -> LargestStress:
+    """Return the largest von Mises stress on the surface by a fixture's clamps.
+
+    Faces that something presses on do not count either, since a face is stressed as a whole.
+
+    Parameters
+    ----------
+    moved, left_out : (N, 3) movement, with elements of the third order, and (N,) mask of the N surface nodes; those
+        left out do not count.
+    """
+    counts = ~left_out[stressed.surface.faces]
+    counts[second.units.find_pressed_faces(one.hold)] = False
+    after = stressed.compute_mises_stress(moved)
+    face, node = np.divmod(int(np.where(counts, after, 0.0).argmax()), after.shape[1])
+    change = abs(
+        float(after[face, node] - stressed.compute_mises_stress(second.solve_clamping(one))[face, node])
+    )
+    value = float(after[face, node])
+    error = UNSURE * change + OF_STRESS * value
+    return LargestStress(value, error, tuple(stressed.places[face, node].tolist()))
+
+
 def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPlace]:
     """Return a loaded patch of the surface for each of the chosen places where tools and loads press.
 
@@ -397,19 +442,18 @@ def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPla
     return found
 
 
-def find_pressed(nodes: Array, points: Array) -> Mask:
-    """Return the mask (N,) of the nodes (N, 3) nearer than :data:`BESIDE` to one of the pressed points (K,
-    3).
+def find_pressed(nodes: Array, points: Array, beside: float = BESIDE) -> Mask:
+    """Return the mask (N,) of the nodes (N, 3) nearer than ``beside`` mm to one of the pressed points (K, 3).
 
     There the surface is dented.
     """
     found = np.zeros(len(nodes), np.bool_)
     for start in range(0, len(points), PRESSED_AT_ONCE):
         some = points[start : start + PRESSED_AT_ONCE]
-        beside = (nodes > some.min(axis=0) - BESIDE) & (nodes < some.max(axis=0) + BESIDE)
-        near = np.flatnonzero(beside.all(axis=1) & ~found)
+        within = (nodes > some.min(axis=0) - beside) & (nodes < some.max(axis=0) + beside)
+        near = np.flatnonzero(within.all(axis=1) & ~found)
         away = nodes[near, None] - some
-        found[near] = ((away**2).sum(axis=2) < BESIDE**2).any(axis=1)
+        found[near] = ((away**2).sum(axis=2) < beside**2).any(axis=1)
     return found
 
 

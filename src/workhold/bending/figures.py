@@ -14,7 +14,7 @@ from workhold.errors import InputError
 from workhold.model.quality import Figure
 from workhold.units import Unit
 
-__all__ = ["BENDING_FIGURES", "Bending", "BentPlace", "find_bending_figure"]
+__all__ = ["BENDING_FIGURES", "Bending", "BentPlace", "LargestStress", "find_bending_figure"]
 
 Array = NDArray[np.float64]
 
@@ -94,6 +94,33 @@ class BentPlace:
         }
 
 
+@frozen
+class LargestStress:
+    """The largest von Mises stress on the surface by clamping, outside of what is pressed, and where it is.
+
+    Parameters
+    ----------
+    value : in MPa, with elements of the third order.
+    error : error estimate in MPa: twice the change of the stress there from elements of the second order to the
+        third, and a tenth of the stress.
+    at : (x, y, z) in mm, in the part's coordinates.
+    """
+
+    value: float
+    error: float
+    at: tuple[float, float, float]
+
+    def describe(self, unit: Unit) -> str:
+        """Return size, error and place as text, with lengths and stresses in the unit."""
+        place = ", ".join(unit.format_number(value, unit.decimals - 1) for value in self.at)
+        error = unit.format_stress_number(self.error)
+        return f"{unit.format_stress_number(self.value)} {unit.pressure} (give or take {error}) at ({place})"
+
+    def to_data(self) -> dict[str, Any]:
+        """Return plain data: stresses in MPa, lengths in mm."""
+        return {"value": self.value, "error": self.error, "at": list(self.at)}
+
+
 @frozen(eq=False)
 class Bending:
     """How far one fixture bends its part.
@@ -107,6 +134,7 @@ class Bending:
         it were stiff.
     give : largest movement at the cutter, or where a load acts, with the bending of pegs; None where nothing
         acts.
+    stress : largest stress by clamping on the surface, dents and sharp inner edges not counted.
     elements : number of tetrahedra of the mesh.
     faces : the faces to be cut, in words; None for all.
     surface : surface of the mesh, in the part's coordinates.
@@ -119,6 +147,7 @@ class Bending:
     is_stated: bool
     clamp_distortion: BentPlace
     give: BentPlace | None
+    stress: LargestStress
     elements: int
     faces: str | None
     surface: Surface = field(repr=False)
@@ -147,14 +176,40 @@ class Bending:
         ]
         if self.give is not None:
             said.append(f"It gives at the cutter by up to {self.give.describe(unit)}.")
+        strength = self.material.strength
+        known = (
+            ""
+            if strength is None
+            else f"; {self.material.name} is reckoned to yield at {unit.format_stress(strength)}"
+        )
+        said.append(f"Clamping stresses it by up to {self.stress.describe(unit)}{known}.")
         return said
 
+    @property
+    def yields(self) -> bool | None:
+        """Whether clamping stresses the part by as much as its material's strength, less the error estimate; None
+        where the strength or the jaw force is not known.
+        """
+        if self.material.strength is None or self.is_stated:
+            return None
+        return self.stress.value + self.stress.error >= self.material.strength
+
     def list_warnings(self, limit: float | None, unit: Unit) -> list[str]:
-        """Return a warning for each figure above ``limit`` in mm; [] where the limit is None."""
-        if limit is None:
-            return []
-        more = f"more than {unit.format_small_length(limit)}"
+        """Return a warning of a part that would yield, and one for each figure above ``limit`` in mm.
+
+        Where the limit is None there are none of figures.
+        """
         found = []
+        if self.yields and self.material.strength is not None:
+            would = "would yield" if self.stress.value >= self.material.strength else "might yield"
+            found.append(
+                f"The part {would}: clamping stresses it by {self.stress.describe(unit)}, and {self.material.name} is "
+                f"reckoned to bear {unit.format_stress(self.material.strength)}. Clamp it less hard or where it is thicker, "
+                "or support the wall."
+            )
+        if limit is None:
+            return found
+        more = f"more than {unit.format_small_length(limit)}"
         if self.clamp_distortion.value > limit:
             found.append(
                 f"Clamping bends the part by {unit.format_small_length(self.clamp_distortion.value)}, {more}: clamp it "
@@ -178,6 +233,9 @@ class Bending:
             "is_stated": self.is_stated,
             "clamp_distortion": self.clamp_distortion.to_data(),
             "give": None if self.give is None else self.give.to_data(),
+            "stress": self.stress.to_data(),
+            "strength": self.material.strength,
+            "yields": self.yields,
             "faces": self.faces,
             "elements": self.elements,
         }

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from workhold.bending.library import load_elements
 from workhold.errors import InputError
 
-__all__ = ["LATTICE", "Footing", "Surface", "find_surface", "list_lattice"]
+__all__ = ["LATTICE", "Footing", "Surface", "find_surface", "list_lattice", "number_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]

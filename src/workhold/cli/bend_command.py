@@ -46,7 +46,8 @@ class BendWords:
         PART,
         "NAME",
         "Material of the part: aluminium-6061, aluminium-7075, mild-steel, steel-4140, stainless-304, brass, cast-iron, "
-        "pom, pa6 or peek; or Young's modulus in MPa and Poisson's ratio, such as 69000,0.33.",
+        "pom, pa6 or peek; or Young's modulus in MPa and Poisson's ratio, such as 69000,0.33, and the yield "
+        "strength if you know it: 69000,0.33,276.",
         default="aluminium-6061",
     )
     thickness: str | None = make_option(
@@ -80,7 +81,11 @@ class BentWords:
     rank_by: str | None = make_option(
         OUTPUT, "FIGURE", "Order these by clamp-distortion or give, the least first; as listed if not given."
     )
-    bend: str | None = make_option(OUTPUT, "LENGTH", "Warn of a part that bends or gives by more.")
+    bend: str | None = make_option(
+        OUTPUT,
+        "LENGTH",
+        "Warn of a part that bends or gives by more; one that would yield is warned of anyway.",
+    )
     draw: str | None = make_option(
         OUTPUT, "FILE", "Draw the first of these, coloured and bent, into this file (.png or .svg)."
     )
@@ -254,6 +259,14 @@ def write_first(
     return [str(path) for path in (picture, model) if path is not None]
 
 
+def describe_strength(asked: BendingQuestion, unit: Unit) -> str:
+    """Return a sentence on the stress that the material bears, with a space before it; "" where it is not known."""
+    strength = asked.material.strength
+    if strength is None:
+        return ""
+    return f" {asked.material.name} is reckoned to yield at {unit.format_stress(strength)}."
+
+
 def tabulate(
     ranked: list[tuple[int, Bending]], result: Result, asked: BendingQuestion, unit: Unit
 ) -> list[Table | str]:
@@ -271,6 +284,8 @@ def tabulate(
             f">clamping bends {small}",
             ">±",
             f"at {unit.abbreviation}",
+            f">stress {unit.pressure}",
+            ">±",
             *((f">gives {small}", ">±", "at") if has_give else ()),
         )
     )
@@ -283,6 +298,7 @@ def tabulate(
         bent, give = one.clamp_distortion, one.give
         cells = [str(row + 1), f"{one.jaw_force / unit.newtons:.0f}", unit.format_small_number(bent.value)]
         cells += [unit.format_small_number(bent.error), place(bent.at)]
+        cells += [unit.format_stress_number(value) for value in (one.stress.value, one.stress.error)]
         if give is not None:
             because = f"line {give.line}" if give.line is not None else f"load {give.load}"
             cells += [
@@ -298,5 +314,5 @@ def tabulate(
         "",
         table,
         f"{stated}{first.elements:,} elements. What clamping bends springs back; dents under contacts do not count. "
-        "± is the error of the mesh.",
+        f"± is the error of the mesh.{describe_strength(asked, unit)}",
     ]

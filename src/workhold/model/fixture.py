@@ -815,7 +815,7 @@ class Fixture:
         Parameters
         ----------
         material : its name, such as "mild-steel", or Young's modulus in MPa and Poisson's ratio as
-            "69000,0.33".
+            "69000,0.33", and its yield strength in MPa where that is known, as in "69000,0.33,276".
         thickness : thickness of the part in mm; that of its solid or of the query if None.
         jaw_force : in N; if None that of the query, else the one that its loads need, else 1000 N.
         jaw : what keeps the jaw closed under loads, see :meth:`load_cases`.

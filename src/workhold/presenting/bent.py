@@ -22,6 +22,7 @@ from workhold.model.bodies import BodySizes, list_fixture_bodies
 from workhold.model.pose import Pose
 from workhold.presenting.assembly import read_part_shape
 from workhold.statics.loads import read_jaw_stiffness
+from workhold.units import MILLIMETRE
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
@@ -172,7 +173,9 @@ def make_bent_mesh(bending: Bending, pose: Pose) -> Mesh:
         np.arange(3 * len(small)).reshape(-1, 3),
         compute_node_colours(bending)[small].reshape(-1, 3),
     )
-    told = {"most": bending.clamp_distortion.value, "error": bending.clamp_distortion.error, "times": times}
+    most = bending.clamp_distortion
+    warnings = bending.list_warnings(None, MILLIMETRE)
+    told = {"most": most.value, "error": most.error, "times": times, "warnings": warnings}
     return evolve(mesh, about={"bent": told})
 
 

@@ -154,7 +154,7 @@ async function withBending(shown, path, mine) {
   if (!told) return;
   byId("space-save").setAttribute("href", bent);
   const [most, error] = [told.most, told.error].map((value) => (1000 * value).toPrecision(2));
-  sayOfShape(`Clamping bends the part by up to ${most} µm, give or take ${error} µm: yellow the most, dark blue nothing, grey where something presses. It is shown bent ${told.times.toLocaleString("en")} times as far.`);
+  sayOfShape(`Clamping bends the part by up to ${most} µm, give or take ${error} µm: yellow the most, dark blue nothing, grey where something presses. It is shown bent ${told.times.toLocaleString("en")} times as far.${told.warnings.map((warning) => ` Beware: ${warning}`).join("")}`);
 }
 
 /** Say something about the shape of the part. @param {string} words */

@@ -6,7 +6,7 @@
  * @typedef {Object} Body
  * @property {string} name
  * @property {string} kind part, peg, clamp, plate, wall or support
- * @property {{most: number, error: number, times: number}|null} bent how far clamping bends it at most, in mm, and how many times as far it is
+ * @property {{most: number, error: number, times: number, warnings: string[]}|null} bent how far clamping bends it at most, in mm, how many times as far it is shown, and warnings
  * @property {number[]|null} opens unit vector along which it moves away when opened
  * @property {number[]} colour red, green and blue from 0 to 1, linear light
  * @property {Float32Array|null} colours of the vertices, as colour
