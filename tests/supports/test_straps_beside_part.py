@@ -116,7 +116,7 @@ def test_a_strap_that_crosses_the_body_is_seen(solids, tmp_path):
             if 123 < bolt[0] < 140 and 25 < bolt[1] < 45:
                 wanted["has its bolt in what juts out"] = (column, row, (90.0, 12.0))
             if 10 < bolt[0] < 100 and 74 < bolt[1] < 92:
-                wanted["runs into what rises"] = (column, row, (bolt[0], bolt[1] - 62.0))
+                wanted["runs into what rises"] = (column, row, (bolt[0], 10.0))
     free, _ = find_bolt_holes(fixture, part, result.toolkit, make_question(result.query).straps)
     assert wanted["has its bolt in what juts out"][:2] not in {tuple(one) for one in free.tolist()}
     for words, place in wanted.items():
